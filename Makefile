@@ -1,0 +1,55 @@
+# The only commands anyone must know. `make help` lists them.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/pip --disable-pip-version-check --quiet
+
+# One BLAS thread: our matrices are small, and two threads are slower than one (evidence in docs/verification.md).
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint types layers unit bench qualify docs lock clean
+
+help: ## list the commands
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo 'jackettwin needs Python 3.11 or newer; set PYTHON=/path/to/python3'; exit 2; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.core: requirements.lock pyproject.toml | $(BIN)/python
+	$(PIP) install -r requirements.lock
+	$(PIP) install --no-deps -e .
+	@touch $@
+
+$(VENV)/.dev: requirements-dev.lock $(VENV)/.core
+	$(PIP) install -r requirements-dev.lock
+	@touch $@
+
+demo: $(VENV)/.core ## digital twin of a 15 MW jacket from an OpenFAST record: out/demo/report.html
+	$(BIN)/jackettwin run --out out/demo
+
+test: $(VENV)/.dev lint types layers unit ## everything CI checks
+
+lint: $(VENV)/.dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.dev
+	$(BIN)/mypy
+
+layers: $(VENV)/.dev
+	$(BIN)/lint-imports
+
+unit: $(VENV)/.dev
+	$(BIN)/pytest -n 2
+
+lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
+	$(PIP) install pip-tools
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra dev --extra docs --extra bench --constraint requirements.lock --output-file requirements-dev.lock pyproject.toml
+
+clean: ## remove everything built
+	rm -rf $(VENV) build dist site out .mypy_cache .ruff_cache .pytest_cache

@@ -1,0 +1,102 @@
+"""Exception tree.
+
+::
+
+    JackettwinError
+    ├── InputError          what the user gave is wrong: exit code 2
+    │   └── MissingExtra    an optional dependency is not installed
+    └── NumericalError      the algorithm could not deliver a trustworthy number
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+
+class JackettwinError(Exception):
+    """Base of every error raised on purpose by this package."""
+
+
+class InputError(JackettwinError):
+    """Bad input: says what was wrong, what was received, what is allowed and what to do.
+
+    Parameters
+    ----------
+    problem : str
+        One clause, lower case, no full stop: ``"wall is thicker than the radius"``.
+    file : Path or str, optional
+        Where the value was read.
+    field : str, optional
+        Dotted path of the value inside the file: ``"sections.leg.thickness_m"``.
+    value : object, optional
+        What was received.
+    allowed : str, optional
+        The allowed range or choices.
+    remedy : str, optional
+        What the user can do about it.
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        *,
+        file: Path | str | None = None,
+        field: str | None = None,
+        value: object = None,
+        allowed: str | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.file = file
+        self.field = field
+        self.value = value
+        self.allowed = allowed
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        place = ": ".join(str(part) for part in (self.file, self.field) if part is not None)
+        text = f"{place}: {self.problem}" if place else self.problem
+        if self.value is not None:
+            text += f" (got {_short(self.value)})"
+        if self.allowed is not None:
+            text += f"; allowed: {self.allowed}"
+        if self.remedy is not None:
+            text += f"; {self.remedy}"
+        return text
+
+    def at(self, *, file: Path | str | None = None, field: str | None = None) -> InputError:
+        """Return the same error with its place filled in; an inner field is put behind ``field``."""
+        inner = ".".join(part for part in (field, self.field) if part)
+        return type(self)(
+            self.problem,
+            file=self.file if self.file is not None else file,
+            field=inner or None,
+            value=self.value,
+            allowed=self.allowed,
+            remedy=self.remedy,
+        )
+
+
+class MissingExtra(InputError):
+    """An optional dependency is needed for this input; the remedy names the pip extra."""
+
+
+class NumericalError(JackettwinError):
+    """A computation did not reach the accuracy it promises."""
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str | None:
+    """Return a remedy sentence naming the closest known word, or None."""
+    match = get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f"did you mean {match[0]!r}?" if match else None
+
+
+def _short(value: object, limit: int = 80) -> str:
+    text = repr(value)
+    return text if len(text) <= limit else text[: limit - 1] + "…"

@@ -1,0 +1,1 @@
+"""Reading and writing: YAML, JSON, whole files or nothing."""

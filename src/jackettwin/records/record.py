@@ -1,0 +1,114 @@
+"""A measured or simulated record: the one type in which both kinds of data meet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured signal: what it is, where it sits and which way it points.
+
+    ``height_m`` is above mean sea level on the tower axis; ``node`` names a node of the structure
+    instead. ``direction`` is a unit vector in global axes; zeros for a scalar quantity.
+    """
+
+    name: str
+    quantity: str = "acceleration"
+    unit: str = "m/s^2"
+    height_m: float | None = None
+    node: str | None = None
+    direction: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Record:
+    """Samples of several channels at one rate, from one start.
+
+    Attributes
+    ----------
+    data : (n_channels, n_samples) float array
+        Samples in SI units of each channel's quantity; NaN marks a missing sample.
+    sample_rate_hz : float
+    channels : tuple of Channel
+        In the order of the rows of ``data``.
+    start_utc : datetime or None
+        Start of the interval, time zone aware.
+    conditions, metadata : mapping
+        What is known of wind, yaw and operating state; everything else the file said.
+    name : str
+        Identifies the record in messages and results.
+    """
+
+    data: FloatArray
+    sample_rate_hz: float
+    channels: tuple[Channel, ...]
+    start_utc: datetime | None = None
+    conditions: Mapping[str, Any] = field(default_factory=dict)
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    name: str = "record"
+
+    def __post_init__(self) -> None:
+        if self.data.ndim != 2 or self.data.shape[0] != len(self.channels):
+            raise InputError(
+                "data and channels disagree",
+                field="data",
+                value=self.data.shape,
+                allowed=f"({len(self.channels)}, n_samples)",
+                remedy="give one row a channel",
+            )
+        if not np.isfinite(self.sample_rate_hz) or self.sample_rate_hz <= 0.0:
+            raise InputError(
+                "sample rate must be a positive number",
+                field="sample_rate_hz",
+                value=self.sample_rate_hz,
+                allowed="> 0",
+                remedy="state the logger's rate in Hz",
+            )
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the record [s]."""
+        return float(self.data.shape[1] / self.sample_rate_hz)
+
+    @property
+    def channel_names(self) -> tuple[str, ...]:
+        """Channel names in the order of the rows of ``data``."""
+        return tuple(channel.name for channel in self.channels)
+
+    def select(self, names: Sequence[str]) -> Record:
+        """Return the record with only the named channels, in the order given.
+
+        Raises
+        ------
+        InputError
+            If a name is not in the record.
+        """
+        rows = []
+        for name in names:
+            if name not in self.channel_names:
+                raise InputError(
+                    "no such channel",
+                    field="channels",
+                    value=name,
+                    allowed=", ".join(self.channel_names),
+                    remedy=did_you_mean(name, self.channel_names),
+                )
+            rows.append(self.channel_names.index(name))
+        return replace(self, data=self.data[rows], channels=tuple(self.channels[i] for i in rows))
+
+    def of_quantity(self, quantity: str) -> Record:
+        """Return the record with only the channels of one quantity."""
+        return self.select([c.name for c in self.channels if c.quantity == quantity])

@@ -1,0 +1,1 @@
+"""Supports: what the ground does to the structure."""

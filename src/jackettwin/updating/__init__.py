@@ -1,0 +1,1 @@
+"""Modes to parameters, with uncertainty."""

@@ -1,0 +1,29 @@
+import pytest
+
+from jackettwin.errors import InputError, did_you_mean
+from jackettwin.quantities import QUANTITIES, to_si
+
+
+def test_every_si_unit_has_factor_one() -> None:
+    assert all(to_si(name, q.unit) == 1.0 for name, q in QUANTITIES.items())
+
+
+def test_wrong_unit_names_value_allowed_and_remedy() -> None:
+    message = r"wrong unit for acceleration \(got 'm/s\^3'\); allowed: m/s\^2.*did you mean"
+    with pytest.raises(InputError, match=message):
+        to_si("acceleration", "m/s^3")
+
+
+def test_unknown_quantity_suggests_the_closest() -> None:
+    with pytest.raises(InputError, match="did you mean 'acceleration'"):
+        to_si("accelaration", "m/s^2")
+
+
+def test_error_collects_its_place_from_inside_out() -> None:
+    inner = InputError("is negative", field="thickness_m", value=-0.1, allowed="> 0")
+    outer = inner.at(field="sections.leg").at(file="a.yaml")
+    assert str(outer) == "a.yaml: sections.leg.thickness_m: is negative (got -0.1); allowed: > 0"
+
+
+def test_no_suggestion_for_a_distant_word() -> None:
+    assert did_you_mean("xyz", ["frequency"]) is None
