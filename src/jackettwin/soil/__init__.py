@@ -1,1 +1,15 @@
 """Supports: what the ground does to the structure."""
+
+from jackettwin.soil.files import parse_law, read_support
+from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
+
+__all__ = [
+    "Spring",
+    "Support",
+    "clamped",
+    "on_translations",
+    "own_support",
+    "parse_law",
+    "pinned",
+    "read_support",
+]

@@ -1,0 +1,52 @@
+"""Write a whole file or nothing."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@contextmanager
+def atomic_path(path: Path | str) -> Iterator[Path]:
+    """Yield a temporary path beside ``path``; rename it into place only if the block succeeds."""
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".tmp", dir=target.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        temporary.chmod(0o644)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_json(data: object, path: Path | str) -> None:
+    """Write JSON with ``null`` for what is not known; never NaN."""
+    text = json.dumps(null_for_nan(data), indent=1, ensure_ascii=False, allow_nan=False)
+    with atomic_path(path) as temporary:
+        temporary.write_text(text + "\n", encoding="utf-8")
+
+
+def null_for_nan(value: Any) -> Any:
+    """Return plain JSON data: arrays to lists, NumPy numbers to Python's, NaN and infinity to None."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [null_for_nan(value.real), null_for_nan(value.imag)]
+    if isinstance(value, dict):
+        return {str(key): null_for_nan(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [null_for_nan(item) for item in value]
+    return value

@@ -1,0 +1,94 @@
+"""Check data from a file against a schema and say in one sentence what is wrong."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from jackettwin.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+class Schema(BaseModel):
+    """Base of every file schema: unknown keys, NaN and infinity are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True)
+
+
+S = TypeVar("S", bound=Schema)
+
+_BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
+
+
+def validate(schema: type[S], data: Any, *, file: Path | str | None = None, field: str | None = None) -> S:
+    """Return ``data`` as a ``schema``.
+
+    Raises
+    ------
+    InputError
+        Names the first offending field, its value and what is allowed.
+    """
+    try:
+        return schema.model_validate(data)
+    except ValidationError as error:
+        first = _most_telling(error)
+        raise _as_input_error(first, schema).at(file=file, field=field) from None
+
+
+def _most_telling(error: ValidationError) -> Any:
+    """Return the unknown key if there is one: a typo also makes its right name missing."""
+    errors = error.errors()
+    return next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+
+
+def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
+    location = error["loc"]
+    field = ".".join(str(part) for part in location)
+    kind, context = error["type"], error.get("ctx", {})
+    if kind == "extra_forbidden":
+        known = _keys_at(schema, location[:-1])
+        return InputError(
+            "unknown key",
+            field=field,
+            value=location[-1],
+            allowed=", ".join(known) or None,
+            remedy=did_you_mean(str(location[-1]), known),
+        )
+    if kind == "missing":
+        return InputError("required key is missing", field=field, remedy=f"add {location[-1]!r}")
+    if kind in ("value_error", "assertion_error") and isinstance(context.get("error"), InputError):
+        inner: InputError = context["error"]
+        return inner.at(field=field)
+    bounds = [f"{symbol} {context[key]}" for key, symbol in _BOUNDS.items() if key in context]
+    allowed = bounds[0] if bounds else context.get("expected")
+    return InputError(
+        error["msg"][0].lower() + error["msg"][1:], field=field, value=error["input"], allowed=allowed
+    )
+
+
+def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:
+    """Return the keys allowed at a place of the schema, as far as they can be followed."""
+    current: Any = schema
+    for part in location:
+        if isinstance(part, int):
+            continue
+        info = current.model_fields.get(part) or next(
+            (f for f in current.model_fields.values() if f.alias == part), None
+        )
+        if info is None:
+            continue  # a union's branch name or the key of a free mapping
+        current = _model_inside(info.annotation) or current
+    return [f.alias or name for name, f in current.model_fields.items()]
+
+
+def _model_inside(annotation: Any) -> type[BaseModel] | None:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    for argument in getattr(annotation, "__args__", ()):
+        found = _model_inside(argument)
+        if found is not None:
+            return found
+    return None

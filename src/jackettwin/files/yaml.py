@@ -1,0 +1,97 @@
+"""YAML as engineers write it: ``2.5e9`` is a number, a key given twice is an error."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from jackettwin.errors import InputError
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader with YAML 1.2 numbers and unique keys."""
+
+
+# YAML 1.1 reads 2.5e9 (no sign in the exponent) as text; 1.2 does not.
+_FLOAT = re.compile(
+    r"^[-+]?(\d[\d_]*(\.[\d_]*)?|\.\d[\d_]*)([eE][-+]?\d+)?$|^[-+]?\.(inf|Inf|INF)$|^\.(nan|NaN|NAN)$"
+)
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+
+
+def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+    loader.flatten_mapping(node)
+    mapping: dict[Any, Any] = {}
+    for key_node, value_node in node.value:
+        key = loader.construct_object(key_node, deep=True)
+        if isinstance(key, (list, dict)):
+            raise yaml.constructor.ConstructorError(None, None, "key is not a word", key_node.start_mark)
+        if key in mapping:
+            raise yaml.constructor.ConstructorError(
+                None, None, f"key {key!r} is given twice", key_node.start_mark
+            )
+        mapping[key] = loader.construct_object(value_node, deep=True)
+    return mapping
+
+
+_Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _unique_mapping)
+
+
+def read_text(path: Path | str, *, what: str = "file") -> str:
+    """Read a text file.
+
+    Raises
+    ------
+    InputError
+        If it is missing, a directory, unreadable or not text.
+    """
+    target = Path(path)
+    try:
+        return target.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(
+            f"no such {what}",
+            file=path,
+            remedy="check the path; relative paths are relative to the file that names them",
+        ) from None
+    except UnicodeDecodeError:
+        raise InputError(f"{what} is not UTF-8 text", file=path, remedy="save it as UTF-8 text") from None
+    except OSError as error:
+        raise InputError(
+            f"cannot read the {what}: {error.strerror}",
+            file=path,
+            remedy="check the path and its permissions",
+        ) from None
+
+
+def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
+    """Read a YAML mapping.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not YAML, repeats a key, or is not a mapping.
+    """
+    try:
+        # _Loader derives from SafeLoader: it builds plain data only.
+        data = yaml.load(read_text(path, what=what), Loader=_Loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark is not None else ""
+        problem = getattr(error, "problem", None) or "is not valid YAML"
+        raise InputError(f"{where}{problem}", file=path, remedy="mend the YAML at that place") from None
+    except RecursionError:
+        raise InputError(
+            "is nested too deeply", file=path, remedy="a twin file has at most a few levels"
+        ) from None
+    if not isinstance(data, dict):
+        raise InputError(
+            f"{what} must be a mapping of keys to values",
+            file=path,
+            value=data,
+            remedy="start from an example in the documentation",
+        )
+    return {str(key): value for key, value in data.items()}

@@ -1,0 +1,48 @@
+"""Follow modes from one support to another by shape, never by their place in a sorted list."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+NEAR_DEGENERATE = 0.03
+"""Reference modes closer than this (relative) are followed as one subspace."""
+RECOGNISED = 0.3
+"""Less mass-weighted MAC than this is no kinship."""
+
+
+def mass_mac(M: Any, phi: FloatArray, x: npt.NDArray[Any]) -> FloatArray:
+    r"""Return the mass-weighted MAC :math:`|φ^T M x|² / (φ^T M φ · x^H M x)`, (n_reference, n_candidates)."""
+    Mx = M @ x
+    cross = np.abs(phi.T @ Mx) ** 2
+    own = np.einsum("ij,ij->j", phi, M @ phi)
+    return np.asarray(cross / np.outer(own, np.einsum("ij,ij->j", x.conj(), Mx).real))
+
+
+def follow(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any]) -> IntArray:
+    """Return for each reference mode the index of its successor among the candidates, or −1.
+
+    Parameters
+    ----------
+    M : (n, n) mass matrix
+    omega : (n_reference,) ascending frequencies of the reference modes [rad/s]
+    phi : (n, n_reference) mass-orthogonal reference modes
+    x : (n, n_candidates) real or complex shapes
+    """
+    successor = np.full(omega.size, -1, dtype=np.intp)
+    if x.shape[1] == 0:
+        return successor
+    single = mass_mac(M, phi, x)
+    group = np.concatenate([[0], np.cumsum(np.diff(omega) > NEAR_DEGENERATE * omega[1:])])
+    subspace = np.array([single[group == group[j]].sum(axis=0) for j in range(omega.size)])
+    # the subspace decides who belongs; inside it the single shapes say which is which
+    rows, columns = linear_sum_assignment(-(subspace + 0.1 * single))
+    known = subspace[rows, columns] >= RECOGNISED
+    successor[rows[known]] = columns[known]
+    return successor

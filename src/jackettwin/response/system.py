@@ -1,0 +1,164 @@
+r"""Structure and support as one dynamic system.
+
+In the Laplace domain :math:`F(s)\,x = f` with
+
+.. math:: F(s) = s^2 M + s(αM + βK) + K + \sum_g D_g(s) S_g
+
+where each support law :math:`D_g` scales its own pattern matrix :math:`S_g`. F is symmetric.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from jackettwin.errors import InputError
+from jackettwin.structure.damping import Rayleigh
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.soil.support import Spring, Support
+    from jackettwin.soil.viscoelastic import Law
+    from jackettwin.structure.assemble import Assembly
+
+IntArray = npt.NDArray[np.intp]
+Matrix = Any
+"""A NumPy array or a SciPy sparse array: the algebra below is the same."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """All springs that share a law: pattern matrix S (n, n) and the DOFs it touches."""
+
+    law: Law
+    S: Matrix
+    dofs: IntArray
+
+
+@dataclass(frozen=True)
+class Pencil:
+    """M, K, Rayleigh damping and support groups, sparse (full model) or dense (reduced)."""
+
+    M: Matrix
+    K: Matrix
+    rayleigh: Rayleigh
+    groups: tuple[Group, ...]
+
+    @property
+    def n(self) -> int:
+        """Number of DOFs."""
+        return int(self.M.shape[0])
+
+    def F(self, s: complex) -> Matrix:
+        """Return F(s)."""
+        a, b = self.rayleigh.alpha, self.rayleigh.beta
+        total = (s * s + a * s) * self.M + (1.0 + b * s) * self.K
+        for group in self.groups:
+            total = total + complex(group.law.stiffness(s)) * group.S
+        return total
+
+    def dF(self, s: complex) -> Matrix:
+        """Return dF/ds."""
+        total = (2.0 * s + self.rayleigh.alpha) * self.M + self.rayleigh.beta * self.K
+        for group in self.groups:
+            total = total + complex(group.law.slope(s)) * group.S
+        return total
+
+    def static_stiffness(self) -> Matrix:
+        """Return K with the static stiffness of every law: the undamped structure."""
+        total = self.K
+        for group in self.groups:
+            total = total + group.law.static_stiffness * group.S
+        return total
+
+    def with_laws(self, laws: Sequence[Law]) -> Pencil:
+        """Return the pencil with other laws on the same groups."""
+        groups = tuple(replace(group, law=law) for group, law in zip(self.groups, laws, strict=True))
+        return replace(self, groups=groups)
+
+
+@dataclass(frozen=True)
+class System:
+    """A supported structure.
+
+    Attributes
+    ----------
+    assembly : Assembly
+        The free structure.
+    support : Support
+    pencil : Pencil
+        On the free DOFs.
+    free : (n,) DOFs of the assembly that are not held
+    """
+
+    assembly: Assembly
+    support: Support
+    pencil: Pencil
+    free: IntArray
+
+    def expand(self, x: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return shapes (assembly.n_dof, ...) from shapes on the free DOFs; held DOFs are zero."""
+        full = np.zeros((self.assembly.n_dof, *x.shape[1:]), dtype=x.dtype)
+        full[self.free] = x
+        return full
+
+
+def build_system(
+    assembly: Assembly,
+    support: Support,
+    *,
+    rayleigh: Rayleigh | None = None,
+    dashpots: tuple[Spring, ...] = (),
+) -> System:
+    """Return the structure on its support.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    support : Support
+    rayleigh : Rayleigh, optional
+        Damping of the steel alone.
+    dashpots : tuple of Spring
+        Further springs and dashpots anywhere (a nacelle's aerodynamic damping).
+
+    Raises
+    ------
+    InputError
+        If a spring stands on a held DOF with nowhere to act, or a node does not exist.
+    """
+    held: list[int] = []
+    for node, dofs in support.fixed:
+        held += list(assembly.dofs(node)[list(dofs)])
+    free = np.setdiff1d(np.arange(assembly.n_dof), np.array(held, dtype=np.intp))
+    if free.size == 0:
+        raise InputError("every degree of freedom is held", field="support", remedy="hold fewer nodes")
+    number = np.full(assembly.n_dof, -1, dtype=np.intp)
+    number[free] = np.arange(free.size)
+    M = sp.csc_array(assembly.mass[free][:, free])
+    K = sp.csc_array(assembly.stiffness[free][:, free])
+    groups = _groups(assembly, (*support.springs, *dashpots), number, free.size)
+    return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups), free)
+
+
+def _groups(assembly: Assembly, springs: tuple[Spring, ...], number: IntArray, n: int) -> tuple[Group, ...]:
+    """Return one group for each distinct law, in order of first appearance."""
+    entries: dict[Law, list[tuple[IntArray, IntArray, npt.NDArray[np.float64]]]] = {}
+    for spring in springs:
+        dofs = number[assembly.dofs(spring.node)]
+        rows, columns = np.nonzero(spring.matrix)
+        live = (dofs[rows] >= 0) & (dofs[columns] >= 0)
+        rows, columns = rows[live], columns[live]
+        block = (dofs[rows], dofs[columns], spring.matrix[rows, columns])
+        entries.setdefault(spring.law, []).append(block)
+    groups = []
+    for law, blocks in entries.items():
+        i, j, v = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+        if v.size:
+            S = sp.coo_array((v, (i, j)), shape=(n, n)).tocsc()
+            groups.append(Group(law, S, np.unique(i)))
+    return tuple(groups)

@@ -1,0 +1,285 @@
+"""Supports from the command line (``kelvin-voigt:k=2.5e9,c=7.6e8``) and from YAML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import pi
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from jackettwin.errors import InputError, did_you_mean
+from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
+from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.structure.model import Structure
+
+NotNegative = Annotated[float, Field(ge=0.0)]
+Positive = Annotated[float, Field(gt=0.0)]
+
+
+class BranchSchema(Schema):
+    """A Maxwell branch: relative stiffness and relaxation time."""
+
+    g: NotNegative
+    tau_s: Positive
+
+
+class ElasticLaw(Schema):
+    """K."""
+
+    type: Literal["elastic"]
+
+    def build(self) -> Law:
+        """Return the law."""
+        return Prony(k0=1.0)
+
+
+class KelvinVoigtLaw(Schema):
+    """K·(1 + τs)."""
+
+    type: Literal["kelvin-voigt"]
+    tau_s: NotNegative
+
+    def build(self) -> Law:
+        """Return the law."""
+        return kelvin_voigt(1.0, self.tau_s)
+
+
+class MaxwellLaw(Schema):
+    """K·(g0 + Σ g τs/(1+τs))."""
+
+    type: Literal["maxwell"]
+    g0: NotNegative = 1.0
+    branches: list[BranchSchema] = Field(min_length=1)
+
+    def build(self) -> Law:
+        """Return the law."""
+        return Prony(
+            k0=self.g0, k=tuple(b.g for b in self.branches), tau=tuple(b.tau_s for b in self.branches)
+        )
+
+
+class SpringpotLaw(Schema):
+    """K·(s/ω0)^α."""
+
+    type: Literal["springpot"]
+    alpha: Annotated[float, Field(ge=0.0, lt=1.0)]
+    omega0_rad_s: Positive
+
+    def build(self) -> Law:
+        """Return the law."""
+        return Springpot(1.0, self.alpha, self.omega0_rad_s)
+
+
+LawSchema = Annotated[ElasticLaw | KelvinVoigtLaw | MaxwellLaw | SpringpotLaw, Field(discriminator="type")]
+
+
+class SpringSchema(Schema):
+    """One entry of ``supports``."""
+
+    nodes: Literal["reaction"] | list[str]
+    stiffness: list[float] | list[list[float]]
+    law: LawSchema = ElasticLaw(type="elastic")
+
+
+class SupportSchema(Schema):
+    """A support file."""
+
+    supports: list[SpringSchema] = Field(min_length=1)
+
+
+def read_support(
+    text: str | Path | None,
+    structure: Structure,
+    *,
+    first_frequency_hz: Callable[[], float],
+    folder: Path | None = None,
+) -> Support:
+    """Return the support a user asked for.
+
+    Parameters
+    ----------
+    text : str or Path or None
+        ``pinned``, ``clamped``, a short form, or a YAML file; None is the structure's own.
+    structure : Structure
+    first_frequency_hz : callable
+        Gives the first pinned frequency, the default reference frequency of ``springpot`` and ``maxwell-3``.
+    folder : Path, optional
+        What a relative path is relative to.
+
+    Raises
+    ------
+    InputError
+        If the text is none of these, or a value is out of range.
+    """
+    if text is None:
+        return own_support(structure)
+    word = str(text)
+    if not structure.reactions:
+        raise InputError(
+            "the structure has no reaction nodes to support",
+            field="reaction_nodes",
+            value=[],
+            remedy="name them in the structure file",
+        )
+    if word in ("pinned", "clamped"):
+        return pinned(structure) if word == "pinned" else clamped(structure)
+    name, colon, arguments = word.partition(":")
+    if colon and name in SHORT_FORMS:
+        return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
+    path = Path(word) if folder is None else folder / word
+    if path.suffix.lower() in (".yaml", ".yml"):
+        return _read_support_file(path, structure)
+    known = ["pinned", "clamped", *SHORT_FORMS]
+    raise InputError(
+        "unknown support or law",
+        field="support",
+        value=word,
+        allowed=", ".join(f"{k}:{SHORT_FORMS[k]}" if k in SHORT_FORMS else k for k in known)
+        + ", or a .yaml file",
+        remedy=did_you_mean(name, known),
+    )
+
+
+SHORT_FORMS: Mapping[str, str] = {
+    "elastic": "k=",
+    "kelvin-voigt": "k=,c=",
+    "zener": "k0=,c=,k1=",
+    "maxwell": "k0=,branches=k/tau;k/tau",
+    "maxwell-3": "k=,loss_factor=,f0=",
+    "springpot": "k=,alpha=,f0=",
+}
+
+
+def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]) -> Law:
+    """Return the law of a short form ``name:arguments``.
+
+    Raises
+    ------
+    InputError
+        If an argument is missing, unknown, given twice, not a number or out of range.
+    """
+    number, branches = _arguments(name, arguments)
+
+    def f0() -> float:
+        return _positive(number["f0"] if "f0" in number else first_frequency_hz(), "f0")
+
+    builders: Mapping[str, Callable[[], Law]] = {
+        "elastic": lambda: Prony(k0=number["k"]),
+        "kelvin-voigt": lambda: kelvin_voigt(number["k"], number["c"]),
+        "zener": lambda: zener(number["k0"], number["c"], _positive(number["k1"], "k1")),
+        "maxwell": lambda: Prony(number["k0"], 0.0, *_branches(branches)),
+        "maxwell-3": lambda: maxwell_3(number["k"], number["loss_factor"], f0()),
+        "springpot": lambda: Springpot(number["k"], number["alpha"], 2.0 * pi * f0()),
+    }
+    try:
+        return builders[name]()
+    except InputError as error:
+        raise error.at(field=f"support.{name}") from None
+
+
+def _arguments(name: str, text: str) -> tuple[dict[str, float], str]:
+    """Return the numbers of a short form, and the text of its branches."""
+    known = [part.rstrip("=").split("=")[0] for part in SHORT_FORMS[name].split(",")]
+    values: dict[str, str] = {}
+    for part in filter(None, text.split(",")):
+        key, _, value = part.partition("=")
+        if key not in known:
+            raise InputError(
+                "unknown argument",
+                field=f"support.{name}",
+                value=part,
+                allowed=SHORT_FORMS[name],
+                remedy=did_you_mean(key, known),
+            )
+        if key in values:
+            raise InputError("argument is given twice", field=f"support.{name}.{key}", value=part)
+        values[key] = value
+    for key in known:
+        if key not in values and key != "f0":
+            raise InputError("argument is missing", field=f"support.{name}.{key}", allowed=SHORT_FORMS[name])
+    branches = values.pop("branches", "")
+    return {key: _number(name, key, value) for key, value in values.items()}, branches
+
+
+def _number(name: str, key: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        raise InputError(
+            "not a finite number", field=f"support.{name}.{key}", value=text, remedy="write e.g. 2.5e9"
+        )
+    return value
+
+
+def _positive(value: float, field: str) -> float:
+    if not value > 0.0:
+        raise InputError("must be positive", field=field, value=value, allowed="> 0")
+    return value
+
+
+def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    pairs = [pair.split("/") for pair in text.split(";") if pair]
+    if not pairs or any(len(pair) != 2 for pair in pairs):
+        raise InputError(
+            "branches are pairs k/tau joined by ;", field="branches", value=text, allowed="k/tau;k/tau"
+        )
+    k = tuple(_number("maxwell", "branches", pair[0]) for pair in pairs)
+    tau = tuple(_positive(_number("maxwell", "branches", pair[1]), "tau") for pair in pairs)
+    return k, tau
+
+
+def _read_support_file(path: Path, structure: Structure) -> Support:
+    schema = validate(SupportSchema, read_yaml(path, what="support file"), file=path)
+    springs = []
+    for index, entry in enumerate(schema.supports):
+        place = f"supports.{index}"
+        nodes = structure.reaction_nodes if entry.nodes == "reaction" else tuple(entry.nodes)
+        for node in nodes:
+            if node not in structure.nodes:
+                raise InputError(
+                    "no such node",
+                    file=path,
+                    field=f"{place}.nodes",
+                    value=node,
+                    remedy=did_you_mean(node, structure.nodes),
+                )
+        try:
+            matrix = _matrix(entry.stiffness)
+        except InputError as error:
+            raise error.at(file=path, field=place) from None
+        springs += [Spring(node, matrix, entry.law.build()) for node in nodes]
+    return Support(springs=tuple(springs))
+
+
+def _matrix(values: list[float] | list[list[float]]) -> np.ndarray:
+    """Return the 6×6 matrix of 3 or 6 diagonal values, or of a full symmetric matrix."""
+    allowed = "3 or 6 numbers, or a symmetric 6×6 matrix that stores energy"
+    if all(isinstance(value, (int, float)) for value in values) and len(values) in (3, 6):
+        matrix = np.diag(np.concatenate([np.asarray(values, dtype=float), np.zeros(6 - len(values))]))
+    else:
+        try:
+            matrix = np.array(values, dtype=float)
+        except ValueError:
+            raise InputError("stiffness rows differ in length", field="stiffness", allowed=allowed) from None
+        if matrix.shape != (6, 6):
+            raise InputError(
+                "stiffness has the wrong shape", field="stiffness", value=matrix.shape, allowed=allowed
+            )
+    scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1e-300))
+    scaled = matrix / np.outer(scale, scale)
+    if np.abs(scaled - scaled.T).max() > 1e-6:
+        raise InputError("stiffness is not symmetric", field="stiffness", allowed=allowed)
+    if np.linalg.eigvalsh(scaled).min() < -1e-9:
+        raise InputError(
+            "stiffness gives energy out",
+            field="stiffness",
+            value=float(np.diag(matrix).min()),
+            allowed=allowed,
+        )
+    return np.asarray(0.5 * (matrix + matrix.T))

@@ -1,0 +1,292 @@
+r"""Linear viscoelastic laws as one idea: a complex stiffness D(s).
+
+A force f follows a displacement u as f̂(s) = D(s) û(s). Springs, dashpots and Maxwell branches give
+
+.. math:: D(s) = k_0 + c s + \sum_j \frac{k_j τ_j s}{1 + τ_j s}
+
+which holds the elastic spring, Kelvin–Voigt (thesis (4.5)), Maxwell (4.3), Zener (4.7) and the generalised
+Maxwell (Prony) solid. A springpot, D(s) = k (s/ω₀)^α, dissipates the same share of energy at every frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, gamma, pi
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+
+from jackettwin.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Law(Protocol):
+    """A complex stiffness; vectorised over s [rad/s]."""
+
+    def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return D(s) [N/m]."""
+        ...
+
+    def slope(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return dD/ds [N·s/m]."""
+        ...
+
+    @property
+    def static_stiffness(self) -> float:
+        """Stiffness of the undamped structure: D(0), for the springpot Re D(iω₀) [N/m]."""
+        ...
+
+    def creep(self, t: FloatArray) -> FloatArray:
+        """Return the displacement under a unit step of force at times t > 0 [m/N]."""
+        ...
+
+    def relaxation(self, t: FloatArray) -> FloatArray:
+        """Return the force under a unit step of displacement at times t > 0 [N/m]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Prony:
+    """Spring, dashpot and Maxwell branches in parallel.
+
+    Attributes
+    ----------
+    k0 : float
+        Parallel spring [N/m].
+    c : float
+        Parallel dashpot [N·s/m].
+    k, tau : tuple of float
+        Spring [N/m] and relaxation time c_j/k_j [s] of each Maxwell branch.
+    """
+
+    k0: float = 0.0
+    c: float = 0.0
+    k: tuple[float, ...] = ()
+    tau: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, values in (("k0", (self.k0,)), ("c", (self.c,)), ("k", self.k), ("tau", self.tau)):
+            for value in values:
+                if not (np.isfinite(value) and value >= 0.0):
+                    raise InputError(
+                        "must not be negative: the support would feed energy in",
+                        field=name,
+                        value=value,
+                        allowed="≥ 0",
+                    )
+        if len(self.k) != len(self.tau):
+            raise InputError(
+                "every branch needs k and tau", field="branches", value=(len(self.k), len(self.tau))
+            )
+
+    def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return D(s) [N/m]."""
+        s = np.asarray(s, dtype=np.complex128)
+        D = self.k0 + self.c * s
+        for k, tau in zip(self.k, self.tau, strict=True):
+            D = D + k * (tau * s / (1.0 + tau * s))
+        return np.asarray(D)
+
+    def slope(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return dD/ds [N·s/m]."""
+        s = np.asarray(s, dtype=np.complex128)
+        slope = np.full_like(s, self.c)
+        for k, tau in zip(self.k, self.tau, strict=True):
+            slope = slope + k * tau / (1.0 + tau * s) ** 2
+        return np.asarray(slope)
+
+    @property
+    def static_stiffness(self) -> float:
+        """D(0) = k0 [N/m]."""
+        return self.k0
+
+    def relaxation(self, t: FloatArray) -> FloatArray:
+        """Return k0 + Σ k_j exp(−t/τ_j), thesis (4.4) and (4.9), without the dashpot's impulse at t = 0."""
+        t = np.asarray(t, dtype=np.float64)
+        force = np.full_like(t, self.k0)
+        for k, tau in zip(self.k, self.tau, strict=True):
+            force = force + k * np.exp(-t / tau) if tau > 0.0 else force
+        return np.asarray(force)
+
+    def creep(self, t: FloatArray) -> FloatArray:
+        """Return the displacement under a unit force, thesis (4.6) and (4.8), from the internal variables.
+
+        Raises
+        ------
+        InputError
+            If the law has no stiffness at all and cannot carry a force.
+        """
+        t = np.asarray(t, dtype=np.float64)
+        k, tau = np.array(self.k), np.array(self.tau)
+        live = tau > 0.0
+        k, tau = k[live], tau[live]
+        if self.c > 0.0:
+            # c u̇ + k0 u + Σ k_j (u − y_j) = 1,  τ_j ẏ_j = u − y_j
+            A = np.zeros((1 + k.size, 1 + k.size))
+            A[0, 0], A[0, 1:] = -(self.k0 + k.sum()) / self.c, k / self.c
+            A[1:, 0], A[1:, 1:] = 1.0 / tau, -np.diag(1.0 / tau)
+            forcing = np.concatenate([[1.0 / self.c], np.zeros(k.size)])
+            return np.asarray(_step_response(A, forcing, np.zeros(1 + k.size), t)[0])
+        total = self.k0 + k.sum()
+        if total <= 0.0:
+            raise InputError(
+                "a law without stiffness cannot carry a force", field="k0", value=self.k0, allowed="> 0"
+            )
+        # (k0 + Σk_j) u = 1 + Σ k_j y_j,  τ_j ẏ_j = u − y_j
+        A = (np.outer(np.ones(k.size), k / total) - np.eye(k.size)) / tau[:, None]
+        y = _step_response(A, 1.0 / (total * tau), np.zeros(k.size), t) if k.size else np.zeros((0, t.size))
+        return np.asarray((1.0 + k @ y) / total)
+
+
+@dataclass(frozen=True)
+class Springpot:
+    """D(s) = k (s/ω₀)^α on the principal branch: loss factor tan(απ/2) at every frequency.
+
+    Attributes
+    ----------
+    k : float
+        |D(iω₀)| [N/m].
+    alpha : float
+        0 is a spring, 1 a dashpot.
+    omega0 : float
+        Reference angular frequency [rad/s].
+    """
+
+    k: float
+    alpha: float
+    omega0: float
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.k) and self.k > 0.0):
+            raise InputError("must be positive", field="k", value=self.k, allowed="> 0")
+        if not 0.0 <= self.alpha < 1.0:
+            raise InputError(
+                "exponent out of range", field="alpha", value=self.alpha, allowed="0 ≤ alpha < 1"
+            )
+        if not (np.isfinite(self.omega0) and self.omega0 > 0.0):
+            raise InputError("must be positive", field="omega0", value=self.omega0, allowed="> 0 rad/s")
+
+    @classmethod
+    def from_loss_factor(cls, k: float, loss_factor: float, omega0: float) -> Springpot:
+        """Return the springpot with storage stiffness ``k`` at ω₀ and a loss factor: α = (2/π) atan η."""
+        alpha = 2.0 / pi * atan(loss_factor)
+        return cls(k / float(np.cos(0.5 * pi * alpha)), alpha, omega0)
+
+    def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return D(s) [N/m]."""
+        return np.asarray(self.k * (np.asarray(s, dtype=np.complex128) / self.omega0) ** self.alpha)
+
+    def slope(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return dD/ds [N·s/m]."""
+        s = np.asarray(s, dtype=np.complex128)
+        return np.asarray(self.alpha * self.stiffness(s) / s)
+
+    @property
+    def static_stiffness(self) -> float:
+        """Re D(iω₀) [N/m]; D(0) is zero."""
+        return float(self.stiffness(1j * self.omega0).real)
+
+    def creep(self, t: FloatArray) -> FloatArray:
+        """Return (ω₀t)^α / (k Γ(1+α))."""
+        return np.asarray((self.omega0 * np.asarray(t)) ** self.alpha / (self.k * gamma(1.0 + self.alpha)))
+
+    def relaxation(self, t: FloatArray) -> FloatArray:
+        """Return k (ω₀t)^(−α) / Γ(1−α)."""
+        return np.asarray(self.k * (self.omega0 * np.asarray(t)) ** (-self.alpha) / gamma(1.0 - self.alpha))
+
+
+def kelvin_voigt(k: float, c: float) -> Prony:
+    """Return D = k + c s, thesis (4.5)."""
+    return Prony(k0=k, c=c)
+
+
+def maxwell(k: float, c: float) -> Prony:
+    """Return a spring and a dashpot in series, thesis (4.3)."""
+    return Prony(k=(k,), tau=(c / k,))
+
+
+def zener(k0: float, c: float, k1: float) -> Prony:
+    """Return k0 beside a Maxwell branch (k1, c), thesis (4.7) and (7.5)."""
+    return Prony(k0=k0, k=(k1,), tau=(c / k1,))
+
+
+# Fixed shape of the three-branch law: least-maximum error of a constant loss factor over 0.1–3 Hz.
+MAXWELL_3_CORNERS_HZ = (0.095, 0.577, 3.66)
+MAXWELL_3_WEIGHTS = (0.161, 0.128, 0.219)
+
+
+def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
+    """Return the three-branch law with storage stiffness ``k`` and ``loss_factor`` at ``f0`` [Hz].
+
+    The branches keep their corners and the ratio of their weights; their common scale s solves
+    η = s·I/(1 + s·R), with R + iI the response of the unscaled branches at f0.
+
+    Raises
+    ------
+    InputError
+        If the loss factor is beyond what the shape can give at f0.
+    """
+    fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
+    response = complex(np.sum(w * (1j * f0 / fc) / (1.0 + 1j * f0 / fc)))
+    limit = response.imag / response.real
+    if not 0.0 <= loss_factor < limit:
+        raise InputError(
+            "loss factor out of range",
+            field="loss_factor",
+            value=loss_factor,
+            allowed=f"0 ≤ loss_factor < {limit:.3g}",
+        )
+    scale = loss_factor / (response.imag - loss_factor * response.real)
+    k0 = k / (1.0 + scale * response.real)
+    return Prony(
+        k0=k0, k=tuple(float(v) for v in scale * w * k0), tau=tuple(float(v) for v in 1.0 / (2.0 * pi * fc))
+    )
+
+
+def loss_factor(law: Law, frequency_hz: FloatArray | float) -> FloatArray:
+    """Return η = Im D / Re D at real frequencies, thesis (5.2) for Kelvin–Voigt."""
+    D = law.stiffness(2j * pi * np.asarray(frequency_hz))
+    return np.asarray(D.imag / D.real)
+
+
+def hysteresis(
+    law: Law, frequency_hz: float, amplitude: float = 1.0, n: int = 200
+) -> tuple[FloatArray, FloatArray]:
+    """Return one steady loop (displacement [m], force [N]); its area is π Im D · amplitude²."""
+    phase = np.linspace(0.0, 2.0 * pi, n)
+    rotating = amplitude * np.exp(1j * phase)
+    return rotating.real, np.asarray((law.stiffness(2j * pi * frequency_hz) * rotating).real)
+
+
+def prony_fit(law: Springpot, low_hz: float, high_hz: float, per_decade: int = 4) -> Prony:
+    """Return branches that follow a springpot between two frequencies (a start for exact solvers).
+
+    From the springpot's continuous relaxation spectrum sin(πα)/π · k (ω/ω₀)^α d ln ω, sampled in log ω.
+    """
+    decades = np.log10(high_hz / low_hz)
+    omega, step = np.linspace(
+        np.log(2.0 * pi * low_hz), np.log(2.0 * pi * high_hz), int(per_decade * decades) + 1, retstep=True
+    )
+    omega = np.exp(omega)
+    weights = np.sin(pi * law.alpha) / pi * law.k * (omega / law.omega0) ** law.alpha * step
+    # what the spectrum below the lowest corner adds is a spring in this band
+    slowest = float(np.exp(np.log(omega[0]) - 0.5 * step))
+    below = (
+        np.sin(pi * law.alpha) / (pi * law.alpha) * law.k * (slowest / law.omega0) ** law.alpha
+        if law.alpha
+        else law.k
+    )
+    return Prony(k0=float(below), k=tuple(map(float, weights)), tau=tuple(float(v) for v in 1.0 / omega))
+
+
+def _step_response(A: FloatArray, b: FloatArray, x0: FloatArray, t: FloatArray) -> FloatArray:
+    """Return x(t) of ẋ = Ax + b, shape (n, n_times)."""
+    n = x0.size
+    augmented = np.zeros((n + 1, n + 1))
+    augmented[:n, :n], augmented[:n, n] = A, b
+    start = np.concatenate([x0, [1.0]])
+    return np.stack([(expm(augmented * time) @ start)[:n] for time in t.ravel()], axis=1)

@@ -1,0 +1,193 @@
+"""Elements to sparse system matrices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
+from jackettwin.errors import InputError
+from jackettwin.structure import beam
+from jackettwin.structure.masses import lever_arm_stiffness, rigid_body_mass, rigid_transfer
+from jackettwin.structure.mesh import Mesh, discretise
+from jackettwin.structure.model import Structure
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The free (unsupported) structure: M ẍ + K x = f.
+
+    Attributes
+    ----------
+    mesh : Mesh
+    stiffness, mass : (n_dof, n_dof) sparse
+        On the independent DOFs; ``stiffness`` holds the geometric part if gravity acts.
+    expand : (mesh.n_dof, n_dof) sparse
+        Gives every node's motion from the independent DOFs (rigid links are eliminated).
+    gravity : bool
+    """
+
+    structure: Structure
+    mesh: Mesh
+    stiffness: sp.csc_array
+    mass: sp.csc_array
+    expand: sp.csr_array
+    gravity: bool
+
+    @property
+    def n_dof(self) -> int:
+        """Number of independent degrees of freedom."""
+        return int(self.mass.shape[0])
+
+    def dofs(self, node: str) -> IntArray:
+        """Return the six independent DOF numbers of a node.
+
+        Raises
+        ------
+        InputError
+            If the node does not exist or follows another by a rigid link.
+        """
+        if node not in self.structure.nodes:
+            raise InputError("no such node", field="node", value=node, remedy="name a node of the structure")
+        rows = self.expand[self.mesh.node_dofs(node)]
+        if rows.nnz != DOFS_PER_NODE:
+            raise InputError(
+                "node follows another by a rigid link",
+                field="node",
+                value=node,
+                remedy="name the link's leader",
+            )
+        return np.asarray(rows.indices, dtype=np.intp)
+
+
+def assemble(
+    structure: Structure,
+    *,
+    beam_theory: str | None = None,
+    rotary_inertia: bool | None = None,
+    subdivide: int | None = None,
+    gravity: bool = False,
+) -> Assembly:
+    """Return the sparse matrices of the free structure.
+
+    Parameters
+    ----------
+    beam_theory : {"euler-bernoulli", "timoshenko"}, optional
+        Default: the structure's own.
+    rotary_inertia : bool, optional
+        Add ρI to the consistent mass. Default: the structure's own (Timoshenko beams always have it).
+    subdivide : int, optional
+        Elements a member. Default: the structure's own.
+    gravity : bool
+        Add the geometric (P-Δ) stiffness of the self-weight; axial forces from a static solution with the
+        reaction nodes clamped.
+
+    Raises
+    ------
+    InputError
+        If an option is out of range, rigid links chain or loop, or gravity is asked of a structure that
+        stands on nothing.
+    """
+    theory = structure.beam if beam_theory is None else beam_theory
+    rotary = (
+        structure.rotary_inertia if rotary_inertia is None else rotary_inertia
+    ) or theory == "timoshenko"
+    mesh = discretise(structure, theory=theory, subdivide=subdivide)
+    p, R = mesh.properties, mesh.axes
+    K = _gather(mesh, beam.to_global(beam.stiffness(p), R))
+    M = _gather(mesh, beam.to_global(beam.mass(p, rotary_inertia=rotary), R)) + _point_masses(structure, mesh)
+    T = _rigid_links(structure, mesh)
+    if gravity:
+        K = K + _gravity_stiffness(structure, mesh, K, M, T)
+    return Assembly(structure, mesh, sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T), T, gravity)
+
+
+def _gather(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
+    dofs = mesh.element_dofs()
+    rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
+    return sp.coo_array((matrices.ravel(), (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
+
+
+def _blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_array:
+    """Return the sum of dense blocks, each on its own DOFs."""
+    total = sp.dok_array((mesh.n_dof, mesh.n_dof))
+    for dofs, block in blocks:
+        for i, row in enumerate(dofs):
+            for j, column in enumerate(dofs):
+                total[row, column] += block[i, j]
+    return total.tocsc()
+
+
+def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
+    blocks = [(mesh.node_dofs(m.node), rigid_body_mass(m)) for m in structure.masses]
+    for reaction in structure.reactions:
+        if reaction.mass is not None:
+            blocks.append((mesh.node_dofs(reaction.node), np.array(reaction.mass)))
+    return _blocks(mesh, blocks)
+
+
+def _rigid_links(structure: Structure, mesh: Mesh) -> sp.csr_array:
+    """Return T with u = T q: followers are eliminated, everybody else keeps his DOFs."""
+    leader = {link.follower: link.leader for link in structure.rigid_links}
+    if len(leader) != len(structure.rigid_links) or set(leader) & set(leader.values()):
+        raise InputError(
+            "rigid links chain or share a follower",
+            field="rigid_links",
+            value=sorted(leader),
+            remedy="let every follower have one leader that is no follower itself",
+        )
+    T = sp.eye_array(mesh.n_dof, format="lil")
+    for follower, name in leader.items():
+        rows, columns = mesh.node_dofs(follower), mesh.node_dofs(name)
+        arm = np.subtract(structure.nodes[follower], structure.nodes[name])
+        T[rows, rows] = 0.0
+        T[rows[:, None], columns] = rigid_transfer(arm)
+    gone = np.concatenate([mesh.node_dofs(name) for name in leader]) if leader else np.empty(0, dtype=np.intp)
+    keep = np.setdiff1d(np.arange(mesh.n_dof), gone)
+    result = sp.csr_array(T.tocsc()[:, keep])
+    result.eliminate_zeros()
+    return result
+
+
+def _gravity_stiffness(
+    structure: Structure, mesh: Mesh, K: sp.csc_array, M: sp.csc_array, T: sp.csr_array
+) -> sp.csc_array:
+    """Return the geometric stiffness of the self-weight on all DOFs."""
+    if not structure.reactions:
+        raise InputError(
+            "gravity needs ground under the structure",
+            field="reaction_nodes",
+            value=[],
+            remedy="name the nodes that stand on the ground, or leave gravity out",
+        )
+    downwards = np.tile([0.0, 0.0, -GRAVITY_M_S2, 0.0, 0.0, 0.0], len(mesh.node_names))
+    weight = M @ downwards
+    held = np.concatenate([mesh.node_dofs(name) for name in structure.reaction_nodes])
+    free = np.setdiff1d(np.arange(T.shape[1]), (T[held].nonzero())[1])
+    Tf = sp.csc_array(T[:, free])
+    u = Tf @ spla.spsolve(sp.csc_array(Tf.T @ K @ Tf), Tf.T @ weight)
+    N = beam.axial_force(mesh.properties, mesh.axes, u[mesh.element_dofs()])
+    Kg = _gather(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
+    return sp.csc_array(Kg + _blocks(mesh, _lever_arms(structure, mesh, weight - K @ u)))
+
+
+def _lever_arms(
+    structure: Structure, mesh: Mesh, link_force: FloatArray
+) -> list[tuple[IntArray, FloatArray]]:
+    """Return the rotational stiffness of forces at the end of rigid arms: eccentric masses, rigid links."""
+    blocks = []
+    for body in structure.masses:
+        force = np.array([0.0, 0.0, -body.mass_kg * GRAVITY_M_S2])
+        blocks.append((mesh.node_dofs(body.node)[3:], lever_arm_stiffness(force, np.array(body.cg_offset_m))))
+    for link in structure.rigid_links:
+        arm = np.subtract(structure.nodes[link.follower], structure.nodes[link.leader])
+        force = link_force[mesh.node_dofs(link.follower)[:3]]
+        blocks.append((mesh.node_dofs(link.leader)[3:], lever_arm_stiffness(force, arm)))
+    return blocks

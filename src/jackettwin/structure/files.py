@@ -1,0 +1,338 @@
+"""Structures from YAML: explicit (nodes and members) or parametric (``jacket:``)."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jackettwin.errors import InputError, did_you_mean
+from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
+from jackettwin.structure.masses import rna_from_static_moments
+from jackettwin.structure.model import (
+    STEEL,
+    Material,
+    Member,
+    PointMass,
+    Reaction,
+    RigidLink,
+    Section,
+    Structure,
+    Vector,
+)
+from jackettwin.structure.subdyn import read_subdyn
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+Inertia = tuple[float, float, float, float, float, float]
+
+
+class MaterialSchema(Schema):
+    """An isotropic material; give the shear modulus or Poisson's ratio."""
+
+    youngs_modulus_pa: Positive = STEEL.youngs_modulus_pa
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
+    shear_modulus_pa: Positive | None = None
+    density_kg_m3: NotNegative = STEEL.density_kg_m3
+
+    def build(self) -> Material:
+        """Return the material."""
+        if self.shear_modulus_pa is not None:
+            return Material(self.youngs_modulus_pa, self.shear_modulus_pa, self.density_kg_m3)
+        return Material.isotropic(
+            youngs_modulus_pa=self.youngs_modulus_pa,
+            poisson_ratio=self.poisson_ratio,
+            density_kg_m3=self.density_kg_m3,
+        )
+
+
+class SectionSchema(Schema):
+    """A tube."""
+
+    outer_diameter_m: float
+    thickness_m: float
+
+    def build(self, field: str) -> Section:
+        """Return the section."""
+        try:
+            return Section(self.outer_diameter_m, self.thickness_m)
+        except InputError as error:
+            raise error.at(field=field) from None
+
+
+class BodySchema(Schema):
+    """A rigid body: by its centre of gravity, or by static moments and inertia about its node."""
+
+    mass_kg: NotNegative
+    cg_offset_m: Vector | None = None
+    inertia_about_cg_kg_m2: Inertia | None = None
+    static_moment_kg_m: Vector | None = None
+    inertia_about_node_kg_m2: Inertia | None = None
+
+    def build(self, node: str, part: str = "") -> PointMass:
+        """Return the point mass on ``node``."""
+        about_node = self.static_moment_kg_m is not None or self.inertia_about_node_kg_m2 is not None
+        if not about_node:
+            return PointMass(
+                node,
+                self.mass_kg,
+                self.cg_offset_m or (0.0, 0.0, 0.0),
+                self.inertia_about_cg_kg_m2 or (0.0,) * 6,
+                part,
+            )
+        if self.cg_offset_m is not None or self.inertia_about_cg_kg_m2 is not None or self.mass_kg == 0.0:
+            raise InputError(
+                "give a body either by its centre of gravity or by its moments about the node",
+                field="mass_kg",
+                value=self.mass_kg,
+                remedy="keep cg_offset_m and inertia_about_cg_kg_m2, or the other two",
+            )
+        return rna_from_static_moments(
+            node=node,
+            mass_kg=self.mass_kg,
+            static_moment_kg_m=self.static_moment_kg_m or (0.0, 0.0, 0.0),
+            inertia_about_node_kg_m2=self.inertia_about_node_kg_m2 or (0.0,) * 6,
+        )
+
+
+class MassSchema(BodySchema):
+    """A rigid body on a named node."""
+
+    node: str
+
+
+class MemberSchema(Schema):
+    """A member: one section, or two if conical."""
+
+    name: str | None = None
+    nodes: tuple[str, str]
+    section: str | None = None
+    sections: tuple[str, str] | None = None
+    material: str = "steel"
+    part: str = ""
+
+
+class LinkSchema(Schema):
+    """A rigid link."""
+
+    leader: str
+    follower: str
+
+
+class LatticeSchema(Schema):
+    """``jacket.lattice``."""
+
+    legs: int = 4
+    bays: int = 4
+    base_width_m: Positive
+    top_width_m: Positive
+    height_m: Positive
+    leg_diameter_m: float
+    leg_thickness_bottom_m: float
+    leg_thickness_top_m: float
+    brace: SectionSchema
+    material: MaterialSchema = MaterialSchema()
+    mud_braces: bool = True
+
+
+class TransitionPieceSchema(Schema):
+    """``jacket.transition_piece``."""
+
+    top_z_m: float
+    tube: SectionSchema
+    column: SectionSchema
+    material: MaterialSchema = MaterialSchema()
+
+
+class TowerSchema(Schema):
+    """``jacket.tower``."""
+
+    height_m: Positive
+    elements: int = 12
+    bottom: SectionSchema
+    top: SectionSchema
+    material: MaterialSchema = MaterialSchema()
+
+
+class JacketSchema(Schema):
+    """The parametric form."""
+
+    lattice: LatticeSchema
+    transition_piece: TransitionPieceSchema
+    tower: TowerSchema
+    rna: BodySchema | None = None
+
+
+class StructureSchema(Schema):
+    """A structure file."""
+
+    name: str = ""
+    sea_level_z_m: float = 0.0
+    jacket: JacketSchema | None = None
+    materials: dict[str, MaterialSchema] = {}
+    sections: dict[str, SectionSchema] = {}
+    nodes: dict[str, Vector] = {}
+    members: list[MemberSchema] = []
+    masses: list[MassSchema] = []
+    rigid_links: list[LinkSchema] = []
+    reaction_nodes: list[str] = []
+    interface_nodes: list[str] = []
+    beam: Literal["euler-bernoulli", "timoshenko"] = "euler-bernoulli"
+    rotary_inertia: bool = False
+    subdivide: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
+def shipped_structures() -> tuple[str, ...]:
+    """Return the names of the structures that come with the package."""
+    folder = resources.files("jackettwin.data").joinpath("structures")
+    return tuple(
+        sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
+    )
+
+
+def read_structure(source: str | Path, *, folder: Path | None = None) -> Structure:
+    """Read a structure: a shipped name, a YAML file, or an OpenFAST SubDyn input file (``.dat``).
+
+    Parameters
+    ----------
+    source : str or Path
+    folder : Path, optional
+        What a relative path is relative to.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or anything in it is wrong; the message names file, field and value.
+    """
+    name = str(source)
+    if name in shipped_structures():
+        with resources.as_file(
+            resources.files("jackettwin.data").joinpath("structures", f"{name}.yaml")
+        ) as path:
+            return _read_yaml_structure(path)
+    path = Path(source) if folder is None else folder / Path(source)
+    if not path.exists() and path.suffix == "":
+        raise InputError(
+            "no such structure",
+            field="structure",
+            value=name,
+            allowed=f"{', '.join(shipped_structures())}, a .yaml file, or a SubDyn .dat file",
+            remedy=did_you_mean(name, shipped_structures()),
+        )
+    if path.suffix.lower() == ".dat":
+        return read_subdyn(path)
+    return _read_yaml_structure(path)
+
+
+def _read_yaml_structure(path: Path) -> Structure:
+    schema = validate(StructureSchema, read_yaml(path, what="structure file"), file=path)
+    try:
+        return build_structure(schema, default_name=path.stem)
+    except InputError as error:
+        raise error.at(file=path) from None
+
+
+def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
+    """Return the structure a checked file describes."""
+    name = schema.name or default_name
+    if schema.jacket is not None:
+        given = {
+            "nodes",
+            "members",
+            "sections",
+            "materials",
+            "masses",
+            "rigid_links",
+        } & schema.model_fields_set
+        if given:
+            raise InputError(
+                "a parametric jacket defines these itself",
+                field=sorted(given)[0],
+                remedy="keep jacket: or the explicit form",
+            )
+        return _build_jacket(schema.jacket, name=name, sea_level_z_m=schema.sea_level_z_m)
+    if not schema.members:
+        raise InputError(
+            "required key is missing", field="members", remedy="add members:, or a parametric jacket:"
+        )
+    materials = {"steel": STEEL} | {key: m.build() for key, m in schema.materials.items()}
+    sections = {key: s.build(f"sections.{key}") for key, s in schema.sections.items()}
+    return Structure(
+        name=name,
+        nodes=schema.nodes,
+        members=tuple(_build_member(m, i, sections, materials) for i, m in enumerate(schema.members)),
+        masses=tuple(m.build(m.node) for m in schema.masses),
+        rigid_links=tuple(RigidLink(link.leader, link.follower) for link in schema.rigid_links),
+        reactions=tuple(Reaction(node) for node in schema.reaction_nodes),
+        interface_nodes=tuple(schema.interface_nodes),
+        sea_level_z_m=schema.sea_level_z_m,
+        subdivide=schema.subdivide,
+        beam=schema.beam,
+        rotary_inertia=schema.rotary_inertia,
+    )
+
+
+def _build_member(
+    m: MemberSchema, index: int, sections: dict[str, Section], materials: dict[str, Material]
+) -> Member:
+    place = f"members.{index}"
+    if (m.section is None) == (m.sections is None):
+        raise InputError(
+            "give section or sections", field=place, remedy="sections: [start, end] makes a cone"
+        )
+    first, last = m.sections or (m.section or "", m.section or "")
+    for key in (first, last):
+        if key not in sections:
+            raise InputError(
+                "no such section", field=f"{place}.section", value=key, remedy=did_you_mean(key, sections)
+            )
+    if m.material not in materials:
+        raise InputError(
+            "no such material",
+            field=f"{place}.material",
+            value=m.material,
+            remedy=did_you_mean(m.material, materials),
+        )
+    name = m.name or f"{m.nodes[0]}-{m.nodes[1]}"
+    return Member(name, *m.nodes, sections[first], sections[last], materials[m.material], m.part)
+
+
+def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float) -> Structure:
+    lattice, tp, tower = schema.lattice, schema.transition_piece, schema.tower
+    try:
+        return jacket(
+            name=name,
+            lattice=Lattice(
+                legs=lattice.legs,
+                bays=lattice.bays,
+                base_width_m=lattice.base_width_m,
+                top_width_m=lattice.top_width_m,
+                height_m=lattice.height_m,
+                leg_diameter_m=lattice.leg_diameter_m,
+                leg_thickness_bottom_m=lattice.leg_thickness_bottom_m,
+                leg_thickness_top_m=lattice.leg_thickness_top_m,
+                brace=lattice.brace.build("brace"),
+                material=lattice.material.build(),
+                mud_braces=lattice.mud_braces,
+            ),
+            transition_piece=TransitionPiece(
+                tp.top_z_m,
+                tp.tube.build("transition_piece.tube"),
+                tp.column.build("transition_piece.column"),
+                tp.material.build(),
+            ),
+            tower=Tower(
+                tower.height_m,
+                tower.elements,
+                tower.bottom.build("tower.bottom"),
+                tower.top.build("tower.top"),
+                tower.material.build(),
+            ),
+            rna=None if schema.rna is None else schema.rna.build("tower_top", part="rna"),
+            sea_level_z_m=sea_level_z_m,
+        )
+    except InputError as error:
+        raise error.at(field="jacket") from None

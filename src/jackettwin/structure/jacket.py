@@ -1,0 +1,189 @@
+"""A parametric jacket: legs, X-braced bays, transition piece, tower, rotor-nacelle assembly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.structure.model import Material, Member, PointMass, Reaction, Section, Structure, Vector
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Legs and braces from the mudline (z = 0) to the leg tops.
+
+    Bay heights form a geometric series with ratio (top_width/base_width)^(1/bays), so that all X-braces
+    are similar; the leg wall goes linearly from the bottom bay to the top bay.
+    """
+
+    legs: int
+    bays: int
+    base_width_m: float
+    top_width_m: float
+    height_m: float
+    leg_diameter_m: float
+    leg_thickness_bottom_m: float
+    leg_thickness_top_m: float
+    brace: Section
+    material: Material
+    mud_braces: bool = True
+
+
+@dataclass(frozen=True)
+class TransitionPiece:
+    """Two tubes from each leg top to the lower and upper centre nodes, a ring, and a centre column."""
+
+    top_z_m: float
+    tube: Section
+    column: Section
+    material: Material
+
+
+@dataclass(frozen=True)
+class Tower:
+    """A tapered tube in ``elements`` pieces of constant section (the mean of each piece)."""
+
+    height_m: float
+    elements: int
+    bottom: Section
+    top: Section
+    material: Material
+
+
+def jacket(
+    *,
+    name: str,
+    lattice: Lattice,
+    transition_piece: TransitionPiece,
+    tower: Tower,
+    rna: PointMass | None,
+    sea_level_z_m: float,
+) -> Structure:
+    """Return the structure; its reaction nodes are ``foot_1`` …, its tower top is ``tower_top``.
+
+    Raises
+    ------
+    InputError
+        If fewer than three legs or no bay are asked for, or a part has no height.
+    """
+    _require(lattice.legs >= 3, "legs", lattice.legs, "≥ 3")
+    _require(lattice.bays >= 1, "bays", lattice.bays, "≥ 1")
+    _require(tower.elements >= 1, "tower.elements", tower.elements, "≥ 1")
+    _require(
+        transition_piece.top_z_m > lattice.height_m,
+        "transition_piece.top_z_m",
+        transition_piece.top_z_m,
+        f"> height_m = {lattice.height_m:g}",
+    )
+    nodes: dict[str, Vector] = {}
+    members: list[Member] = []
+    _add_lattice(lattice, nodes, members)
+    _add_transition_piece(transition_piece, lattice, nodes, members)
+    _add_tower(tower, transition_piece.top_z_m, nodes, members)
+    feet = tuple(_leg_node(leg, 0) for leg in range(lattice.legs))
+    return Structure(
+        name=name,
+        nodes=nodes,
+        members=tuple(members),
+        masses=(rna,) if rna is not None else (),
+        reactions=tuple(Reaction(foot) for foot in feet),
+        interface_nodes=("tp_top",),
+        sea_level_z_m=sea_level_z_m,
+    )
+
+
+def _require(condition: bool, field: str, value: object, allowed: str) -> None:
+    if not condition:
+        raise InputError("out of range", field=field, value=value, allowed=allowed)
+
+
+def _leg_node(leg: int, level: int) -> str:
+    return f"foot_{leg + 1}" if level == 0 else f"leg_{leg + 1}_{level}"
+
+
+def _levels(lattice: Lattice) -> list[tuple[float, float]]:
+    """Return (z, width) of every level."""
+    ratio = (lattice.top_width_m / lattice.base_width_m) ** (1.0 / lattice.bays)
+    heights = ratio ** np.arange(lattice.bays)
+    z = np.concatenate([[0.0], np.cumsum(heights / heights.sum())]) * lattice.height_m
+    width = lattice.base_width_m + (lattice.top_width_m - lattice.base_width_m) * z / lattice.height_m
+    return [(float(a), float(b)) for a, b in zip(z, width, strict=True)]
+
+
+def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Member]) -> None:
+    n, levels = lattice.legs, _levels(lattice)
+    angles = np.pi * (2 * np.arange(n) + 1) / n
+    for level, (z, width) in enumerate(levels):
+        radius = 0.5 * width / np.sin(np.pi / n)
+        for leg, angle in enumerate(angles):
+            nodes[_leg_node(leg, level)] = (float(radius * np.cos(angle)), float(radius * np.sin(angle)), z)
+    walls = np.linspace(lattice.leg_thickness_bottom_m, lattice.leg_thickness_top_m, lattice.bays)
+    for bay in range(lattice.bays):
+        leg_section = Section(lattice.leg_diameter_m, float(walls[bay]))
+        for leg in range(n):
+            ends = _leg_node(leg, bay), _leg_node(leg, bay + 1)
+            members.append(
+                _member(f"leg_{leg + 1}_bay_{bay + 1}", ends, leg_section, lattice.material, "jacket")
+            )
+        for face in range(n):
+            _add_cross(lattice, face, bay, nodes, members)
+    for leg in range(n if lattice.mud_braces else 0):
+        ends = _leg_node(leg, 0), _leg_node((leg + 1) % n, 0)
+        members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.brace, lattice.material, "jacket"))
+
+
+def _add_cross(
+    lattice: Lattice, face: int, bay: int, nodes: dict[str, Vector], members: list[Member]
+) -> None:
+    """Add one X-brace: four segments that meet where the diagonals of the trapezium cross."""
+    left, right = face, (face + 1) % lattice.legs
+    corners = [
+        _leg_node(left, bay),
+        _leg_node(right, bay + 1),
+        _leg_node(right, bay),
+        _leg_node(left, bay + 1),
+    ]
+    a, b, c, d = (np.array(nodes[corner]) for corner in corners)
+    at = np.linalg.norm(c - a) / (np.linalg.norm(c - a) + np.linalg.norm(b - d))
+    x, y, z = a + at * (b - a)
+    centre = f"cross_{face + 1}_{bay + 1}"
+    nodes[centre] = (float(x), float(y), float(z))
+    for k, corner in enumerate(corners, start=1):
+        name = f"brace_{face + 1}_{bay + 1}_{k}"
+        members.append(_member(name, (corner, centre), lattice.brace, lattice.material, "jacket"))
+
+
+def _add_transition_piece(
+    tp: TransitionPiece, lattice: Lattice, nodes: dict[str, Vector], members: list[Member]
+) -> None:
+    nodes["tp_bottom"] = (0.0, 0.0, lattice.height_m)
+    nodes["tp_top"] = (0.0, 0.0, tp.top_z_m)
+    tops = [_leg_node(leg, lattice.bays) for leg in range(lattice.legs)]
+    for leg, top in enumerate(tops):
+        for kind, ends in (
+            ("lower", (top, "tp_bottom")),
+            ("upper", (top, "tp_top")),
+            ("ring", (top, tops[(leg + 1) % lattice.legs])),
+        ):
+            members.append(_member(f"tp_{kind}_{leg + 1}", ends, tp.tube, tp.material, "transition_piece"))
+    members.append(_member("tp_column", ("tp_bottom", "tp_top"), tp.column, tp.material, "transition_piece"))
+
+
+def _add_tower(tower: Tower, z0: float, nodes: dict[str, Vector], members: list[Member]) -> None:
+    names = ["tp_top", *(f"tower_{k}" for k in range(1, tower.elements)), "tower_top"]
+    for k, name in enumerate(names[1:], start=1):
+        nodes[name] = (0.0, 0.0, z0 + tower.height_m * k / tower.elements)
+    for k, ends in enumerate(pairwise(names)):
+        at = (k + 0.5) / tower.elements
+        section = Section(
+            tower.bottom.outer_diameter_m + at * (tower.top.outer_diameter_m - tower.bottom.outer_diameter_m),
+            tower.bottom.thickness_m + at * (tower.top.thickness_m - tower.bottom.thickness_m),
+        )
+        members.append(_member(f"tower_{k + 1}", ends, section, tower.material, "tower"))
+
+
+def _member(name: str, ends: tuple[str, str], section: Section, material: Material, part: str) -> Member:
+    return Member(name, ends[0], ends[1], section, section, material, part)

@@ -1,0 +1,121 @@
+"""Structure to elements: names become numbers, conical members become short tubes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.axes import DOFS_PER_NODE
+from jackettwin.errors import InputError
+from jackettwin.structure import beam
+from jackettwin.structure.model import Member, Structure
+from jackettwin.structure.sections import tube_properties
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+BEAMS = ("euler-bernoulli", "timoshenko")
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Nodes and elements as arrays.
+
+    Attributes
+    ----------
+    node_names : tuple of str
+        The structure's nodes first, in its order; then the inner nodes of subdivided members.
+    coordinates : (n_nodes, 3) array [m]
+    start, end : (n_elements,) node numbers
+    member : (n_elements,) index into ``structure.members``
+    properties : BeamProperties
+    axes : (n_elements, 3, 3) local axes
+    """
+
+    node_names: tuple[str, ...]
+    coordinates: FloatArray
+    start: IntArray
+    end: IntArray
+    member: IntArray
+    properties: beam.BeamProperties
+    axes: FloatArray
+
+    @property
+    def n_dof(self) -> int:
+        """Number of degrees of freedom before any constraint."""
+        return DOFS_PER_NODE * len(self.node_names)
+
+    def element_dofs(self) -> IntArray:
+        """Return the DOF numbers of every element, (n_elements, 12)."""
+        offsets = np.arange(DOFS_PER_NODE)
+        return np.hstack(
+            [DOFS_PER_NODE * self.start[:, None] + offsets, DOFS_PER_NODE * self.end[:, None] + offsets]
+        )
+
+    def node_dofs(self, name: str) -> IntArray:
+        """Return the six DOF numbers of a node."""
+        return DOFS_PER_NODE * self.node_names.index(name) + np.arange(DOFS_PER_NODE)
+
+
+def discretise(structure: Structure, *, theory: str | None = None, subdivide: int | None = None) -> Mesh:
+    """Return the elements of a structure, each member cut into ``subdivide`` equal tubes.
+
+    Tapered members take the mean diameter and wall of each piece.
+
+    Raises
+    ------
+    InputError
+        If the beam theory is unknown or ``subdivide`` is not a positive integer.
+    """
+    theory = structure.beam if theory is None else theory
+    n = structure.subdivide if subdivide is None else subdivide
+    if theory not in BEAMS:
+        raise InputError("unknown beam theory", field="beam", value=theory, allowed=", ".join(BEAMS))
+    if not 1 <= n <= 1000:
+        raise InputError("elements a member", field="subdivide", value=n, allowed="1 to 1000")
+    members = structure.members
+    names, coordinates, ends = _nodes(structure, n)
+    at = (np.arange(n) + 0.5) / n
+    D = _along(members, "outer_diameter_m", at)
+    t = _along(members, "thickness_m", at)
+    E, G, rho = (
+        np.repeat([getattr(m.material, key) for m in members], n)
+        for key in ("youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3")
+    )
+    start, end = ends[:, :-1].ravel(), ends[:, 1:].ravel()
+    L = np.linalg.norm(coordinates[end] - coordinates[start], axis=1)
+    tube = tube_properties(D, t, E / (2.0 * G) - 1.0)
+    Phi = 12.0 * E * tube.I / (tube.kappa * G * tube.A * L**2) if theory == "timoshenko" else np.zeros_like(L)
+    return Mesh(
+        node_names=names,
+        coordinates=coordinates,
+        start=start,
+        end=end,
+        member=np.repeat(np.arange(len(members)), n),
+        properties=beam.BeamProperties(E=E, G=G, rho=rho, A=tube.A, I=tube.I, J=tube.J, L=L, Phi=Phi),
+        axes=beam.local_axes(coordinates[start], coordinates[end]),
+    )
+
+
+def _along(members: tuple[Member, ...], attribute: str, at: FloatArray) -> FloatArray:
+    first = np.array([getattr(m.section_start, attribute) for m in members])
+    last = np.array([getattr(m.section_end, attribute) for m in members])
+    return np.asarray(first[:, None] + (last - first)[:, None] * at).ravel()
+
+
+def _nodes(structure: Structure, n: int) -> tuple[tuple[str, ...], FloatArray, IntArray]:
+    """Return node names, coordinates, and (n_members, n+1) node numbers along each member."""
+    names = list(structure.nodes)
+    number = {name: i for i, name in enumerate(names)}
+    points = [np.array([structure.nodes[name] for name in names], dtype=np.float64).reshape(-1, 3)]
+    ends = np.empty((len(structure.members), n + 1), dtype=np.intp)
+    for i, member in enumerate(structure.members):
+        ends[i, 0], ends[i, -1] = number[member.start], number[member.end]
+        if n > 1:
+            ends[i, 1:-1] = len(names) + np.arange(n - 1)
+            names += [f"{member.name}/{k}" for k in range(1, n)]
+            a, b = np.array(structure.nodes[member.start]), np.array(structure.nodes[member.end])
+            points.append(a + (b - a) * (np.arange(1, n) / n)[:, None])
+    return tuple(names), np.vstack(points), ends
