@@ -1,7 +1,7 @@
 import pytest
 
 from jackettwin.errors import InputError, did_you_mean
-from jackettwin.quantities import QUANTITIES, to_si
+from jackettwin.quantities import QUANTITIES, guess_quantity, to_si
 
 
 def test_every_si_unit_has_factor_one() -> None:
@@ -27,3 +27,24 @@ def test_error_collects_its_place_from_inside_out() -> None:
 
 def test_no_suggestion_for_a_distant_word() -> None:
     assert did_you_mean("xyz", ["frequency"]) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "expected"),
+    [
+        ("YawBrTAxp", "m/s^2", "acceleration"),
+        ("acc_top_x", "", "acceleration"),
+        ("acc_top_x", "m/s^3", "acceleration"),  # to_si then says what is wrong
+        ("NacYaw", "deg", "yaw"),
+        ("BldPitch1", "deg", "pitch"),
+        ("RotSpeed", "rpm", "rotor speed"),
+        ("GenPwr", "kW", "power"),
+        ("Wind1VelX", "m/s", "wind speed"),
+        ("Wave1Elev", "m", "wave elevation"),
+        ("RootMxb1", "kN-m", "other"),
+        ("ch1", "deg", "other"),  # yaw, pitch or inclination: nothing says which
+        ("ch1", "", "other"),
+    ],
+)
+def test_quantities_are_guessed_only_where_name_and_unit_agree(name: str, unit: str, expected: str) -> None:
+    assert guess_quantity(name, unit) == expected

@@ -19,27 +19,51 @@ class Quantity:
 
 
 G0 = 9.80665
+DEGREE = 0.017453292519943295
 
 QUANTITIES: dict[str, Quantity] = {
     "acceleration": Quantity(
         "m/s^2",
         "acceleration",
         "a",
-        (("m/s2", 1.0), ("m/s²", 1.0), ("m s-2", 1.0), ("g", G0), ("mg", 1e-3 * G0), ("mm/s^2", 1e-3)),
+        (
+            ("m/s2", 1.0),
+            ("m/s²", 1.0),
+            ("m/s/s", 1.0),
+            ("m s-2", 1.0),
+            ("m s^-2", 1.0),
+            ("g", G0),
+            ("mg", 1e-3 * G0),
+            ("mm/s^2", 1e-3),
+            ("mm/s2", 1e-3),
+            ("cm/s^2", 1e-2),
+        ),
     ),
     "velocity": Quantity("m/s", "velocity", "v", (("m s-1", 1.0), ("mm/s", 1e-3))),
-    "displacement": Quantity("m", "displacement", "u", (("mm", 1e-3), ("cm", 1e-2))),
-    "strain": Quantity("-", "strain", "ε", (("1", 1.0), ("m/m", 1.0), ("ustrain", 1e-6), ("µm/m", 1e-6))),
-    "inclination": Quantity("rad", "inclination", "θ", (("deg", 0.017453292519943295),)),
+    "displacement": Quantity(
+        "m", "displacement", "u", (("mm", 1e-3), ("cm", 1e-2), ("um", 1e-6), ("µm", 1e-6))
+    ),
+    "strain": Quantity(
+        "-",
+        "strain",
+        "ε",
+        (("1", 1.0), ("m/m", 1.0), ("ustrain", 1e-6), ("µstrain", 1e-6), ("um/m", 1e-6), ("µm/m", 1e-6)),
+    ),
+    "inclination": Quantity("rad", "inclination", "θ", (("deg", DEGREE), ("°", DEGREE), ("mrad", 1e-3))),
     "wind speed": Quantity("m/s", "wind speed", "U", (("m s-1", 1.0),)),
-    "yaw": Quantity("rad", "nacelle yaw", "ψ", (("deg", 0.017453292519943295),)),
-    "rotor speed": Quantity("rad/s", "rotor speed", "Ω", (("rpm", 0.10471975511965977),)),
-    "pitch": Quantity("rad", "blade pitch", "β", (("deg", 0.017453292519943295),)),
+    "yaw": Quantity("rad", "nacelle yaw", "ψ", (("deg", DEGREE), ("°", DEGREE))),
+    "rotor speed": Quantity(
+        "rad/s", "rotor speed", "Ω", (("rpm", 0.10471975511965977), ("1/min", 0.10471975511965977))
+    ),
+    "pitch": Quantity("rad", "blade pitch", "β", (("deg", DEGREE), ("°", DEGREE))),
     "power": Quantity("W", "power", "P", (("kW", 1e3), ("MW", 1e6))),
     "wave elevation": Quantity("m", "wave elevation", "η"),
     "temperature": Quantity("degC", "temperature", "T", (("°C", 1.0), ("C", 1.0))),
     "other": Quantity("-", "other", "?"),
 }
+
+VIBRATIONS = ("acceleration", "velocity", "displacement", "strain", "inclination")
+"""Quantities of a structure's motion; the others describe its surroundings and operation."""
 
 
 def quantity(name: str) -> Quantity:
@@ -87,3 +111,56 @@ def to_si(name: str, unit: str) -> float:
         allowed=", ".join(known),
         remedy=did_you_mean(unit, known) or "state the unit of the stored numbers",
     )
+
+
+def plain_unit(unit: str) -> str:
+    """Return a unit as the table writes it: no brackets around it, one sign for powers.
+
+    >>> plain_unit(" (m/s**2) ")
+    'm/s^2'
+    """
+    text = unit.strip()
+    while len(text) > 1 and (text[0], text[-1]) in (("(", ")"), ("[", "]")):
+        text = text[1:-1].strip()
+    # The micro sign and the Greek letter mu look the same.
+    return text.replace("**", "^").replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
+
+
+_WORDS = (
+    ("yaw", ("yaw",)),
+    ("rotor speed", ("rotspeed", "rotor_speed", "rotorspeed", "rotor speed")),
+    ("pitch", ("bldpitch", "blpitch", "blade_pitch", "blade pitch")),
+    ("wind speed", ("wind",)),
+    ("wave elevation", ("wave",)),
+    ("power", ("power", "genpwr")),
+    ("inclination", ("incl", "tilt")),
+    ("velocity", ("vel",)),
+    ("displacement", ("disp", "ttdsp")),
+    ("acceleration", ("acc",)),
+    ("strain", ("strain",)),
+    ("temperature", ("temp",)),
+)
+
+
+def guess_quantity(name: str, unit: str) -> str:
+    """Return the quantity that a channel's name and unit both allow, else ``"other"``.
+
+    A unit that only one quantity has is enough; an unstated unit leaves the decision to the name,
+    and so does a wrong one behind a name in ``acc…``, lest a typo hide an accelerometer.
+
+    >>> guess_quantity("YawBrTAxp", "m/s^2"), guess_quantity("Wind1VelX", "m/s")
+    ('acceleration', 'wind speed')
+    """
+    allowed = [kind for kind, q in QUANTITIES.items() if kind != "other" and _has_unit(q, unit)]
+    lower = name.lower()
+    named = [kind for kind, words in _WORDS if any(word in lower for word in words)]
+    if not unit or (not allowed and lower.startswith("acc")):
+        return named[0] if named else "other"
+    both = [kind for kind in named if kind in allowed]
+    if both:
+        return both[0]
+    return allowed[0] if len(allowed) == 1 and unit != "1" else "other"
+
+
+def _has_unit(q: Quantity, unit: str) -> bool:
+    return unit == q.unit != "-" or any(unit == other for other, _ in q.scales)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jackettwin.errors import InputError
+from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import filters
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
-VIBRATIONS = ("acceleration", "velocity", "displacement", "strain", "inclination")
 PASS_SHARE = 0.8
 """Pass-band edge of a low-pass filter as a share of its stop edge."""
 

@@ -1,0 +1,162 @@
+"""Time stamps → a regular grid: gaps become missing samples, jitter is measured, not ignored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+RATE_TOLERANCE = 1e-3
+"""Relative difference allowed between the stated rate and that of the stamps."""
+PLACED_JITTER = 0.05
+"""Jitter, as a share of the step, below which samples are placed on the grid as they are."""
+MOST_GRID_POINTS = 20
+"""Grid points allowed per stamp: beyond, the stamps hold a jump, not a gap."""
+MOST_DISORDER = 0.05
+"""Share of repeated or backward stamps beyond which the time column is refused."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """What the stamps said about the logger's clock.
+
+    ``jitter_s`` is the rms distance of the stamps from the regular grid, ``missing`` the number of
+    grid points without a stamp, ``disordered`` the number of stamps dropped because they were
+    repeated, unreadable or out of order.
+    """
+
+    sample_rate_hz: float
+    jitter_s: float
+    missing: int
+    disordered: int
+
+
+def regularise(
+    times_s: FloatArray, data: FloatArray, *, sample_rate_hz: float | None = None
+) -> tuple[FloatArray, Clock]:
+    """Bring stamped samples onto a regular grid that starts at the first stamp.
+
+    The rate is the stated one, if it agrees with the stamps, else the least-squares slope of the
+    stamps. Samples are placed at the nearest grid point; with more jitter than a twentieth of the
+    step they are interpolated to the grid, but never across a gap.
+
+    Parameters
+    ----------
+    times_s : (n_samples,) array
+    data : (n_channels, n_samples) array
+    sample_rate_hz : float, optional
+        The stated rate.
+
+    Returns
+    -------
+    data : (n_channels, n_grid) array
+    clock : Clock
+
+    Raises
+    ------
+    InputError
+        If the stamps do not increase, jump, or contradict the stated rate.
+    """
+    keep = _increasing(times_s)
+    t, y = times_s[keep] - times_s[keep][0], data[:, keep]
+    index, step, offset = _grid(t)
+    if index[-1] > MOST_GRID_POINTS * len(t):
+        raise InputError(
+            "time stamps jump",
+            field="time",
+            value=float(np.diff(t).max()),
+            allowed="gaps shorter than the record",
+            remedy="split the file at the jump",
+        )
+    residual = t - offset - step * index
+    jitter = float(np.sqrt(np.mean(residual**2)))
+    rate = _agreed_rate(1.0 / step, sample_rate_hz, jitter, index)
+    n_grid = int(index[-1]) + 1
+    if jitter <= PLACED_JITTER * step:
+        out = np.full((len(y), n_grid), np.nan)
+        out[:, index] = y
+    else:
+        out = _interpolate(np.arange(n_grid) / rate + offset, t, y, 1.5 / rate)
+    dropped = int(len(times_s) - len(t))
+    return out, Clock(rate, jitter, n_grid - len(np.unique(index)), dropped)
+
+
+def _increasing(times_s: FloatArray) -> npt.NDArray[np.intp]:
+    """Return the indices of the stamps that are finite and later than all before them."""
+    finite = np.where(np.isfinite(times_s), times_s, -np.inf)
+    latest = np.concatenate([[-np.inf], np.maximum.accumulate(finite)[:-1]])
+    keep = np.flatnonzero(finite > latest)
+    if len(keep) < 2 or len(keep) < (1.0 - MOST_DISORDER) * len(times_s):
+        raise InputError(
+            "time stamps do not increase",
+            field="time",
+            value=f"{len(times_s) - len(keep)} of {len(times_s)} out of order",
+            allowed="increasing times",
+            remedy="remove the time column and state sample_rate_hz, or sort the file",
+        )
+    return keep
+
+
+def _grid(t: FloatArray) -> tuple[npt.NDArray[np.int64], float, float]:
+    """Return each stamp's grid point, the step and the fitted time of grid point 0.
+
+    The fit grows from the first stamps to all, so that the step is always known well enough to
+    count across the next stretch: jitter does not add up, and a gap does not shift the count.
+    """
+    steps = np.diff(t)
+    usual = np.median(steps)
+    step = float(np.mean(steps[np.abs(steps - usual) <= 0.5 * usual]))
+    size = 16
+    while size < len(t):
+        size = min(int(1.5 * size), len(t))
+        step, _ = _line(_count(t[:size], step), t[:size], step)
+    index = _count(t, step)
+    step, offset = _line(index, t, step)
+    return (index - index[0]).astype(np.int64), step, offset + step * float(index[0])
+
+
+def _count(t: FloatArray, step: float) -> FloatArray:
+    """Return the nearest multiples of the step, counted from the stamps' mean phase."""
+    phase = np.angle(np.mean(np.exp(2j * np.pi * t / step))) / (2.0 * np.pi)
+    count: FloatArray = np.round(t / step - phase)
+    return count
+
+
+def _line(index: FloatArray, t: FloatArray, step: float) -> tuple[float, float]:
+    """Return slope and intercept of the least-squares line; the old slope if it has no say."""
+    x = index - index.mean()
+    power = float(x @ x)
+    slope = float(x @ t) / power if power > 0.0 else step
+    return slope, float(t.mean() - slope * index.mean())
+
+
+def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: npt.NDArray[np.int64]) -> float:
+    if stated is None:
+        # Stamps are rounded: take the shortest decimal within their own uncertainty.
+        spread = float(np.std(index)) * np.sqrt(len(index))
+        tolerance = max(4.0 * jitter_s / spread * fitted, 1e-9)
+        short = (float(f"{fitted:.{digits}g}") for digits in range(1, 10))
+        return next((rate for rate in short if abs(rate / fitted - 1.0) <= tolerance), fitted)
+    if abs(fitted / stated - 1.0) > RATE_TOLERANCE:
+        raise InputError(
+            "stated sample rate contradicts the time stamps",
+            field="sample_rate_hz",
+            value=stated,
+            allowed=f"{fitted:.6g} within 0.1 %",
+            remedy="correct or remove sample_rate_hz",
+        )
+    return stated
+
+
+def _interpolate(grid: FloatArray, t: FloatArray, y: FloatArray, longest: float) -> FloatArray:
+    """Interpolate linearly, leaving NaN where the neighbouring stamps are farther apart than ``longest``."""
+    right = np.clip(np.searchsorted(t, grid), 1, len(t) - 1)
+    out = np.vstack([np.interp(grid, t, row) for row in y])
+    # A lost stamp leaves two steps between its neighbours, give or take the jitter.
+    out[:, (t[right] - t[right - 1]) > longest] = np.nan
+    return out

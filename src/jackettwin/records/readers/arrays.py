@@ -1,0 +1,146 @@
+"""Named arrays (npz, MATLAB, HDF5): one set of rules for what they mean.
+
+A scalar named like a rate is the rate; a vector named like a time holds the stamps; a text named
+``description`` is the JSON of a record. A matrix holds one channel along its shorter side, named
+by the list beside it (``channel_names``, ``names``, ``channels``, ``labels``); further vectors of
+the common length are channels under their own names.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.delimited import RATE_KEYS
+from jackettwin.records.readers.description import (
+    ChannelEntry,
+    description_text,
+    parse_description,
+    parse_time,
+)
+from jackettwin.records.readers.table import TIME_NAMES, Table, seconds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from jackettwin.records.record import Record
+
+Arrays = dict[str, npt.NDArray[Any]]
+
+NAME_LISTS = ("channel_names", "channelnames", "names", "channels", "labels")
+STEP_KEYS = ("dt", "time_step", "step_s")
+
+
+def table_from_arrays(
+    arrays: Mapping[str, npt.NDArray[Any]], units: Mapping[str, str] | None = None
+) -> Table:
+    """Return the table that named arrays hold; names are matched on their last dotted part.
+
+    Raises
+    ------
+    InputError
+        If there is no numeric array, or several matrices.
+    """
+    texts = {key: _texts(value) for key, value in arrays.items() if value.dtype.kind in "USO"}
+    numbers = {key: np.squeeze(value) for key, value in arrays.items() if value.dtype.kind in "fiub"}
+    scalars = {_last(key): float(value) for key, value in numbers.items() if value.ndim == 0}
+    named = {_last(key): text for key, text in texts.items()}
+    times = [key for key, value in numbers.items() if value.ndim == 1 and _last(key) in TIME_NAMES]
+    vectors = {key: value for key, value in numbers.items() if value.ndim == 1 and key not in times}
+    rows = _matrix_rows(numbers, named) | _common_length(vectors)
+    if not rows:
+        raise InputError(
+            "holds no channels", field="data", value=", ".join(arrays), allowed="a matrix or vectors"
+        )
+    lengths = Counter(len(row) for row in rows.values())
+    if len(lengths) > 1:
+        raise InputError(
+            "channels differ in length", field="data", value=sorted(lengths), remedy="store one rate a file"
+        )
+    times_s, start = seconds(numbers[times[0]].astype(np.float64)) if times else (None, None)
+    return Table(
+        names=tuple(rows),
+        data=np.vstack([np.asarray(row, dtype=np.float64) for row in rows.values()]),
+        channels={name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit},
+        sample_rate_hz=_rate(scalars),
+        times_s=times_s,
+        start_utc=parse_time(named["start_utc"][0]) if named.get("start_utc") else start,
+        description=parse_description(named["description"][0]) if named.get("description") else None,
+    )
+
+
+def arrays_from_record(record: Record) -> Arrays:
+    """Return the arrays that ``table_from_arrays`` reads back."""
+    return {
+        "data": record.data,
+        "sample_rate_hz": np.array(record.sample_rate_hz),
+        "channel_names": np.array(record.channel_names, dtype=np.str_),
+        "description": np.array(description_text(record), dtype=np.str_),
+    }
+
+
+def _last(key: str) -> str:
+    return key.replace("/", ".").rsplit(".", 1)[-1].lower()
+
+
+def _texts(value: npt.NDArray[Any]) -> list[str]:
+    """Return texts from an array of texts, bytes or (MATLAB's cell) arrays of one text each."""
+    out = []
+    for item in value.ravel().tolist():
+        inner = item.ravel().tolist() if isinstance(item, np.ndarray) else [item]
+        text = inner[0] if len(inner) == 1 else ""
+        out.append((text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)).strip())
+    return out
+
+
+def _matrix_rows(numbers: Arrays, named: dict[str, list[str]]) -> Arrays:
+    """Return the rows of the one matrix, by the names listed beside it."""
+    matrices = [(key, value) for key, value in numbers.items() if value.ndim == 2 and value.size]
+    if not matrices:
+        return {}
+    if len(matrices) > 1:
+        raise InputError(
+            "holds several matrices",
+            field="data",
+            value=", ".join(key for key, _ in matrices),
+            allowed="one matrix of channels",
+            remedy="store one record a file",
+        )
+    key, matrix = matrices[0]
+    rows = matrix if matrix.shape[0] <= matrix.shape[1] else matrix.T
+    names = next((named[name] for name in NAME_LISTS if named.get(name)), None)
+    names = names or [f"{_last(key)}_{i + 1}" for i in range(len(rows))]
+    if len(names) != len(rows) or len(set(names)) != len(names):
+        raise InputError(
+            "names and channels disagree",
+            field=key,
+            value=names,
+            allowed=f"{len(rows)} different names",
+            remedy="list one name a channel",
+        )
+    return dict(zip(names, rows, strict=True))
+
+
+def _common_length(vectors: Arrays) -> Arrays:
+    """Return the vectors of the most frequent length, the longest if there is a tie."""
+    lengths = Counter(len(vector) for vector in vectors.values() if len(vector) > 1)
+    if not lengths:
+        return {}
+    usual = max(lengths, key=lambda n: (lengths[n], n))
+    return {key: vector for key, vector in vectors.items() if len(vector) == usual}
+
+
+def _rate(scalars: dict[str, float]) -> float | None:
+    rate = next((scalars[key] for key in RATE_KEYS if key in scalars), None)
+    step = next((scalars[key] for key in STEP_KEYS if key in scalars), None)
+    if rate is None and step:
+        rate = 1.0 / step
+    if rate is not None and not 0.0 < rate < float("inf"):
+        raise InputError(
+            "is not a rate", field="sample_rate_hz", value=rate, allowed="> 0 Hz", remedy="correct it"
+        )
+    return rate

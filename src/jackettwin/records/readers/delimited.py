@@ -1,0 +1,198 @@
+"""Delimited text (CSV): header row, optional units row, numbers; the dialect is found, not asked.
+
+``#`` lines before the header may hold ``key: value``. Comma, semicolon, tab, bar or blanks
+separate; a decimal comma is understood wherever the comma does not separate. Units may stand in
+a row of their own or in brackets behind the names. Empty cells, ``nan``, ``NA``, ``null`` and the
+like are missing samples.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.description import parse_time
+from jackettwin.records.readers.table import Table, table_from_columns
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jackettwin.records.record import Record
+
+MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "inf", "-inf", "+inf"}
+RATE_KEYS = ("sample_rate_hz", "sample_rate", "sampling_rate", "sampling_frequency", "fs")
+_BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
+_DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
+
+
+def read(path: Path) -> Table:
+    """Read names, units and numbers.
+
+    Raises
+    ------
+    InputError
+        Names the line and the cell that is not understood.
+    """
+    lines = _decode(path.read_bytes()).splitlines()
+    comments, start = _preamble(lines)
+    delimiter = _delimiter(lines[start : start + 50])
+    rows = [row for row in _cells("\n".join(lines[start:]), delimiter) if any(cell.strip() for cell in row)]
+    if not rows or _is_data(rows[0], delimiter):
+        raise InputError(
+            "has no header row", field="line 1", allowed="channel names", remedy="name the columns"
+        )
+    names, units = _names_and_units(rows[0])
+    body = rows[1:]
+    if body and not _is_data(body[0], delimiter):
+        units = {name: cell.strip() for name, cell in zip(names, body[0], strict=False) if cell.strip()}
+        body = body[1:]
+    first_line = start + len(rows) - len(body) + 1
+    columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
+    return table_from_columns(names, columns, units, **_known(comments))
+
+
+def write(record: Record, path: Path) -> None:
+    """Write names, a units row and the numbers to full precision; missing samples as empty cells."""
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(record.channel_names)
+        writer.writerow([channel.unit for channel in record.channels])
+        writer.writerows(["" if x != x else repr(x) for x in row] for row in record.data.T.tolist())
+
+
+def _decode(raw: bytes) -> str:
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return raw.decode("utf-16")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", errors="replace")  # what spreadsheets write for ² and µ
+
+
+def _preamble(lines: list[str]) -> tuple[dict[str, str], int]:
+    """Return the ``# key: value`` lines on top and the number of the first other line."""
+    comments: dict[str, str] = {}
+    for number, line in enumerate(lines):
+        if not line.lstrip().startswith("#"):
+            return comments, number
+        key, found, value = line.lstrip("# \t").replace("=", ":", 1).partition(":")
+        if found:
+            comments[key.strip()] = value.strip()
+    return comments, len(lines)
+
+
+def _known(comments: dict[str, str]) -> dict[str, Any]:
+    known: dict[str, Any] = {}
+    rate = next((key for key in comments if key.lower() in RATE_KEYS), None)
+    if rate is not None:
+        known["sample_rate_hz"] = _rate(rate, comments.pop(rate))
+    if "start_utc" in comments:
+        known["start_utc"] = parse_time(comments.pop("start_utc"))
+    return {**known, "metadata": comments}
+
+
+def _rate(key: str, text: str) -> float:
+    try:
+        rate = float(text.lower().removesuffix("hz"))
+    except ValueError:
+        rate = float("nan")
+    if not 0.0 < rate < float("inf"):
+        raise InputError(
+            "is not a rate", field=key, value=text, allowed="> 0 Hz", remedy="state the rate in Hz"
+        )
+    return rate
+
+
+def _delimiter(lines: list[str]) -> str:
+    """Return the separator that splits most of the first lines into the same number of cells."""
+    best, most = " ", 0
+    for candidate in ";\t|,":
+        counts = [line.count(candidate) for line in lines if line.strip()]
+        usual = max(set(counts), key=counts.count) if counts else 0
+        agreeing = counts.count(usual) if usual else 0
+        if agreeing > most:
+            best, most = candidate, agreeing
+    return best
+
+
+def _cells(text: str, delimiter: str) -> list[list[str]]:
+    if delimiter == " ":
+        return [line.split() for line in text.splitlines()]
+    try:
+        return list(csv.reader(io.StringIO(text), delimiter=delimiter, skipinitialspace=True))
+    except csv.Error as error:
+        raise InputError(f"is not delimited text: {error}", remedy="export the file again") from error
+
+
+def _is_data(row: list[str], delimiter: str) -> bool:
+    """Tell whether any cell is a number or a time: names and units are neither."""
+    return any(_is_value(cell.strip(), delimiter) for cell in row)
+
+
+def _is_value(cell: str, delimiter: str) -> bool:
+    try:
+        number = float(_with_point(cell, delimiter))
+        return number == number and cell.lower() not in MISSING
+    except ValueError:
+        return bool(re.match(r"^\d{4}-\d\d-\d\d", cell))
+
+
+def _names_and_units(row: list[str]) -> tuple[list[str], dict[str, str]]:
+    names, units = [], {}
+    for cell in row:
+        match = _BRACKETED.match(cell.strip())
+        name = match["name"].rstrip("_ ") if match else cell.strip()
+        if match:
+            units[name] = match["unit"]
+        names.append(name)
+    while names and not names[-1]:  # a separator at the end of the line
+        names.pop()
+    if not all(names):
+        raise InputError(
+            "a column has no name", field=f"column {names.index('') + 1}", remedy="name every column"
+        )
+    return names, units
+
+
+def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int) -> npt.NDArray[Any]:
+    cells = [row[i] if i < len(row) else "" for row in rows]
+    try:
+        return np.array(cells, dtype=np.float64)
+    except ValueError:
+        pass
+    if i == 0 and cells and re.match(r"^\s*\d{4}-\d\d-\d\d", cells[0]):
+        return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+    return np.array([_number(cell, delimiter, name, line + k) for k, cell in enumerate(cells)])
+
+
+def _with_point(cell: str, delimiter: str) -> str:
+    return cell.replace(",", ".") if delimiter != "," and _DECIMAL_COMMA.match(cell) else cell
+
+
+def _number(cell: str, delimiter: str, name: str, line: int) -> float:
+    text = _with_point(cell.strip(), delimiter)
+    if text.lower() in MISSING:
+        return float("nan")
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(
+            "is not a number",
+            field=f"line {line}, channel {name}",
+            value=cell,
+            allowed="a number or an empty cell",
+            remedy="mend the cell",
+        ) from None
+
+
+def _stamp(cell: str, line: int) -> np.datetime64:
+    try:
+        return np.datetime64(parse_time(cell).replace(tzinfo=None), "ns")
+    except InputError as error:
+        raise error.at(field=f"line {line}") from None

@@ -1,0 +1,27 @@
+"""NumPy archives of named arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.records.readers.arrays import arrays_from_record, table_from_arrays
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jackettwin.records.readers.table import Table
+    from jackettwin.records.record import Record
+
+
+def read(path: Path) -> Table:
+    """Read the archive; pickled objects are refused."""
+    with np.load(path, allow_pickle=False) as archive:
+        return table_from_arrays({key: archive[key] for key in archive.files})
+
+
+def write(record: Record, path: Path) -> None:
+    """Write data, rate, names and the description."""
+    with path.open("wb") as stream:
+        np.savez_compressed(stream, allow_pickle=False, **arrays_from_record(record))

@@ -1,0 +1,47 @@
+"""Parquet: one column a channel, described by the JSON beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.table import Table, table_from_columns
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jackettwin.records.record import Record
+
+
+def read(path: Path) -> Table:
+    """Read every column; nulls are missing samples."""
+    stored = pq.read_table(path)
+    names = [str(name) for name in stored.column_names]
+    columns = [_numbers(name, stored.column(i)) for i, name in enumerate(names)]
+    return table_from_columns(names, columns)
+
+
+def write(record: Record, path: Path) -> None:
+    """Write one float64 column a channel; missing samples as NaN."""
+    columns = {channel.name: row for channel, row in zip(record.channels, record.data, strict=True)}
+    pq.write_table(pa.table(columns), path)
+
+
+def _numbers(name: str, column: Any) -> npt.NDArray[Any]:
+    if pa.types.is_timestamp(column.type):
+        stamps: npt.NDArray[Any] = column.cast(pa.timestamp("ns")).to_numpy().astype("datetime64[ns]")
+        return stamps
+    if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
+        raise InputError(
+            "column does not hold numbers",
+            field=f"channels.{name}",
+            value=str(column.type),
+            allowed="float or integer",
+            remedy="drop the column or store numbers",
+        )
+    return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=np.float64)

@@ -1,0 +1,124 @@
+"""One table of formats: file extension → reader and writer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from jackettwin.errors import InputError, JackettwinError, did_you_mean
+from jackettwin.files import atomic_path
+from jackettwin.records.readers import delimited, npz, parquet
+from jackettwin.records.readers.description import description_text, read_description
+from jackettwin.records.readers.table import Table, to_record
+from jackettwin.records.record import Record
+
+
+@dataclass(frozen=True)
+class Format:
+    """A file format: how it is called, read and, if we write it, written.
+
+    ``json_beside`` says that the description does not fit inside the file.
+    """
+
+    name: str
+    extensions: tuple[str, ...]
+    read: Callable[[Path], Table]
+    write: Callable[[Record, Path], None] | None = None
+    json_beside: bool = True
+
+
+FORMATS = (
+    Format("Parquet", (".parquet", ".pq"), parquet.read, parquet.write),
+    Format("delimited text", (".csv", ".txt", ".tsv", ".asc"), delimited.read, delimited.write),
+    Format("NumPy archive", (".npz",), npz.read, npz.write, json_beside=False),
+)
+
+
+def read_record(path: Path | str) -> Record:
+    """Read a record in any known format, with the ``NAME.json`` beside it if there is one.
+
+    The JSON chooses and describes channels and wins over what the file says of them; a
+    contradiction in the sample rate is an error. Numbers are brought to SI units; what is not a
+    finite number becomes a missing sample (NaN).
+
+    Raises
+    ------
+    InputError
+        Names the file, the field, the value, what is allowed and what to do.
+    """
+    path = Path(path)
+    form = _format_of(path)
+    _refuse_unreadable(path)
+    beside = path.with_suffix(".json")
+    description = read_description(beside) if beside.is_file() else None
+    try:
+        table = form.read(path)
+    except JackettwinError as error:
+        raise (error.at(file=path) if isinstance(error, InputError) else error) from error.__cause__
+    except Exception as error:  # what parsers raise on damaged bytes is not theirs to promise
+        raise InputError(
+            f"is not readable as {form.name} ({type(error).__name__}: {str(error)[:120]})",
+            file=path,
+            remedy="the file is damaged or not of this format",
+        ) from error
+    try:
+        return to_record(table, description, path)
+    except InputError as error:
+        raise error.at(file=path) from None
+
+
+def write_record(record: Record, path: Path | str) -> None:
+    """Write a record, whole or not at all, with ``NAME.json`` beside it where the format needs it.
+
+    Raises
+    ------
+    InputError
+        If the extension is not one we write.
+    """
+    path = Path(path)
+    form = _format_of(path)
+    if form.write is None:
+        raise InputError(
+            f"{form.name} is read, not written",
+            file=path,
+            allowed=", ".join(e for f in FORMATS if f.write for e in f.extensions),
+            remedy="use .parquet",
+        )
+    with atomic_path(path) as temporary:
+        form.write(record, temporary)
+        if form.json_beside:
+            with atomic_path(path.with_suffix(".json")) as beside:
+                beside.write_text(description_text(record), encoding="utf-8")
+
+
+def _format_of(path: Path) -> Format:
+    extension = path.suffix.lower()
+    known = [e for form in FORMATS for e in form.extensions]
+    if extension not in known:
+        remedy = "give the data file, not its description" if extension == ".json" else "convert the file"
+        raise InputError(
+            "unknown record format",
+            file=path,
+            field="extension",
+            value=extension,
+            allowed=", ".join(known),
+            remedy=did_you_mean(extension, known) or remedy,
+        )
+    return next(form for form in FORMATS if extension in form.extensions)
+
+
+def _refuse_unreadable(path: Path) -> None:
+    problem = None
+    try:
+        if not path.exists():
+            problem = "no such file"
+        elif not path.is_file():
+            problem = "is not a file"
+        elif path.stat().st_size == 0:
+            problem = "is empty"
+    except (OSError, ValueError) as error:
+        problem = f"cannot be opened ({error})"
+    if problem:
+        near = [p.name for p in path.parent.glob(f"*{path.suffix}")] if path.parent.is_dir() else []
+        raise InputError(problem, file=path, remedy=did_you_mean(path.name, near) or "check the path")

@@ -1,0 +1,224 @@
+"""What a data file holds, and how it becomes a ``Record`` with the help of the JSON beside it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError, did_you_mean
+from jackettwin.quantities import VIBRATIONS, guess_quantity, plain_unit, quantity, to_si
+from jackettwin.records.clock import regularise
+from jackettwin.records.readers.description import ChannelEntry, Description
+from jackettwin.records.record import Channel, Record
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+FloatArray = npt.NDArray[np.float64]
+
+TIME_NAMES = ("time", "time_s", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit")
+_AXIS_SUFFIX = re.compile(r"[_ .\-]([xyz])$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Named columns and whatever else the file said.
+
+    Attributes
+    ----------
+    names : tuple of str
+    data : (n_channels, n_samples) array
+        In the file's own units.
+    channels : mapping
+        Per name what the file says of the channel; units in ``unit``.
+    times_s : (n_samples,) array, optional
+        Stamps, if the file has them, from any origin.
+    description : Description, optional
+        A complete description stored inside the file.
+    """
+
+    names: tuple[str, ...]
+    data: FloatArray
+    channels: Mapping[str, ChannelEntry] = field(default_factory=dict)
+    sample_rate_hz: float | None = None
+    start_utc: datetime | None = None
+    times_s: FloatArray | None = None
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    description: Description | None = None
+
+
+def table_from_columns(
+    names: Sequence[str],
+    columns: Sequence[npt.NDArray[Any]],
+    units: Mapping[str, str] | None = None,
+    **known: Any,
+) -> Table:
+    """Return a table of equally long columns; the first one named like a time becomes the stamps.
+
+    Raises
+    ------
+    InputError
+        If there is no column left or a name is given twice.
+    """
+    channels = {name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit}
+    if names and names[0].strip().lower() in TIME_NAMES:
+        times_s, start_utc = seconds(columns[0], channels.pop(names[0], ChannelEntry()).unit)
+        known = {"start_utc": start_utc, **known, "times_s": times_s}
+        names, columns = names[1:], columns[1:]
+    if not names:
+        raise InputError("holds no channels", field="channels", allowed="at least one column of numbers")
+    data = np.vstack([np.asarray(column, dtype=np.float64) for column in columns])
+    return Table(tuple(names), data, channels, **known)
+
+
+def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
+    """Return stamps as seconds, and the UTC time of the first if they are absolute.
+
+    Datetimes are absolute; so are numbers that read as Unix seconds between 2001 and 2100.
+    """
+    if np.issubdtype(stamps.dtype, np.datetime64):
+        first = stamps[0] if len(stamps) else np.datetime64("NaT")
+        if np.isnat(first):
+            raise InputError("first time stamp is missing", field="time", remedy="remove the first row")
+        relative = (stamps - first) / np.timedelta64(1, "ns")
+        start = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(
+            microseconds=int(first.astype("datetime64[us]").astype(np.int64))
+        )
+        return relative * 1e-9, start
+    factor = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0}.get(unit or "s", 1.0)
+    times_s = np.asarray(stamps, dtype=np.float64) * factor
+    if len(times_s) and 1e9 < times_s[0] < 4.1e9:
+        start = datetime.fromtimestamp(float(times_s[0]), tz=UTC)
+        return times_s - times_s[0], start
+    return times_s, None
+
+
+def to_record(table: Table, beside: Description | None, path: Path) -> Record:
+    """Return the record: columns chosen and described by the JSON, in SI units, on a regular grid.
+
+    Raises
+    ------
+    InputError
+        If the two contradict each other or something needed is in neither.
+    """
+    _refuse_twins(table.names)
+    said = beside or table.description or Description()
+    names = tuple(said.channels) if said.channels else table.names
+    data = table.data[[_row_of(name, table) for name in names]]
+    stated = _stated_rate(table, said)
+    metadata = {**table.metadata, **said.metadata}
+    if table.times_s is not None:
+        data, clock = regularise(table.times_s, data, sample_rate_hz=stated)
+        stated = clock.sample_rate_hz
+        metadata["clock"] = asdict(clock)
+    if stated is None:
+        raise InputError(
+            "sample rate is missing",
+            field="sample_rate_hz",
+            allowed="> 0 Hz",
+            remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file',
+        )
+    if data.shape[1] < 2:
+        raise InputError("holds no samples", field="data", value=data.shape[1], allowed="at least 2 samples")
+    described = [_channel(name, table.channels.get(name), (said.channels or {}).get(name)) for name in names]
+    with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
+        data = data * np.array([factor for _, factor in described])[:, None]
+    return Record(
+        data=np.where(np.isfinite(data), data, np.nan),
+        sample_rate_hz=stated,
+        channels=tuple(channel for channel, _ in described),
+        start_utc=said.start_utc or table.start_utc,
+        conditions=dict(said.conditions),
+        metadata=metadata,
+        name=path.stem,
+    )
+
+
+def _refuse_twins(names: tuple[str, ...]) -> None:
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise InputError("channel name is given twice", field="channels", value=name, remedy="rename one")
+
+
+def _row_of(name: str, table: Table) -> int:
+    if name not in table.names:
+        raise InputError(
+            "channel is described but not in the data file",
+            field="channels",
+            value=name,
+            allowed=", ".join(table.names),
+            remedy=did_you_mean(name, table.names) or "remove it from the description",
+        )
+    return table.names.index(name)
+
+
+def _stated_rate(table: Table, said: Description) -> float | None:
+    own, given = table.sample_rate_hz, said.sample_rate_hz
+    if own is not None and given is not None and abs(own / given - 1.0) > 1e-3:
+        raise InputError(
+            "sample rate of the description contradicts the data file",
+            field="sample_rate_hz",
+            value=given,
+            allowed=f"{own:g} Hz",
+            remedy="correct or remove it in the description",
+        )
+    return given if given is not None else own
+
+
+def _channel(name: str, own: ChannelEntry | None, given: ChannelEntry | None) -> tuple[Channel, float]:
+    """Merge what the file and the description say; return the channel in SI and the factor to it."""
+    merged = {**(own or ChannelEntry()).model_dump(exclude_none=True)}
+    merged |= (given or ChannelEntry()).model_dump(exclude_none=True)
+    unit = plain_unit(merged.get("unit", ""))
+    kind = merged.get("quantity") or guess_quantity(name, unit)
+    try:
+        factor, si_unit = _factor(kind, unit)
+        direction = _unit_vector(merged.get("direction") or _direction_in(name, kind))
+    except InputError as error:
+        raise error.at(field=f"channels.{name}") from None
+    node = merged.get("node")
+    channel = Channel(
+        name=name,
+        quantity=kind,
+        unit=si_unit,
+        height_m=merged.get("height_m"),
+        node=None if node is None else str(node),
+        direction=direction,
+    )
+    return channel, factor
+
+
+def _factor(kind: str, unit: str) -> tuple[float, str]:
+    if kind == "other":  # no SI unit to bring it to: numbers and unit stay as they are
+        return 1.0, unit or "-"
+    si_unit = quantity(kind).unit
+    if not unit and si_unit != "-":
+        raise InputError(
+            "unit is missing",
+            field="unit",
+            allowed=f"{si_unit} or another unit of {kind}",
+            remedy="state the unit of the stored numbers",
+        )
+    return to_si(kind, unit or si_unit), si_unit
+
+
+def _direction_in(name: str, kind: str) -> tuple[float, float, float]:
+    """Return the global axis a vibration channel's name ends in (``acc_top_x``), else zeros."""
+    match = _AXIS_SUFFIX.search(name) if kind in VIBRATIONS else None
+    axis = "xyz".index(match[1].lower()) if match else -1
+    return (float(axis == 0), float(axis == 1), float(axis == 2))
+
+
+def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    length = float(np.linalg.norm(direction))
+    if length == 0.0:
+        return (0.0, 0.0, 0.0)
+    x, y, z = (float(part) / length for part in direction)
+    return (x, y, z)

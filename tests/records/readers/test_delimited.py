@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.records import Record, read_record
+
+
+def read_text(text: str, tmp_path: Path, encoding: str = "utf-8") -> Record:
+    path = tmp_path / "r.csv"
+    path.write_bytes(text.encode(encoding))
+    return read_record(path)
+
+
+ROWS = [(0.0, 1.5, -0.25), (0.1, 2.5, 0.5), (0.2, -3.5, 1.0), (0.3, 0.5, 2.0)]
+
+
+def table(delimiter: str, decimal: str, units: bool) -> str:
+    lines = [delimiter.join(["time", "acc_x", "acc_y"])]
+    lines += [delimiter.join(["s", "g", "m/s^2"])] if units else []
+    lines += [delimiter.join(str(x).replace(".", decimal) for x in row) for row in ROWS]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("delimiter", "decimal"),
+    [(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), ("  ", "."), ("|", ".")],
+)
+def test_every_dialect_reads_the_same(delimiter: str, decimal: str, tmp_path: Path) -> None:
+    record = read_text(table(delimiter, decimal, units=True), tmp_path)
+    np.testing.assert_allclose(record.data[0], np.array([1.5, 2.5, -3.5, 0.5]) * 9.80665, rtol=1e-15)
+    np.testing.assert_allclose(record.data[1], [-0.25, 0.5, 1.0, 2.0], rtol=1e-15)
+    assert record.sample_rate_hz == 10.0
+    assert [c.direction for c in record.channels] == [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+
+
+@pytest.mark.parametrize("header", ["time [s],acc_x [g],acc_y (m/s²)", '"time","acc_x (g)","acc_y [m/s**2]"'])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp1252", "utf-16"])
+def test_units_in_brackets_in_any_encoding(header: str, encoding: str, tmp_path: Path) -> None:
+    text = "\n".join([header] + [",".join(map(str, row)) for row in ROWS])
+    record = read_text(text, tmp_path, encoding)
+    assert record.channel_names == ("acc_x", "acc_y")
+    np.testing.assert_allclose(record.data[0, 0], 1.5 * 9.80665, rtol=1e-15)
+
+
+def test_rate_in_a_comment_and_other_comments_as_metadata(tmp_path: Path) -> None:
+    text = "# logger: 7\n# sample_rate_hz: 50 Hz\nacc_x;acc_y\nm/s^2;m/s^2\n1;2\n3;4\n"
+    record = read_text(text, tmp_path)
+    assert record.sample_rate_hz == 50.0
+    assert record.metadata == {"logger": "7"}
+
+
+def test_missing_cells_are_missing_samples(tmp_path: Path) -> None:
+    text = "# fs: 5\nacc_x,acc_y\ng,g\n1,\n,NaN\nnull,2\n#N/A,3\n1e999,4\n5\n"
+    data = read_text(text, tmp_path).data / 9.80665
+    expected = [[1, np.nan, np.nan, np.nan, np.nan, 5], [np.nan, np.nan, 2, 3, 4, np.nan]]
+    np.testing.assert_allclose(data, expected, rtol=1e-15)
+
+
+def test_iso_stamps_give_rate_start_and_gap(tmp_path: Path) -> None:
+    stamps = [f"2025-01-01T13:00:00.{ms:03d}+01:00" for ms in (0, 100, 200, 500, 600, 700)]
+    text = "timestamp,acc_x [g]\n" + "\n".join(f"{stamp},{i}" for i, stamp in enumerate(stamps))
+    record = read_text(text, tmp_path)
+    assert record.start_utc is not None and record.start_utc.isoformat() == "2025-01-01T12:00:00+00:00"
+    assert record.sample_rate_hz == 10.0
+    np.testing.assert_array_equal(np.isnan(record.data[0]), [0, 0, 0, 1, 1, 0, 0, 0])
+    assert record.metadata["clock"]["missing"] == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("1,2\n3,4\n", "has no header row"),
+        ("# fs: 5\nacc_x\ng\n1\nx1\n3\n", r"line 5, channel acc_x: is not a number \(got 'x1'\)"),
+        ("# fs: fast\nacc_x\ng\n1\n2\n", "fs: is not a rate.*fast"),
+        ("# fs: 5\nacc_x,acc_x\ng,g\n1,2\n3,4\n", "channel name is given twice.*acc_x"),
+        ("# fs: 5\nacc_x,,acc_y\ng,g,g\n1,2,3\n", "column 2: a column has no name"),
+        ("# fs: 5\nacc_x\n1\n2\n", "channels.acc_x.unit: unit is missing"),
+        ("acc_x\ng\n1\n2\n", "sample rate is missing"),
+        ("# fs: 5\nacc_x\ng\n1\n", "holds no samples"),
+        ("time,acc_x\ns,g\n0,1\n1,2\n1,2\n0,3\n", "time stamps do not increase"),
+        ("# fs: 5\ntime,acc_x\ns,g\n0,1\n1,2\n2,2\n3,3\n", "contradicts the time stamps"),
+        ("time\ns\n0\n1\n", "holds no channels"),
+        ("\x00\x01\x02", r"r\.csv"),
+    ],
+)
+def test_wrong_text_is_refused_with_its_place(text: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=message) as caught:
+        read_text(text, tmp_path)
+    assert str(caught.value.file).endswith("r.csv")

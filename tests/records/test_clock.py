@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.records.clock import regularise
+
+
+def test_perfect_stamps_change_nothing(rng: np.random.Generator) -> None:
+    y = rng.normal(size=(2, 500))
+    out, clock = regularise(3.0 + np.arange(500) / 64.0, y)
+    assert np.array_equal(out, y)
+    assert (clock.sample_rate_hz, clock.missing, clock.disordered) == (64.0, 0, 0)
+    assert clock.jitter_s < 1e-12  # rounding of 10 s in float64
+
+
+def test_rounded_stamps_give_the_true_rate(rng: np.random.Generator) -> None:
+    t = np.round(np.arange(5000) / 62.5, 3)  # steps of 16 ms, written to the millisecond
+    _, clock = regularise(t, np.zeros((1, 5000)))
+    assert clock.sample_rate_hz == 62.5
+
+
+def test_lost_samples_become_gaps_at_their_place(rng: np.random.Generator) -> None:
+    t, y = np.arange(1000) / 20.0, rng.normal(size=(1, 1000))
+    kept = np.sort(rng.choice(np.arange(1, 999), 900, replace=False))
+    out, clock = regularise(t[kept], y[:, kept])
+    first, last = kept[0], kept[-1]
+    assert out.shape[1] == last - first + 1
+    np.testing.assert_array_equal(out[0, kept - first], y[0, kept])
+    assert clock.missing == np.isnan(out).sum() == out.shape[1] - 900
+
+
+def test_jitter_is_interpolated_away(rng: np.random.Generator) -> None:
+    n, rate, f = 12_000, 20.0, 0.18
+    t = np.arange(n) / rate + rng.normal(scale=0.2 / rate, size=n)
+    t = np.sort(t)
+    y = np.sin(2 * np.pi * f * t)[None, :]
+    out, clock = regularise(t, y, sample_rate_hz=rate)
+    assert clock.jitter_s == pytest.approx(0.2 / rate, rel=0.1)
+    grid = np.arange(out.shape[1]) / rate
+    # linear interpolation over a step: (2πf·Δt)²/8 = 4e-4, a few times that over stretched steps;
+    # the start of the grid is known to a jitter divided by √n
+    error = out[0] - np.sin(2 * np.pi * f * grid)
+    assert np.nanmax(np.abs(error)) < 5e-3
+    assert np.isnan(out).mean() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("times", "message"),
+    [
+        ([0.0, 0.1, 0.1, 0.1, 0.2], "do not increase"),
+        ([0.3, 0.2, 0.1, 0.0], "do not increase"),
+        ([np.nan, np.nan, 0.0], "do not increase"),
+        ([0.0, 0.1, 0.2, 1e9, 1e9 + 0.1], "stamps jump"),
+    ],
+)
+def test_bad_stamps_are_refused(times: list[float], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        regularise(np.array(times), np.zeros((1, len(times))))
+
+
+def test_a_stated_rate_must_agree_with_the_stamps() -> None:
+    with pytest.raises(InputError, match=r"contradicts.*got 25.*allowed: 20"):
+        regularise(np.arange(100) / 20.0, np.zeros((1, 100)), sample_rate_hz=25.0)
