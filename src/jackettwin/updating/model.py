@@ -1,0 +1,242 @@
+"""The model that is updated: free support parameters in, followed poles and their gradients out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+
+from jackettwin.errors import InputError
+from jackettwin.response.follow import follow
+from jackettwin.response.locus import oscillating_poles
+from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
+from jackettwin.response.reduced import Reduced, craig_bampton, pinned_reference
+from jackettwin.response.system import System, build_system
+from jackettwin.soil.support import Spring, Support, pinned
+from jackettwin.soil.viscoelastic import Law, Prony
+from jackettwin.structure.assemble import Assembly
+from jackettwin.structure.damping import Rayleigh
+from jackettwin.updating.families import Family, Parameter, law_slopes
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+TIES = ("all", "horizontal-vertical", "per-leg")
+_FIXED_INTERFACE_MODES = 14
+_SIDES = {"_horizontal": np.diag([1.0, 1.0, 0, 0, 0, 0]), "_vertical": np.diag([0, 0, 1.0, 0, 0, 0])}
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What the model says of some modes at one parameter vector.
+
+    Attributes
+    ----------
+    poles : (n_modes,) λ
+    slopes : (n_modes, n_parameters) dλ/d ln θ
+    """
+
+    poles: ComplexArray
+    slopes: ComplexArray
+
+
+@dataclass(frozen=True)
+class SupportModel:
+    """A structure whose reaction nodes stand on one family of laws.
+
+    Attributes
+    ----------
+    assembly, rayleigh
+        The steel.
+    family : Family
+    parameters : tuple of Parameter
+        One set of the family's for each tie group.
+    reduced : Reduced
+        Craig–Bampton model with the support DOFs kept; its groups are the tie groups.
+    reference_hz : float
+        Where storage stiffness and loss factor are stated: the first pinned frequency.
+    """
+
+    assembly: Assembly
+    rayleigh: Rayleigh
+    family: Family
+    parameters: tuple[Parameter, ...]
+    suffixes: tuple[str, ...]
+    reduced: Reduced
+    reference_hz: float
+
+    def laws(self, theta: FloatArray) -> list[Law]:
+        """Return the law of each tie group."""
+        per_group = np.reshape(theta, (len(self.suffixes), -1))
+        return [self.family.build(values, self.reference_hz) for values in per_group]
+
+    def predict(self, theta: FloatArray, modes: tuple[int, ...]) -> Prediction:
+        r"""Return the poles of numbered modes and their gradients from the reduced model.
+
+        .. math:: dλ/dθ = -\frac{x^T (∂D/∂θ\, S) x}{x^T F'(λ) x}, F symmetric (Adhikari 2001).
+        """
+        laws = self.laws(theta)
+        pencil = self.reduced.pencil.with_laws(laws)
+        values, shapes = oscillating_poles(pencil)
+        reference = pinned_reference(self.reduced, max(modes) + 2)
+        successor = follow(pencil.M, reference.omega, reference.shapes, shapes)[[m - 1 for m in modes]]
+        poles = np.where(successor >= 0, values[successor], np.nan)
+        slopes = np.full((len(modes), theta.size), np.nan, dtype=np.complex128)
+        width = len(self.family.parameters)
+        for row, (column, pole) in enumerate(zip(successor, poles, strict=True)):
+            if column < 0:
+                continue
+            x = shapes[:, column]
+            scale = x @ pencil.dF(complex(pole)) @ x
+            for g, group in enumerate(pencil.groups):
+                here = slice(g * width, (g + 1) * width)
+                inside = x[group.dofs] @ group.S[np.ix_(group.dofs, group.dofs)] @ x[group.dofs]
+                d = law_slopes(lambda v: self.family.build(v, self.reference_hz), theta[here], complex(pole))
+                slopes[row, here] = -d * inside / scale
+        return Prediction(poles, slopes)
+
+    def undamped_hz(self, theta: FloatArray, modes: tuple[int, ...]) -> FloatArray:
+        """Return the undamped frequencies of numbered modes from the reduced model (NaN if not followed)."""
+        pencil = self.reduced.pencil.with_laws(self.laws(theta))
+        w, x = la.eigh(pencil.static_stiffness(), pencil.M)
+        reference = pinned_reference(self.reduced, max(modes) + 2)
+        successor = follow(pencil.M, reference.omega, reference.shapes, x)[[m - 1 for m in modes]]
+        return np.where(successor >= 0, np.sqrt(np.maximum(w[successor], 0.0)) / (2.0 * pi), np.nan)
+
+    def system(self, theta: FloatArray) -> System:
+        """Return the full model at ``theta``."""
+        springs = _springs(self.assembly, self.suffixes, self.laws(theta))
+        return build_system(self.assembly, Support(springs=springs), rayleigh=self.rayleigh)
+
+    def exact_modes(self, theta: FloatArray, modes: tuple[int, ...]) -> ExactModes:
+        """Return numbered modes of the full model, damped and undamped."""
+        system = self.system(theta)
+        reference = numbered_modes(self.assembly, max(modes) + 2)
+        M = self.assembly.mass
+        damped = damped_modes(system, below_hz=1.2 * float(reference.frequency_hz[-1]))
+        undamped = undamped_modes(system, len(damped.eigenvalues) + 6)
+        rows = [m - 1 for m in modes]
+        d = follow(M, reference.omega, reference.shapes, damped.shapes)[rows]
+        u = follow(M, reference.omega, reference.shapes, undamped.shapes)[rows]
+        return ExactModes(
+            poles=np.where(d >= 0, damped.eigenvalues[d], np.nan),
+            shapes=np.where(d >= 0, damped.shapes[:, d], np.nan),
+            undamped_hz=np.where(u >= 0, undamped.frequency_hz[u], np.nan),
+            damped=damped,
+        )
+
+
+@dataclass(frozen=True)
+class ExactModes:
+    """Numbered modes of the full model; NaN where a mode has no successor.
+
+    Attributes
+    ----------
+    poles : (n_modes,) λ [rad/s]
+    shapes : (assembly.n_dof, n_modes)
+    undamped_hz : (n_modes,)
+    damped : DampedModes
+        All of them, with the real poles.
+    """
+
+    poles: ComplexArray
+    shapes: ComplexArray
+    undamped_hz: FloatArray
+    damped: DampedModes
+
+    @property
+    def frequency_hz(self) -> FloatArray:
+        """|λ|/2π [Hz]."""
+        return np.asarray(np.abs(self.poles) / (2.0 * pi))
+
+    @property
+    def damping_ratio(self) -> FloatArray:
+        """−Re λ/|λ|."""
+        return np.asarray(-self.poles.real / np.abs(self.poles))
+
+
+def numbered_modes(assembly: Assembly, number: int) -> UndampedModes:
+    """Return the undamped modes on pinned supports: their order numbers the modes everywhere."""
+    return undamped_modes(build_system(assembly, pinned(assembly.structure)), number)
+
+
+def support_model(
+    assembly: Assembly,
+    *,
+    family: Family,
+    rayleigh: Rayleigh,
+    tie: str = "all",
+    bounds: dict[str, tuple[float, float]] | None = None,
+) -> SupportModel:
+    """Return the model with one law on the three translations of every reaction node.
+
+    Parameters
+    ----------
+    tie : {"all", "horizontal-vertical", "per-leg"}
+        Which translations share parameters.
+    bounds : dict, optional
+        Narrower or wider bounds by parameter name (with or without the tie's suffix).
+
+    Raises
+    ------
+    InputError
+        If the tie is unknown, the structure has no reaction nodes, or a bound is wrong.
+    """
+    if tie not in TIES:
+        raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
+    if not assembly.structure.reactions:
+        raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
+    suffixes = _suffixes(assembly, tie)
+    parameters = tuple(
+        _bounded(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds or {})
+        for suffix in suffixes
+        for p in family.parameters
+    )
+    _no_unknown_bounds(bounds or {}, family, suffixes)
+    # distinct stand-in laws, so that every tie group stays a group of its own
+    stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(suffixes))]
+    system = build_system(
+        assembly, Support(springs=_springs(assembly, suffixes, stand_ins)), rayleigh=rayleigh
+    )
+    reference_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
+    reduced = craig_bampton(system, n_modes=_FIXED_INTERFACE_MODES)
+    return SupportModel(assembly, rayleigh, family, parameters, suffixes, reduced, reference_hz)
+
+
+def _suffixes(assembly: Assembly, tie: str) -> tuple[str, ...]:
+    if tie == "per-leg":
+        return tuple(f"_{node}" for node in assembly.structure.reaction_nodes)
+    return tuple(_SIDES) if tie == "horizontal-vertical" else ("",)
+
+
+def _springs(assembly: Assembly, suffixes: tuple[str, ...], laws: list[Law]) -> tuple[Spring, ...]:
+    translations = np.diag([1.0, 1.0, 1.0, 0, 0, 0])
+    nodes = assembly.structure.reaction_nodes
+    springs = []
+    for suffix, law in zip(suffixes, laws, strict=True):
+        matrix = _SIDES.get(suffix, translations)
+        chosen = [node for node in nodes if suffix == f"_{node}"] or nodes
+        springs += [Spring(node, matrix, law) for node in chosen]
+    return tuple(springs)
+
+
+def _bounded(p: Parameter, family_name: str, bounds: dict[str, tuple[float, float]]) -> Parameter:
+    low, high = bounds.get(p.name, bounds.get(family_name, (p.low, p.high)))
+    return Parameter(p.name, low, high, p.unit)
+
+
+def _no_unknown_bounds(
+    bounds: dict[str, tuple[float, float]], family: Family, suffixes: tuple[str, ...]
+) -> None:
+    known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
+    for name in bounds:
+        if name not in known:
+            raise InputError(
+                f"no such parameter of {family.name}",
+                field=f"bounds.{name}",
+                value=name,
+                allowed=", ".join(sorted(known)),
+            )

@@ -1,0 +1,101 @@
+"""What the model is updated to: frequencies and damping ratios of numbered modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A mode known from elsewhere; ``mode`` counts from 1 on pinned supports.
+
+    A value that is None takes no part in the fit. The standard deviations weigh the residuals; with None
+    the residual is relative, as in thesis (8.4).
+    """
+
+    mode: int
+    frequency_hz: float | None = None
+    frequency_std_hz: float | None = None
+    damping_ratio: float | None = None
+    damping_ratio_std: float | None = None
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Residuals of a set of targets, differentiable in the poles.
+
+    ``relative`` is the thesis's cost (8.4), each residual relative to its measured value; otherwise each is a
+    logarithm over its own standard deviation, which treats a ratio that is known to 30 % as such.
+    """
+
+    targets: tuple[Target, ...]
+    relative: bool
+
+    def __post_init__(self) -> None:
+        if not self.targets:
+            raise InputError(
+                "nothing to update to", field="targets", value=[], remedy="give at least one target"
+            )
+        modes = [target.mode for target in self.targets]
+        if len(set(modes)) != len(modes):
+            raise InputError("a mode is given twice", field="targets.mode", value=modes)
+        if not any(self._used()):
+            raise InputError("no target has a frequency or a damping ratio", field="targets", value=modes)
+
+    def _used(self) -> list[bool]:
+        return [
+            flag for t in self.targets for flag in (t.frequency_hz is not None, t.damping_ratio is not None)
+        ]
+
+    @property
+    def modes(self) -> tuple[int, ...]:
+        """Mode numbers, in the order of the targets."""
+        return tuple(target.mode for target in self.targets)
+
+    @property
+    def count(self) -> int:
+        """Number of residuals."""
+        return sum(self._used())
+
+    def evaluate(self, poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals (count,) and their Jacobian (count, n_parameters).
+
+        Parameters
+        ----------
+        poles : (n_targets,) λ
+        slopes : (n_targets, n_parameters) dλ/d ln θ
+        """
+        values, rows = [], []
+        for target, pole, slope in zip(self.targets, poles, slopes, strict=True):
+            size = abs(pole)
+            radial = (np.conj(pole) * slope).real / size  # d|λ|
+            if target.frequency_hz is not None:
+                r, dr = self._residual(
+                    size / (2.0 * np.pi), radial / (2.0 * np.pi), target.frequency_hz, target.frequency_std_hz
+                )
+                values.append(r)
+                rows.append(dr)
+            if target.damping_ratio is not None:
+                zeta = -pole.real / size
+                dzeta = -slope.real / size - zeta * radial / size
+                r, dr = self._residual(zeta, dzeta, target.damping_ratio, target.damping_ratio_std)
+                values.append(r)
+                rows.append(dr)
+        return np.array(values), np.array(rows)
+
+    def _residual(
+        self, model: float, slope: FloatArray, measured: float, std: float | None
+    ) -> tuple[float, FloatArray]:
+        if self.relative or std is None:
+            return (model - measured) / measured, slope / measured
+        scale = std / measured  # standard deviation of the logarithm
+        floor = max(model, 1e-9)
+        return float(np.log(floor / measured)) / scale, slope / floor / scale

@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+import pytest
+
+from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
+from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
+
+
+@pytest.fixture(scope="session")
+def jacket15() -> Assembly:
+    return assemble(read_structure("jacket15"))
+
+
+@pytest.fixture(scope="session")
+def steel() -> Rayleigh:
+    """The thesis's 1 % at the first mode."""
+    return Rayleigh.minimum(0.01, 0.1832)
+
+
+@pytest.fixture(scope="session")
+def models(jacket15: Assembly, steel: Rayleigh) -> dict[str, SupportModel]:
+    return {
+        name: support_model(jacket15, family=family(name), rayleigh=steel)
+        for name in ("kelvin-voigt", "zener", "maxwell-3")
+    }
+
+
+@pytest.fixture(scope="session")
+def table_6_1() -> Residuals:
+    """Modes 1, 2, 4 and the damping of mode 1, relative residuals as in (8.4)."""
+    return Residuals(
+        (Target(1, 0.1819, damping_ratio=0.0127), Target(2, 0.1838), Target(4, 0.7362)), relative=True
+    )

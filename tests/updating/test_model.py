@@ -1,0 +1,85 @@
+"""The reduced model against the full one, and gradients against differences."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import SupportModel, family, support_model
+
+POINTS = {
+    "kelvin-voigt": [2.5e9, 7.6e8],  # thesis table 8.1
+    "zener": [2.62e9, 8.65e8, 9.99e9],  # thesis table 8.4, point 2
+    "maxwell-3": [3e9, 0.2],
+}
+
+
+@pytest.mark.parametrize("law", POINTS)
+def test_reduced_poles_are_those_of_the_full_model(models: dict[str, SupportModel], law: str) -> None:
+    theta = np.array(POINTS[law])
+    exact = models[law].exact_modes(theta, (1, 2, 3, 4, 5))
+    reduced = models[law].predict(theta, (1, 2, 3, 4, 5)).poles
+    # fourteen fixed-interface modes: 1e-9 on the first pair, 1e-6 on the second
+    np.testing.assert_allclose(reduced, exact.poles, rtol=3e-6)
+    np.testing.assert_allclose(
+        models[law].undamped_hz(theta, (1, 2, 4)), exact.undamped_hz[[0, 1, 3]], rtol=3e-6
+    )
+
+
+@pytest.mark.parametrize("law", POINTS)
+def test_slopes_are_differences_of_poles(models: dict[str, SupportModel], law: str) -> None:
+    theta = np.array(POINTS[law])
+    slopes = models[law].predict(theta, (1, 4)).slopes
+    h = 1e-3
+    for j in range(theta.size):
+        up, down = theta.copy(), theta.copy()
+        up[j], down[j] = theta[j] * np.exp(h), theta[j] * np.exp(-h)
+        difference = (models[law].predict(up, (1, 4)).poles - models[law].predict(down, (1, 4)).poles) / (
+            2 * h
+        )
+        # second order in h, and the dense solver's 1e-10 over h
+        np.testing.assert_allclose(slopes[:, j], difference, rtol=1e-4, atol=1e-4 * np.abs(difference).max())
+
+
+def test_untied_parameters_carry_their_place(jacket15: Assembly, steel: Rayleigh) -> None:
+    kv = family("kelvin-voigt")
+    two = support_model(jacket15, family=kv, rayleigh=steel, tie="horizontal-vertical")
+    assert [p.name for p in two.parameters] == ["k_horizontal", "c_horizontal", "k_vertical", "c_vertical"]
+    four = support_model(jacket15, family=kv, rayleigh=steel, tie="per-leg")
+    assert [p.name for p in four.parameters][:3] == ["k_foot_1", "c_foot_1", "k_foot_2"]
+
+
+def test_tied_and_untied_models_agree_when_the_values_do(
+    models: dict[str, SupportModel], jacket15: Assembly
+) -> None:
+    theta = np.array(POINTS["kelvin-voigt"])
+    tied = models["kelvin-voigt"]
+    untied = support_model(jacket15, family=tied.family, rayleigh=tied.rayleigh, tie="per-leg")
+    np.testing.assert_allclose(
+        untied.predict(np.tile(theta, 4), (1, 4)).poles, tied.predict(theta, (1, 4)).poles, rtol=1e-10
+    )
+
+
+def test_tower_modes_feel_the_vertical_springs(jacket15: Assembly, steel: Rayleigh) -> None:
+    """A jacket rocks on its legs: evidence gives k_v ±1 % against k_h ±77 %."""
+    model = support_model(jacket15, family=family("kelvin-voigt"), rayleigh=steel, tie="horizontal-vertical")
+    slopes = np.abs(model.predict(np.array([2.5e9, 7.6e8] * 2), (1, 2)).slopes)
+    assert (slopes[:, 2] > 10.0 * slopes[:, 0]).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"tie": "per_leg"}, "unknown tie .got 'per_leg'"),
+        ({"bounds": {"k": (1e9, 1e8)}}, "bounds are reversed"),
+        ({"bounds": {"kk": (1e8, 1e9)}}, "no such parameter of kelvin-voigt"),
+    ],
+)
+def test_bad_options(jacket15: Assembly, steel: Rayleigh, options: dict, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        support_model(jacket15, family=family("kelvin-voigt"), rayleigh=steel, **options)
+
+
+def test_unknown_law_suggests() -> None:
+    with pytest.raises(InputError, match="did you mean 'zener'"):
+        family("zenner")
