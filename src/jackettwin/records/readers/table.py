@@ -175,8 +175,8 @@ def _stated_rate(table: Table, said: Description) -> float | None:
 def _channel(name: str, own: ChannelEntry | None, given: ChannelEntry | None) -> tuple[Channel, float]:
     """Merge what the file and the description say; return the channel in SI and the factor to it."""
     merged = {**(own or ChannelEntry()).model_dump(exclude_none=True)}
-    merged |= (given or ChannelEntry()).model_dump(exclude_none=True)
-    unit = plain_unit(merged.get("unit", ""))
+    merged |= (given or ChannelEntry()).model_dump(exclude_unset=True)  # null says "not this"
+    unit = plain_unit(merged.get("unit") or "")
     kind = merged.get("quantity") or guess_quantity(name, unit)
     try:
         factor, si_unit = _factor(kind, unit)

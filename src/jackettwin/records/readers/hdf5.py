@@ -1,0 +1,110 @@
+"""HDF5 (and MATLAB 7.3, which is HDF5): datasets and attributes by the rules of named arrays.
+
+A dataset's attribute ``unit`` or ``units`` is its unit; scalar attributes of the file or of a group
+(the rate, the start) count as named scalars.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError, MissingExtra
+from jackettwin.records.readers.arrays import arrays_from_record, table_from_arrays
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jackettwin.records.readers.table import Table
+    from jackettwin.records.record import Record
+
+MOST_BYTES = 2**32
+"""Data sets announce their size before they are read; a record is smaller than this."""
+
+
+def read(path: Path) -> Table:
+    """Read every dataset.
+
+    Raises
+    ------
+    MissingExtra
+        If h5py is not installed.
+    """
+    h5py = _h5py()
+    arrays: dict[str, npt.NDArray[Any]] = {}
+    units: dict[str, str] = {}
+
+    def collect(name: str, item: Any) -> None:
+        if name.startswith("#"):  # MATLAB's own bookkeeping
+            return
+        for key, value in item.attrs.items():
+            if isinstance(item, h5py.Group):
+                arrays[f"{name}.{key}".lstrip(".")] = _array(value)
+            elif key in ("unit", "units"):
+                units[name] = str(_array(value).ravel()[0])
+        if isinstance(item, h5py.Dataset):
+            arrays[name] = _dataset(h5py, item)
+
+    with h5py.File(path, "r") as file:
+        collect("", file)
+        file.visititems(collect)
+    return table_from_arrays(arrays, units)
+
+
+def write(record: Record, path: Path) -> None:
+    """Write the named arrays as datasets.
+
+    Raises
+    ------
+    MissingExtra
+        If h5py is not installed.
+    """
+    h5py = _h5py()
+    with h5py.File(path, "w") as file:
+        for key, value in arrays_from_record(record).items():
+            text = value.dtype.kind == "U"
+            file.create_dataset(
+                key, data=value.astype(object) if text else value, dtype=h5py.string_dtype() if text else None
+            )
+
+
+def _h5py() -> Any:
+    try:
+        return import_module("h5py")
+    except ImportError:
+        raise MissingExtra(
+            "needs the optional package h5py", remedy="pip install 'jackettwin[hdf5]'"
+        ) from None
+
+
+def _dataset(h5py: Any, item: Any) -> npt.NDArray[Any]:
+    if item.dtype.itemsize * item.size > MOST_BYTES:
+        raise InputError("announces more data than a record holds", field=item.name, value=item.shape)
+    value = np.asarray(item[()])
+    if h5py.check_ref_dtype(item.dtype) is not None:  # MATLAB's cell array: one reference a cell
+        return np.array([_matlab_text(np.asarray(item.file[cell][()])) for cell in value.ravel()])
+    if _attribute(item, "MATLAB_class") == "char":
+        return np.array(_matlab_text(value))
+    return _array(value)
+
+
+def _attribute(item: Any, key: str) -> str:
+    return str(_array(item.attrs[key]).ravel()[0]) if key in item.attrs else ""
+
+
+def _array(value: Any) -> npt.NDArray[Any]:
+    """Return an array whose texts are str, not bytes or objects."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "SO":
+        return array
+    texts = [
+        text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text) for text in array.ravel()
+    ]
+    return np.array(texts, dtype=np.str_).reshape(array.shape)
+
+
+def _matlab_text(codes: npt.NDArray[Any]) -> str:
+    return "".join(chr(int(code)) for code in codes.ravel()) if codes.dtype.kind in "ui" else ""
