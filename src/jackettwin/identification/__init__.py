@@ -1,1 +1,25 @@
-"""Records to modes."""
+"""Records to modes: operational modal analysis with honest uncertainty."""
+
+from jackettwin.identification.automatic import identify
+from jackettwin.identification.estimate import (
+    Identification,
+    ModalEstimate,
+    Rejected,
+    Spectrum,
+    Stabilisation,
+)
+from jackettwin.identification.mac import mac
+from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.identification.ssi_cov import ssi_cov
+
+__all__ = [
+    "Identification",
+    "IdentificationSettings",
+    "ModalEstimate",
+    "Rejected",
+    "Spectrum",
+    "Stabilisation",
+    "identify",
+    "mac",
+    "ssi_cov",
+]

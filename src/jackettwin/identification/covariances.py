@@ -1,0 +1,112 @@
+"""Covariances of a record at many lags, by FFT, with missing samples left out."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import fft
+
+from jackettwin.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+LEAST_PAIRS = 0.2
+"""A lag must keep this share of its sample pairs, else gaps have eaten the record."""
+
+
+def covariances(y: FloatArray, n_lags: int) -> FloatArray:
+    r"""Return output covariances at lags 0 … ``n_lags``.
+
+    .. math:: R_i = \frac{1}{N_i} \sum_t y_{t+i}\, y_t^T
+
+    with :math:`N_i` the number of pairs without a missing sample (N−i when there is none). Thesis
+    eq. (6.3), transposed as eq. (6.6) requires.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one.
+    n_lags : int
+        Largest lag [samples].
+
+    Returns
+    -------
+    (n_lags + 1, n_channels, n_channels)
+
+    Raises
+    ------
+    InputError
+        If gaps leave too few sample pairs at some lag.
+    """
+    n_samples = y.shape[1]
+    valid = np.isfinite(y)
+    if valid.all():
+        pairs = (n_samples - np.arange(n_lags + 1))[:, None, None]
+        return np.asarray(_lag_products(y, y, n_lags) / pairs)
+    mask = valid.astype(float)
+    pairs = np.round(_lag_products(mask, mask, n_lags))
+    possible = (n_samples - np.arange(n_lags + 1))[:, None, None]
+    if np.any(pairs < LEAST_PAIRS * possible):
+        raise InputError(
+            "gaps leave too few pairs of samples",
+            field="data",
+            value=f"{float((pairs / possible).min()):.0%} of the pairs at one lag",
+            allowed=f"≥ {LEAST_PAIRS:.0%}",
+            remedy="drop the channels with the longest gaps or use another record",
+        )
+    filled = np.where(valid, y, 0.0)
+    return np.asarray(_lag_products(filled, filled, n_lags) / pairs)
+
+
+def block_covariances(y: FloatArray, n_lags: int, n_blocks: int) -> FloatArray:
+    """Return the covariances of consecutive blocks of the record, lags 0 … ``n_lags``.
+
+    Block b holds the products whose earlier sample lies in block b; the later one may lie in the
+    next. The mean over blocks is the covariance of the record up to its end.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one, which counts as zero with its pairs left out.
+
+    Returns
+    -------
+    (n_blocks, n_lags + 1, n_channels, n_channels)
+    """
+    n_channels, n_samples = y.shape
+    length = (n_samples - n_lags) // n_blocks
+    if length < 1:
+        raise InputError(
+            "record too short for its blocks",
+            field="blocks",
+            value=n_blocks,
+            allowed=f"≤ {max(n_samples - n_lags, 0)}",
+            remedy="use a longer record or fewer blocks",
+        )
+    valid = np.isfinite(y)
+    complete = bool(valid.all())
+    filled = y if complete else np.where(valid, y, 0.0)
+    out = np.empty((n_blocks, n_lags + 1, n_channels, n_channels))
+    for b in range(n_blocks):
+        early = slice(b * length, (b + 1) * length)
+        late = slice(b * length, (b + 1) * length + n_lags)
+        products = _lag_products(filled[:, late], filled[:, early], n_lags)
+        if complete:
+            out[b] = products / length
+        else:
+            mask = valid.astype(float)
+            pairs = np.round(_lag_products(mask[:, late], mask[:, early], n_lags))
+            out[b] = products / np.maximum(pairs, 1.0)
+    return out
+
+
+def _lag_products(late: FloatArray, early: FloatArray, n_lags: int) -> FloatArray:
+    """Return Σ_t late_{t+i} early_tᵀ for i = 0 … n_lags: (n_lags + 1, n_late, n_early)."""
+    size = fft.next_fast_len(max(late.shape[1], early.shape[1]) + n_lags, real=True)
+    spectrum_late = fft.rfft(late, size, axis=1)
+    spectrum_early = spectrum_late if late is early else fft.rfft(early, size, axis=1)
+    out = np.empty((n_lags + 1, late.shape[0], early.shape[0]))
+    for j in range(early.shape[0]):
+        product = spectrum_late * spectrum_early[j].conj()
+        out[:, :, j] = fft.irfft(product, size, axis=1)[:, : n_lags + 1].T
+    return out

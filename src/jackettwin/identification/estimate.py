@@ -1,0 +1,149 @@
+"""What an identification returns: modes, the poles they came from, the spectra and what was assumed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from jackettwin.records import Channel
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class ModalEstimate:
+    """One identified mode. What is not known is None.
+
+    Attributes
+    ----------
+    frequency_hz : float
+        |λ|/2π.
+    damping_ratio : float
+        −Re λ/|λ|.
+    mode_shape : (n_channels,) complex
+        In the units of the channels, 1 at the largest entry.
+    frequency_std_hz, damping_ratio_std : float or None
+    frequency_interval_95, damping_ratio_interval_95 : (low, high) or None
+        Calibrated on the logarithms of frequency and damping.
+    log_covariance : (2, 2) or None
+        Covariance of (ln f, ln ζ).
+    mode_shape_std : (n_channels,) or None
+        Standard deviation of each entry of the shape.
+    mpc, mpd_rad : float
+        Modal phase collinearity (1: real shape) and mean phase deviation of the SSI shape.
+    order_share : float
+        Share of the model orders in which the mode appears.
+    method : str
+        Where the numbers come from.
+    status : str
+        ``"ok"``, or a sentence on what to distrust.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    mode_shape: ComplexArray
+    mpc: float
+    mpd_rad: float
+    order_share: float
+    method: str = "ssi-cov"
+    status: str = "ok"
+    frequency_std_hz: float | None = None
+    damping_ratio_std: float | None = None
+    frequency_interval_95: tuple[float, float] | None = None
+    damping_ratio_interval_95: tuple[float, float] | None = None
+    log_covariance: FloatArray | None = None
+    mode_shape_std: FloatArray | None = None
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A candidate that was not accepted as a mode, and why."""
+
+    frequency_hz: float
+    damping_ratio: float | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class Stabilisation:
+    """All poles inside the band, of all model orders: flat arrays of the same length.
+
+    Attributes
+    ----------
+    order : (n_poles,) int
+    frequency_hz, damping_ratio : (n_poles,)
+    mode_shape : (n_poles, n_channels) complex
+    stable_frequency, stable_damping, stable_shape : (n_poles,) bool
+        Soft criteria towards the previous order, thesis eqs. (6.23)–(6.25).
+    cluster : (n_poles,) int
+        Position of the mode in ``Identification.modes``; −1 for none.
+    frequency_std_hz, damping_ratio_std : (n_poles,) or None
+    """
+
+    order: IntArray
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    mode_shape: ComplexArray
+    stable_frequency: BoolArray
+    stable_damping: BoolArray
+    stable_shape: BoolArray
+    cluster: IntArray
+    frequency_std_hz: FloatArray | None = None
+    damping_ratio_std: FloatArray | None = None
+
+    @property
+    def stable(self) -> BoolArray:
+        """Poles that meet all three soft criteria."""
+        return self.stable_frequency & self.stable_damping & self.stable_shape
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """One-sided power spectral densities by Welch's method, for plots.
+
+    Attributes
+    ----------
+    frequencies_hz : (n_frequencies,)
+    density : (n_channels, n_frequencies)
+        In the channel's unit squared per Hz.
+    singular_values : (n_channels, n_frequencies)
+        Of the spectral matrix of the channels scaled to unit variance [1/Hz], falling.
+    """
+
+    frequencies_hz: FloatArray
+    density: FloatArray
+    singular_values: FloatArray
+
+
+@dataclass(frozen=True)
+class ResolvedSettings:
+    """The numbers an identification was run with."""
+
+    lowest_frequency_hz: float
+    highest_frequency_hz: float
+    sample_rate_hz: float
+    block_rows: int
+    orders: tuple[int, ...]
+    lag_window_s: float
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Modes of a record, sorted by frequency, with all that is needed to judge them."""
+
+    records: tuple[str, ...]
+    channels: tuple[Channel, ...]
+    modes: tuple[ModalEstimate, ...]
+    rejected: tuple[Rejected, ...]
+    stabilisation: Stabilisation
+    spectrum: Spectrum
+    settings: ResolvedSettings
+    duration_s: float
+    warnings: tuple[str, ...] = ()

@@ -1,0 +1,72 @@
+"""Spectral densities, their singular values, and the lowest frequency that stands out."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage, signal
+
+from jackettwin.identification.estimate import Spectrum
+
+FloatArray = npt.NDArray[np.float64]
+
+SEGMENTS = 8
+"""Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""
+
+CLEAR_PEAK = 8.0
+"""A peak counts when it stands this much above the median of the octave around it."""
+
+FEWEST_CYCLES = 20.0
+"""A frequency counts when the record holds this many cycles of it."""
+
+
+def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
+    """Return the spectra of a record; samples that are missing count as zero.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one.
+    """
+    valid = np.isfinite(y)
+    filled = np.where(valid, y, 0.0)
+    n_channels, n_samples = y.shape
+    length = segment_length or max(n_samples // SEGMENTS, 16)
+    segments = _segments(filled, length)
+    window = signal.get_window("hann", length)
+    x = np.fft.rfft(segments * window, axis=-1)
+    matrix = np.einsum("asf,bsf->fab", x, x.conj()) / segments.shape[1]
+    matrix *= 2.0 / (sample_rate_hz * np.sum(window**2))
+    share = np.maximum(valid.mean(axis=1), 1e-3)
+    matrix /= np.sqrt(np.multiply.outer(share, share))
+    density = np.asarray(np.einsum("faa->af", matrix).real)
+    scale = np.sqrt(np.maximum(np.sum(filled**2, axis=1) / (n_samples * share), np.finfo(float).tiny))
+    singular = np.asarray(np.linalg.svd(matrix / np.multiply.outer(scale, scale), compute_uv=False).T)
+    f = np.arange(length // 2 + 1) * (sample_rate_hz / length)
+    return Spectrum(f, density, singular)
+
+
+def lowest_peak_hz(spectrum: Spectrum) -> float | None:
+    """Return the lowest frequency at which the largest singular value has a clear peak."""
+    f = spectrum.frequencies_hz
+    s = spectrum.singular_values[0]
+    candidates, _ = signal.find_peaks(s)
+    lowest = FEWEST_CYCLES / SEGMENTS * f[1]
+    for k in candidates:
+        around = (f > f[k] / np.sqrt(2.0)) & (f < f[k] * np.sqrt(2.0))
+        wider = (f > f[k] / 2.0) & (f < f[k] * 2.0)
+        prominent = s[k] == s[around].max() and s[k] > CLEAR_PEAK * np.median(s[wider])
+        if f[k] >= lowest and prominent and s[k] > 1e-4 * s[1:].max():
+            return float(f[k])
+    return None
+
+
+def running_median(values: FloatArray, width: int) -> FloatArray:
+    """Return the running median along the last axis, odd ``width``, ends reflected."""
+    size = [1] * (values.ndim - 1) + [width | 1]
+    return np.asarray(ndimage.median_filter(values, size=size, mode="reflect"))
+
+
+def _segments(y: FloatArray, length: int) -> FloatArray:
+    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)
+    return np.asarray(windows[:, :: max(length // 2, 1)])

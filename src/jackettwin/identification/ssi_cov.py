@@ -1,0 +1,175 @@
+"""Covariance-driven stochastic subspace identification: poles at every model order.
+
+One factorisation serves all orders: the observability matrix of order n is the first n columns of
+the largest one, and its shift equation is solved with the leading blocks of one QR.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+Weighting = Literal["br", "cva"]
+StateMatrix = Literal["shift", "one-lag"]
+
+
+@dataclass(frozen=True)
+class Subspace:
+    """Observability matrices of all orders up to the largest, and their state matrices.
+
+    Attributes
+    ----------
+    observability : (n_rows, n_max)
+        Column-nested: order n uses the first n columns.
+    n_channels : int
+    upper, right : (n_max, n_max)
+        Upper triangle and right side of the equation for the state matrix; order n uses the leading blocks.
+    """
+
+    observability: FloatArray
+    n_channels: int
+    upper: FloatArray
+    right: FloatArray
+
+    def state_matrix(self, order: int) -> FloatArray:
+        """Return A of the given order, (order, order)."""
+        return np.asarray(
+            linalg.solve_triangular(
+                self.upper[:order, :order], self.right[:order, :order], check_finite=False
+            )
+        )
+
+    def output_matrix(self, order: int) -> FloatArray:
+        """Return C of the given order, (n_channels, order)."""
+        return self.observability[: self.n_channels, :order]
+
+
+@dataclass(frozen=True)
+class OrderPoles:
+    """Poles of one model order: one of each conjugate pair, positive frequency, stable or not."""
+
+    order: int
+    eigenvalues: ComplexArray
+    """Of the discrete state matrix, (n_poles,)."""
+    shapes: ComplexArray
+    """(n_poles, n_channels)."""
+
+
+def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1) -> FloatArray:
+    """Return the block Hankel matrix with block (a, b) = R_{first_lag + a + b}.
+
+    Thesis eq. (6.4) with its block columns reversed, which changes nothing below. Lag 0, which
+    carries the measurement noise, is left out.
+
+    Parameters
+    ----------
+    covariances : (n_lags + 1, n_channels, n_references)
+        Lags 0 … at least ``first_lag + 2·block_rows − 2``.
+    """
+    _, n_channels, n_references = covariances.shape
+    lag = first_lag + np.add.outer(np.arange(block_rows), np.arange(block_rows))
+    blocks = covariances[lag]
+    size = (block_rows * n_channels, block_rows * n_references)
+    return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size))
+
+
+def ssi_cov(
+    covariances: FloatArray,
+    *,
+    block_rows: int,
+    max_order: int,
+    weighting: Weighting = "br",
+    state_matrix: StateMatrix = "shift",
+) -> Subspace:
+    r"""Factorise the covariances once for all model orders.
+
+    .. math:: W_1 H W_2^T = U \Sigma V^T, \quad O = W_1^{-1} U_1 \Sigma_1^{1/2},
+              \quad A = (O^\uparrow)^\dagger O^\downarrow
+
+    Thesis eqs. (6.10)–(6.17); Peeters & De Roeck 1999. Weighting ``"br"`` takes unit weights, ``"cva"``
+    the inverse Cholesky factors of the covariances of future and past. ``state_matrix="one-lag"``
+    takes A from the Hankel matrix shifted by one lag instead of from the shift structure.
+
+    Parameters
+    ----------
+    covariances : (2·block_rows + 1, n_channels, n_channels)
+        Lags 0 … 2·block_rows.
+    """
+    n_channels = covariances.shape[1]
+    h = hankel(covariances, block_rows)
+    w1_inverse, w2_inverse = _weights(covariances, block_rows, weighting)
+    weighted = _divide(h, w1_inverse, w2_inverse)
+    u, s, vt = linalg.svd(weighted, check_finite=False)
+    n = min(max_order, len(s) - n_channels)
+    u1, root = u[:, :n], np.sqrt(s[:n])
+    observability = u1 * root if w1_inverse is None else w1_inverse @ (u1 * root)
+    if state_matrix == "one-lag":
+        shifted = _divide(hankel(covariances, block_rows, 2), w1_inverse, w2_inverse)
+        right = np.asarray((u1.T @ shifted @ vt[:n].T) / np.outer(root, root))
+        return Subspace(observability, n_channels, np.eye(n), right)
+    q, r = linalg.qr(observability[:-n_channels], mode="economic", check_finite=False)
+    return Subspace(observability, n_channels, np.asarray(r), np.asarray(q.T @ observability[n_channels:]))
+
+
+def order_poles(subspace: Subspace, orders: Sequence[int]) -> list[OrderPoles]:
+    """Return the oscillating poles of each model order and their shapes at the sensors."""
+    out = []
+    for order in orders:
+        eigenvalues, vectors = linalg.eig(subspace.state_matrix(order), check_finite=False)
+        keep = eigenvalues.imag > 0.0
+        shapes = (subspace.output_matrix(order) @ vectors[:, keep]).T
+        out.append(OrderPoles(order, eigenvalues[keep], shapes))
+    return out
+
+
+def frequency_and_damping(eigenvalues: ComplexArray, sample_rate_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Return f = |λ|/2π [Hz] and ζ = −Re λ/|λ| of discrete eigenvalues, λ = ln(μ)·sample rate.
+
+    Thesis eqs. (6.21)–(6.22).
+    """
+    lam = np.log(eigenvalues) * sample_rate_hz
+    size = np.abs(lam)
+    return size / (2.0 * np.pi), -lam.real / size
+
+
+def _weights(
+    covariances: FloatArray, block_rows: int, weighting: Weighting
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """Return W1⁻¹ and W2⁻¹, lower triangular (None for unit weights)."""
+    if weighting == "br":
+        return None, None
+    lag = np.subtract.outer(np.arange(block_rows), np.arange(block_rows))
+    both_signs = np.where((lag >= 0)[:, :, None, None], covariances[np.abs(lag)], 0.0)
+    negative = (lag < 0)[:, :, None, None]
+    both_signs = np.where(negative, covariances[np.abs(lag)].swapaxes(2, 3), both_signs)
+    size = block_rows * covariances.shape[1]
+    future = both_signs.transpose(0, 2, 1, 3).reshape(size, size)
+    past = both_signs.swapaxes(0, 1).transpose(0, 2, 1, 3).reshape(size, size)
+    return _root(future), _root(past)
+
+
+def _root(matrix: FloatArray) -> FloatArray:
+    """Return the Cholesky factor of a covariance matrix that may be slightly indefinite."""
+    lift = 1e-10 * float(np.trace(matrix)) / len(matrix)
+    while True:
+        try:
+            return np.asarray(linalg.cholesky(matrix + lift * np.eye(len(matrix)), lower=True))
+        except linalg.LinAlgError:
+            lift *= 10.0
+
+
+def _divide(h: FloatArray, w1_inverse: FloatArray | None, w2_inverse: FloatArray | None) -> FloatArray:
+    if w1_inverse is None or w2_inverse is None:
+        return h
+    left = linalg.solve_triangular(w1_inverse, h, lower=True)
+    return np.asarray(linalg.solve_triangular(w2_inverse, left.T, lower=True).T)
