@@ -2,8 +2,10 @@
 
 Damped modes: the first-order system of the thesis, (7.2) and (7.5), is never formed. Arnoldi iteration
 works on its inverse about a small positive real shift σ, where F(σ) is real, symmetric and positive definite
-for any passive support; each eigenpair is then refined on the non-linear F(λ)x = 0 itself. A springpot
-starts from a Prony series and is refined on its own law.
+for any passive support. What it found is projected out and it runs again, until nothing is left inside the
+disc asked for: that is what finds multiple poles. Each pole, or cluster of nearly equal poles, is then
+refined on the non-linear F(λ)x = 0 itself, which keeps their number. A springpot starts from a Prony series
+and is refined on its own law.
 """
 
 from __future__ import annotations
@@ -17,18 +19,25 @@ import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from scipy.sparse.csgraph import connected_components
 
-from jackettwin.errors import NumericalError
+from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.system import IntArray, Matrix, Pencil, System
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Pair = tuple[complex, ComplexArray]
+"""A pole and its shape on the pencil's DOFs."""
 
 _SMALL = 300
 """State vectors shorter than this are solved densely: Arnoldi needs room."""
 _REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
+_AT_REST = 1e-10
+"""A pole that a Newton step moves less than this (relative) is found."""
+_CLUSTER = 1e-5
+"""Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
 
 @dataclass(frozen=True)
@@ -102,27 +111,30 @@ def undamped_modes(system: System, number: int) -> UndampedModes:
 def damped_modes(system: System, *, below_hz: float) -> DampedModes:
     """Return every pole with |λ|/2π below ``below_hz``: oscillating modes and real poles.
 
+    The real poles of a springpot are a continuum, the law's branch cut; none is listed.
+
     Raises
     ------
+    InputError
+        If ``below_hz`` is not positive.
     NumericalError
-        If the iteration does not converge or a refined pole fails its residual.
+        If the iteration does not converge or a refined pole does not come to rest.
     """
-    pencil = system.pencil
-    radius = 2.0 * pi * below_hz
+    if not 0.0 < below_hz < np.inf:
+        raise InputError("must be positive", field="below_hz", value=below_hz, allowed="> 0")
+    pencil, radius = system.pencil, 2.0 * pi * below_hz
     start = _finite(pencil, below_hz)
-    values, vectors = _poles_within(start, radius)
-    exact = start is pencil
-    keep = values.imag > -_REAL * np.abs(values)
-    starts = zip(values[keep], vectors[:, keep].T, strict=True)
-    pairs = [_refine(pencil, value, x) for value, x in starts if exact or value.imag > 0.0]
-    pairs = _distinct([pair for pair in pairs if abs(pair[0]) <= radius])
-    oscillating = [p for p in pairs if p[0].imag > _REAL * abs(p[0])]
-    real = [p[0].real for p in pairs if abs(p[0].imag) <= _REAL * abs(p[0])] if exact else []
+    values, vectors = _poles_within(start, radius * (1.0 + _CLUSTER))
+    pairs: list[Pair] = []
+    for members in _clusters(values):
+        pairs += _refined(pencil, values[members], vectors[:, members], exact=start is pencil)
+    pairs = sorted((pair for pair in pairs if abs(pair[0]) <= radius), key=lambda pair: abs(pair[0]))
+    oscillating = [pair for pair in pairs if pair[0].imag > _REAL * abs(pair[0])]
     shapes = np.array([x for _, x in oscillating], dtype=np.complex128).reshape(-1, pencil.n).T
     return DampedModes(
-        np.array([v for v, _ in oscillating], dtype=np.complex128),
+        np.array([value for value, _ in oscillating], dtype=np.complex128),
         system.expand(shapes),
-        np.array(sorted(real, key=abs)),
+        np.array([value.real for value, _ in pairs if abs(value.imag) <= _REAL * abs(value)]),
     )
 
 
@@ -153,7 +165,7 @@ def _finite(pencil: Pencil, below_hz: float) -> Pencil:
     if all(isinstance(group.law, Prony) for group in pencil.groups):
         return pencil
     laws = [
-        prony_fit(group.law, 1e-4 * below_hz, 1e3 * below_hz, per_decade=3)
+        prony_fit(group.law, 1e-4 * below_hz, 1e3 * below_hz)
         if isinstance(group.law, Springpot)
         else group.law
         for group in pencil.groups
@@ -198,49 +210,73 @@ def _damping(pencil: Pencil) -> Matrix:
 
 
 def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexArray]:
-    """Return all poles with |λ| ≤ radius and their displacement parts (n, n_poles)."""
-    n, branches = pencil.n, maxwell_branches(pencil)
-    n_internal = sum(dofs.size for _, _, _, dofs in branches)
-    size = 2 * n + n_internal
-    if size <= _SMALL:
-        values, vectors = np.linalg.eig(state_matrix(pencil))
-        return values, vectors[:n]
-    # two shifts: what one Arnoldi run might miss of a multiple pole, the other finds
-    found = [_arnoldi(pencil, branches, shift * radius, radius, size) for shift in (0.02, 0.05)]
-    return np.concatenate([v for v, _ in found]), np.concatenate([x for _, x in found], axis=1)
+    """Return all poles with |λ| ≤ radius and Im λ ≥ 0 and their displacement parts (n, n_poles).
+
+    Of a nearly real pair both are returned: rounding may have made it from two real poles.
+    """
+    sigma = 0.02 * radius
+    inverse, size = _inverse(pencil, sigma)
+    Q = np.eye(size) if size <= _SMALL else _invariant_subspace(inverse, sigma, radius, size)
+    theta, Y = np.linalg.eig(Q.T @ np.column_stack([inverse.matvec(q) for q in Q.T]))
+    keep = _inside(theta, sigma, radius)
+    values = (sigma + 1.0 / theta[keep]).astype(np.complex128)
+    upper = values.imag >= -_CLUSTER * np.abs(values)
+    return values[upper], Q[: pencil.n] @ Y[:, keep][:, upper]
 
 
-def _arnoldi(
-    pencil: Pencil,
-    branches: list[Branch],
-    sigma: float,
-    radius: float,
-    size: int,
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return the poles nearest to σ that fill the disc |λ| ≤ radius."""
-    operator = _inverse(pencil, branches, sigma, size)
-    k = min(60, size - 2)
+def _inside(theta: ComplexArray, sigma: float, radius: float) -> npt.NDArray[np.bool_]:
+    """Tell which eigenvalues θ = 1/(λ − σ) of the inverse belong to |λ| ≤ radius."""
+    return np.asarray((np.abs(theta) > 0.0) & (np.abs(1.0 + sigma * theta) <= radius * np.abs(theta)))
+
+
+def _invariant_subspace(
+    inverse: spla.LinearOperator, sigma: float, radius: float, size: int
+) -> FloatArray:
+    """Return an orthonormal basis of the states of all poles with |λ| ≤ radius.
+
+    Arnoldi from one vector sees one state of a multiple pole. So it runs again beside what is already known,
+    from another start, until all it finds lies outside.
+    """
+    Q, k = np.zeros((size, 0)), 60
     while True:
+        known = Q
+
+        def rest(b: FloatArray, known: FloatArray = known) -> FloatArray:
+            y = inverse.matvec(b - known @ (known.T @ b))
+            return np.asarray(y - known @ (known.T @ y))
+
+        k = min(k, size - Q.shape[1] - 2)
+        if k < 1:
+            return np.eye(size)
         try:
             theta, x = spla.eigs(
-                operator, k=k, which="LM", v0=_start(size), ncv=min(size, 2 * k + 20), tol=0.0, maxiter=2000
-            )
+                spla.LinearOperator((size, size), matvec=rest, dtype=np.float64),
+                k=k, which="LM", v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=0.0, maxiter=2000,
+            )  # fmt: skip
         except (spla.ArpackError, RuntimeError) as error:
             raise NumericalError(f"damped modes did not converge: {error}") from error
-        values = sigma + 1.0 / theta
-        if np.abs(values - sigma).max() > radius + sigma or k >= size - 2:
-            inside = np.abs(values) <= radius
-            return values[inside], x[: pencil.n, inside]
-        k = min(2 * k, size - 2)
+        found = _inside(theta, sigma, radius)
+        if not found.any():
+            return Q
+        Q = _extended(Q, x[:, found])
+        k = 60 if found.all() else 8
 
 
-def _inverse(
-    pencil: Pencil,
-    branches: list[Branch],
-    sigma: float,
-    size: int,
-) -> spla.LinearOperator:
-    """Return (A − σI)⁻¹ of the state matrix A through one factorisation of F(σ)."""
+def _extended(Q: FloatArray, x: ComplexArray) -> FloatArray:
+    """Return the basis with the real and imaginary parts of ``x`` added, as far as they are independent."""
+    parts = np.hstack([x.real, x.imag])
+    parts = parts - Q @ (Q.T @ parts)
+    u, s, _ = la.svd(parts, full_matrices=False)
+    # what is nearly dependent would add noise; the next run finds it cleanly
+    new = u[:, s > 1e-6 * s[0]]
+    new = new - Q @ (Q.T @ new)
+    return np.hstack([Q, np.linalg.qr(new)[0]])
+
+
+def _inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, int]:
+    """Return (A − σI)⁻¹ of the state matrix A through one factorisation of F(σ), and its size."""
+    branches = maxwell_branches(pencil)
+    size = 2 * pencil.n + sum(branch.dofs.size for branch in branches)
     n, M, C = pencil.n, pencil.M, _damping(pencil)
     F = sp.csc_array(pencil.F(sigma))
     lu = spla.splu(sp.csc_matrix((np.ascontiguousarray(F.data.real), F.indices, F.indptr), shape=F.shape))
@@ -262,52 +298,65 @@ def _inverse(
             at += dofs.size
         return np.concatenate(parts)
 
-    return spla.LinearOperator((size, size), matvec=solve, dtype=np.float64)
+    return spla.LinearOperator((size, size), matvec=solve, dtype=np.float64), size
 
 
-def _refine(pencil: Pencil, value: complex, x: ComplexArray, steps: int = 12) -> tuple[complex, ComplexArray]:
-    """Return an eigenpair of F by non-linear inverse iteration (Newton on F(λ)x = 0, wᴴx = 1)."""
-    real = abs(value.imag) <= _REAL * abs(value)
-    value = complex(value.real, 0.0) if real else value
-    x = x / np.linalg.norm(x)
+def _clusters(values: ComplexArray) -> list[IntArray]:
+    """Return groups of poles that lie too close to be refined one by one."""
+    near = np.abs(values[:, None] - values) <= _CLUSTER * np.abs(values)
+    n_groups, group = connected_components(sp.csr_array(near), directed=False)
+    return [np.flatnonzero(group == g) for g in range(n_groups)]
+
+
+def _refined(pencil: Pencil, values: ComplexArray, x: ComplexArray, *, exact: bool) -> list[Pair]:
+    """Return the poles of one cluster on the pencil itself; ``exact`` if the starts come from its own laws.
+
+    Raises
+    ------
+    NumericalError
+        If a pole of the pencil does not come to rest where Arnoldi found it.
+    """
+    if not values.imag.any():  # real poles are as exact as Arnoldi made them; the start law's are none
+        return [(complex(v), y) for v, y in zip(values, x.T, strict=True)] if exact else []
+    found, y, at_rest = _newton(pencil, values, x)
+    moved = np.abs(found.mean() - values.mean()) > (1e-6 if exact else 0.1) * np.abs(values.mean())
+    if at_rest and not moved:
+        return list(zip(map(complex, found), y.T, strict=True))
+    if exact:
+        raise NumericalError(f"the pole near λ = {values.mean():.6g} rad/s could not be refined")
+    return []  # an artefact of the start law near the branch cut
+
+
+def _newton(
+    pencil: Pencil, values: ComplexArray, x: ComplexArray, steps: int = 20
+) -> tuple[ComplexArray, ComplexArray, bool]:
+    r"""Refine a cluster of poles together: inverse iteration and Rayleigh–Ritz on F(λ) about their mean.
+
+    With one pole this is Newton's method; F is symmetric, so that
+    :math:`δ = -u^T F u / u^T F' u` with :math:`u = F^{-1} F' x` converges cubically.
+    """
+    last = np.inf
     for _ in range(steps):
-        F, dF = pencil.F(value), pencil.dF(value)
+        mean = complex(values.mean())
+        F, dF = pencil.F(mean), pencil.dF(mean)
         try:
-            u = _solve(F, dF @ x)
-        except RuntimeError:  # F(λ) is singular to the last digit: λ is exact
+            x = spla.splu(sp.csc_matrix(F)).solve(dF @ x)
+        except RuntimeError:  # F is singular to the last digit: the vectors are as good as they get
+            pass
+        Q = np.linalg.qr(x)[0]
+        delta, y = la.eig(-(Q.T @ (F @ Q)), Q.T @ (dF @ Q))
+        values, x = mean + delta, Q @ y
+        change = abs(values.mean() - mean) / abs(mean)
+        if change <= _AT_REST and change >= 0.1 * last:  # only rounding is left
             break
-        step = 1.0 / np.vdot(x, u)
-        value = value - (complex(step.real, 0.0) if real else complex(step))
-        x = u / np.linalg.norm(u)
-        if abs(step) <= 1e-13 * abs(value):
-            break
-    return value, x
-
-
-def _solve(F: sp.csc_array, b: ComplexArray) -> ComplexArray:
-    if sp.issparse(F):
-        return np.asarray(spla.splu(sp.csc_matrix(F)).solve(b))
-    return np.asarray(la.solve(F, b))
-
-
-def _distinct(pairs: list[tuple[complex, ComplexArray]]) -> list[tuple[complex, ComplexArray]]:
-    """Return the pairs by |λ|, one of each: equal poles are kept apart if their vectors are independent."""
-    kept: list[tuple[complex, ComplexArray]] = []
-    for value, x in sorted(pairs, key=lambda pair: abs(pair[0])):
-        same = [y for other, y in kept if abs(other - value) <= 1e-8 * abs(value)]
-        if same:
-            basis = la.orth(np.array(same).T)
-            rest = x - basis @ (basis.conj().T @ x)
-            if np.linalg.norm(rest) < 1e-3:
-                continue
-        kept.append((value, x))
-    return kept
+        last = change
+    return values, x / np.linalg.norm(x, axis=0), change <= _AT_REST
 
 
 def _dense(matrix: sp.csc_array | FloatArray) -> FloatArray:
     return np.asarray(matrix.toarray() if sp.issparse(matrix) else matrix)
 
 
-def _start(n: int) -> FloatArray:
+def _start(n: int, seed: int = 0) -> FloatArray:
     """Return a fixed start vector with something of every mode in it."""
-    return np.random.default_rng(0).standard_normal(n)
+    return np.random.default_rng(seed).standard_normal(n)

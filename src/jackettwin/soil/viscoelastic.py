@@ -263,24 +263,29 @@ def hysteresis(
 
 
 def prony_fit(law: Springpot, low_hz: float, high_hz: float, per_decade: int = 4) -> Prony:
-    """Return branches that follow a springpot between two frequencies (a start for exact solvers).
+    r"""Return branches that follow a springpot between two frequencies (a start for exact solvers).
 
-    From the springpot's continuous relaxation spectrum sin(πα)/π · k (ω/ω₀)^α d ln ω, sampled in log ω.
+    The trapezoidal rule in ln ω on the springpot's continuous relaxation spectrum
+
+    .. math:: D(s) = \frac{\sin πα}{π} k \int (ω/ω_0)^α \frac{s}{s + ω} \, d\ln ω
+
+    converges exponentially. The spectrum below is lumped into one slow branch with its weight and mean
+    corner, the spectrum above into a dashpot.
     """
-    decades = np.log10(high_hz / low_hz)
-    omega, step = np.linspace(
-        np.log(2.0 * pi * low_hz), np.log(2.0 * pi * high_hz), int(per_decade * decades) + 1, retstep=True
-    )
-    omega = np.exp(omega)
-    weights = np.sin(pi * law.alpha) / pi * law.k * (omega / law.omega0) ** law.alpha * step
-    # what the spectrum below the lowest corner adds is a spring in this band
-    slowest = float(np.exp(np.log(omega[0]) - 0.5 * step))
-    below = (
-        np.sin(pi * law.alpha) / (pi * law.alpha) * law.k * (slowest / law.omega0) ** law.alpha
-        if law.alpha
-        else law.k
-    )
-    return Prony(k0=float(below), k=tuple(map(float, weights)), tau=tuple(float(v) for v in 1.0 / omega))
+    alpha = law.alpha
+    if alpha == 0.0:
+        return Prony(k0=law.k)
+    number = int(np.ceil(per_decade * np.log10(high_hz / low_hz))) + 1
+    log_omega, step = np.linspace(np.log(2.0 * pi * low_hz), np.log(2.0 * pi * high_hz), number, retstep=True)
+    slowest, fastest = np.exp(log_omega[0] - 0.5 * step), np.exp(log_omega[-1] + 0.5 * step)
+
+    def density(omega: FloatArray) -> FloatArray:
+        return np.asarray(np.sin(pi * alpha) / pi * law.k * (omega / law.omega0) ** alpha)
+
+    omega = np.concatenate([[slowest * alpha / (1.0 + alpha)], np.exp(log_omega)])
+    k = np.concatenate([[density(slowest) / alpha], density(omega[1:]) * step])
+    c = float(density(fastest)) / ((1.0 - alpha) * fastest)
+    return Prony(c=c, k=tuple(map(float, k)), tau=tuple(map(float, 1.0 / omega)))
 
 
 def _step_response(A: FloatArray, b: FloatArray, x0: FloatArray, t: FloatArray) -> FloatArray:
