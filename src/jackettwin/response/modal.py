@@ -90,22 +90,69 @@ def undamped_modes(system: System, number: int) -> UndampedModes:
 
     Raises
     ------
+    InputError
+        If the structure is not stable under its own weight.
     NumericalError
         If the iteration does not converge.
     """
-    K, M = system.pencil.static_stiffness(), system.pencil.M
-    number = min(number, system.pencil.n)
-    if system.pencil.n <= max(_SMALL // 2, 3 * number):
-        w, x = la.eigh(K.toarray(), M.toarray(), subset_by_index=[0, number - 1])
+    pencil = system.pencil
+    w, x = lowest_modes(pencil.static_stiffness(), pencil.M, number, shift=_below_zero(pencil.K, pencil.M))
+    return UndampedModes(w, system.expand(x))
+
+
+def lowest_modes(
+    K: Matrix, M: Matrix, number: int, *, shift: float | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the lowest ω [rad/s] and mass-normalised φ of Kφ = ω²Mφ; sparse matrices, M may be singular.
+
+    Parameters
+    ----------
+    shift : float, optional
+        A small negative number: K − shift·M must be definite for free-floating structures too.
+
+    Raises
+    ------
+    InputError
+        If K has a negative eigenvalue.
+    NumericalError
+        If the iteration does not converge.
+    """
+    n = int(K.shape[0])
+    number = min(number, n)
+    sigma = _below_zero(K, M) if shift is None else shift
+    if n <= max(_SMALL // 2, 3 * number):
+        w, x = _dense_modes(_dense(K), _dense(M), sigma, number)
     else:
-        # a shift just below zero keeps K − σM definite for free-floating structures too
-        scale = float(K.diagonal().sum() / M.diagonal().sum())
         try:
-            w, x = spla.eigsh(K, k=number, M=M, sigma=-1e-9 * scale, v0=_start(system.pencil.n), tol=0.0)
+            w, x = spla.eigsh(sp.csc_matrix(K), k=number, M=M, sigma=sigma, v0=_start(n), tol=0.0)
         except (spla.ArpackError, RuntimeError) as error:
             raise NumericalError(f"undamped modes did not converge: {error}") from error
+    if w.min(initial=0.0) < 10.0 * sigma:
+        raise _unstable()
     order = np.argsort(w)
-    return UndampedModes(np.sqrt(np.maximum(w[order], 0.0)), system.expand(x[:, order]))
+    return np.sqrt(np.maximum(w[order], 0.0)), x[:, order]
+
+
+def _below_zero(K: Matrix, M: Matrix) -> float:
+    return -1e-9 * float(K.diagonal().sum() / M.diagonal().sum())
+
+
+def _dense_modes(K: FloatArray, M: FloatArray, sigma: float, number: int) -> tuple[FloatArray, FloatArray]:
+    """Return (ω², x) of the lowest modes from M x = μ (K − σM) x, μ = 1/(ω² − σ)."""
+    try:
+        mu, x = la.eigh(M, K - sigma * M, subset_by_index=[M.shape[0] - number, M.shape[0] - 1])
+    except la.LinAlgError:
+        raise _unstable() from None
+    moving = mu > 1e-14 * mu[-1]
+    return sigma + 1.0 / mu[moving], x[:, moving] / np.sqrt(mu[moving])
+
+
+def _unstable() -> InputError:
+    return InputError(
+        "the structure falls over: its stiffness with the weight on it is not positive",
+        field="structure",
+        remedy="stiffen the supports or the structure, lower the masses, or leave gravity out",
+    )
 
 
 def damped_modes(system: System, *, below_hz: float) -> DampedModes:
@@ -142,7 +189,20 @@ def state_matrix(pencil: Pencil) -> FloatArray:
     """Return the dense state matrix on [q, q̇, y] (thesis (7.2), (7.5)) of a pencil whose laws are all finite.
 
     The internal variables are displacements, τ ẏ = q − y, so that all states have one unit.
+
+    Raises
+    ------
+    InputError
+        If a law has no finite number of states.
     """
+    if not all(isinstance(group.law, Prony) for group in pencil.groups):
+        raise InputError(
+            "a springpot has no finite state",
+            field="law",
+            value="springpot",
+            allowed="elastic, kelvin-voigt, zener, maxwell, maxwell-3",
+            remedy="use the damped modes of the full model, or a maxwell law instead",
+        )
     n, branches = pencil.n, maxwell_branches(pencil)
     M, K, C = _dense(pencil.M), _dense(_instant_stiffness(pencil)), _dense(_damping(pencil))
     size = 2 * n + sum(dofs.size for _, _, _, dofs in branches)
@@ -229,9 +289,7 @@ def _inside(theta: ComplexArray, sigma: float, radius: float) -> npt.NDArray[np.
     return np.asarray((np.abs(theta) > 0.0) & (np.abs(1.0 + sigma * theta) <= radius * np.abs(theta)))
 
 
-def _invariant_subspace(
-    inverse: spla.LinearOperator, sigma: float, radius: float, size: int
-) -> FloatArray:
+def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: float, size: int) -> FloatArray:
     """Return an orthonormal basis of the states of all poles with |λ| ≤ radius.
 
     Arnoldi from one vector sees one state of a multiple pole. So it runs again beside what is already known,
@@ -251,7 +309,8 @@ def _invariant_subspace(
         try:
             theta, x = spla.eigs(
                 spla.LinearOperator((size, size), matvec=rest, dtype=np.float64),
-                k=k, which="LM", v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=0.0, maxiter=2000,
+                k=k, which="LM", v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=0.0,
+                maxiter=2000,
             )  # fmt: skip
         except (spla.ArpackError, RuntimeError) as error:
             raise NumericalError(f"damped modes did not converge: {error}") from error
@@ -304,7 +363,7 @@ def _inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, int]:
 def _clusters(values: ComplexArray) -> list[IntArray]:
     """Return groups of poles that lie too close to be refined one by one."""
     near = np.abs(values[:, None] - values) <= _CLUSTER * np.abs(values)
-    n_groups, group = connected_components(sp.csr_array(near), directed=False)
+    n_groups, group = connected_components(near.astype(float), directed=False)
     return [np.flatnonzero(group == g) for g in range(n_groups)]
 
 

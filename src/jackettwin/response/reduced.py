@@ -17,8 +17,9 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError
-from jackettwin.response.modal import UndampedModes
+from jackettwin.response.modal import UndampedModes, lowest_modes
 from jackettwin.response.system import Pencil, System
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,12 +38,16 @@ class Reduced:
     basis : (assembly.n_dof, n) shapes of the coordinates
     boundary : (n_boundary,) DOFs of the assembly
     fixed_interface_hz : (n_modes,)
+    pinned : UndampedModes
+        With the supports' translations held, in reduced coordinates: they count the modes. Other boundary
+        DOFs (a nacelle's dashpot) are free in them.
     """
 
     pencil: Pencil
     basis: FloatArray
     boundary: IntArray
     fixed_interface_hz: FloatArray
+    pinned: UndampedModes
 
 
 def craig_bampton(system: System, *, n_modes: int) -> Reduced:
@@ -60,31 +65,40 @@ def craig_bampton(system: System, *, n_modes: int) -> Reduced:
         )
     b = np.unique(np.concatenate([group.dofs for group in full.groups]))
     i = np.setdiff1d(np.arange(full.n), b)
-    n_modes = min(n_modes, i.size - 2)
     K, M = sp.csc_array(full.K), sp.csc_array(full.M)
-    K_ii, M_ii = sp.csc_matrix(K[i][:, i]), sp.csc_matrix(M[i][:, i])
-    constraint = -spla.splu(K_ii).solve(K[i][:, b].toarray())
-    w, phi = spla.eigsh(K_ii, k=n_modes, M=M_ii, sigma=0.0, v0=np.ones(i.size), tol=0.0)
-    order = np.argsort(w)
-    T = np.zeros((full.n, b.size + n_modes))
+    K_ii = sp.csc_array(K[i][:, i])
+    constraint = -spla.splu(sp.csc_matrix(K_ii)).solve(K[i][:, b].toarray())
+    omega, phi = lowest_modes(K_ii, sp.csc_array(M[i][:, i]), n_modes)
+    T = np.zeros((full.n, b.size + omega.size))
     T[b, np.arange(b.size)] = 1.0
-    T[i, : b.size], T[i, b.size :] = constraint, phi[:, order]
+    T[i, : b.size], T[i, b.size :] = constraint, phi
     groups = []
     for group in full.groups:
         S = np.zeros((T.shape[1], T.shape[1]))
         S[: b.size, : b.size] = sp.csc_array(group.S)[b][:, b].toarray()
         groups.append(replace(group, S=S, dofs=np.searchsorted(b, group.dofs)))
     pencil = Pencil(_symmetric(T.T @ (M @ T)), _symmetric(T.T @ (K @ T)), full.rayleigh, tuple(groups))
-    return Reduced(pencil, system.expand(T), system.free[b], np.sqrt(w[order]) / (2.0 * pi))
+    pinned = _pinned(pencil, _held(system, system.free[b]))
+    return Reduced(pencil, system.expand(T), system.free[b], omega / (2.0 * pi), pinned)
 
 
 def pinned_reference(reduced: Reduced, number: int) -> UndampedModes:
-    """Return the lowest modes with every boundary DOF held, in reduced coordinates: they count the modes."""
-    n_boundary, n = reduced.boundary.size, reduced.pencil.n
-    number = min(number, n - n_boundary)
-    shapes = np.zeros((n, number))
-    shapes[n_boundary + np.arange(number), np.arange(number)] = 1.0
-    return UndampedModes(2.0 * pi * reduced.fixed_interface_hz[:number], shapes)
+    """Return the lowest ``number`` of the modes that count the modes."""
+    return UndampedModes(reduced.pinned.omega[:number], reduced.pinned.shapes[:, :number])
+
+
+def _held(system: System, boundary: IntArray) -> IntArray:
+    """Return the coordinates of the boundary that pinned supports would hold."""
+    pins = [system.assembly.dofs(spring.node)[list(TRANSLATIONS)] for spring in system.support.springs]
+    return np.flatnonzero(np.isin(boundary, pins))
+
+
+def _pinned(pencil: Pencil, held: IntArray) -> UndampedModes:
+    free = np.setdiff1d(np.arange(pencil.n), held)
+    w, x = la.eigh(pencil.K[np.ix_(free, free)], pencil.M[np.ix_(free, free)])
+    shapes = np.zeros((pencil.n, free.size))
+    shapes[free] = x
+    return UndampedModes(np.sqrt(np.maximum(w, 0.0)), shapes)
 
 
 def undamped_reduced(pencil: Pencil) -> UndampedModes:
