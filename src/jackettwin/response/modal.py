@@ -36,6 +36,8 @@ _REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
 _AT_REST = 1e-10
 """A pole that a Newton step moves less than this (relative) is found."""
+_ROUNDING = 1e-7
+"""What rounding may leave in a pole of a finely cut mesh, whose stiffness spans many decades."""
 _CLUSTER = 1e-5
 """Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
@@ -338,7 +340,7 @@ def _inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, int]:
     size = 2 * pencil.n + sum(branch.dofs.size for branch in branches)
     n, M, C = pencil.n, pencil.M, _damping(pencil)
     F = sp.csc_array(pencil.F(sigma))
-    lu = spla.splu(sp.csc_matrix((np.ascontiguousarray(F.data.real), F.indices, F.indptr), shape=F.shape))
+    lu = _factorised(F.real.copy())
 
     def solve(b: FloatArray) -> FloatArray:
         bq, bv = b[:n], b[n : 2 * n]
@@ -399,17 +401,22 @@ def _newton(
         mean = complex(values.mean())
         F, dF = pencil.F(mean), pencil.dF(mean)
         try:
-            x = spla.splu(sp.csc_matrix(F)).solve(dF @ x)
+            x = _factorised(F).solve(dF @ x)
         except RuntimeError:  # F is singular to the last digit: the vectors are as good as they get
             pass
         Q = np.linalg.qr(x)[0]
         delta, y = la.eig(-(Q.T @ (F @ Q)), Q.T @ (dF @ Q))
         values, x = mean + delta, Q @ y
         change = abs(values.mean() - mean) / abs(mean)
-        if change <= _AT_REST and change >= 0.1 * last:  # only rounding is left
+        if change <= _AT_REST or 0.5 * last <= change <= _ROUNDING:
             break
         last = change
-    return values, x / np.linalg.norm(x, axis=0), change <= _AT_REST
+    return values, x / np.linalg.norm(x, axis=0), change <= _ROUNDING
+
+
+def _factorised(F: sp.csc_array) -> spla.SuperLU:
+    """Return the factors of a symmetric matrix: a symmetric order of elimination fills in least."""
+    return spla.splu(sp.csc_matrix(F), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1)
 
 
 def _dense(matrix: sp.csc_array | FloatArray) -> FloatArray:
