@@ -97,7 +97,9 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
     padded_taps = np.concatenate([np.zeros(lead), taps])
 
     missing = ~np.isfinite(y)
-    bridged = np.pad(_bridge(y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd")
+    bridged = np.pad(
+        np.apply_along_axis(bridge, 1, y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd"
+    )
     out: FloatArray = signal.upfirdn(up * padded_taps, bridged, up, down, axis=1)[:, kept]
     if missing.any():
         reflected = np.pad(missing, ((0, 0), (pad, pad)), mode="reflect").astype(float)
@@ -112,14 +114,13 @@ def half_length(taps: FloatArray, up: int = 1) -> int:
     return -(-(len(taps) // 2) // up)
 
 
-def _bridge(y: FloatArray) -> FloatArray:
-    """Join the ends of every gap by a line; rows without any sample become zero."""
-    out = y.copy()
-    t = np.arange(y.shape[1])
-    for row in out:
-        finite = np.isfinite(row)
-        if not finite.any():
-            row[:] = 0.0
-        elif not finite.all():
-            row[~finite] = np.interp(t[~finite], t[finite], row[finite])
+def bridge(y: FloatArray) -> FloatArray:
+    """Join the ends of every gap of one row by a line; a row without any sample becomes zero."""
+    finite = np.isfinite(y)
+    if finite.all():
+        return y
+    if not finite.any():
+        return np.zeros_like(y)
+    t = np.arange(len(y))
+    out: FloatArray = np.interp(t, t[finite], y[finite])
     return out

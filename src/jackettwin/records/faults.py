@@ -1,0 +1,130 @@
+"""Detectors of what loggers do to a signal. Pure functions; NaN marks a missing sample.
+
+Every detector takes one channel, a vector of samples, and says what it saw; none changes it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage
+
+from jackettwin.records.filters import bridge
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+SPIKE_WINDOW = 9
+"""A spike is shorter than half of this [samples]."""
+SPIKE_BLOCK = 256
+"""Samples over which the usual departure is taken, beside the whole channel."""
+SPIKE_SIGMAS = 8.0
+"""Robust standard deviations from the local median; 1e-15 for Gaussian noise."""
+RAIL_RATIO = 5.0
+"""Samples at a rail per sample at the levels next to it; a pure sine reaches 3."""
+LEAST_AT_RAIL = 5
+"""Fewer samples at the extreme say nothing."""
+STUCK_RUN_RATIO = 50.0
+"""Run of equal values, in units of the channel's usual run, that is a frozen reading."""
+
+
+def runs(mask: BoolArray) -> npt.NDArray[np.int64]:
+    """Return start and length of every run of True.
+
+    >>> runs(np.array([True, False, True, True])).tolist()
+    [[0, 1], [2, 2]]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return np.column_stack([edges[::2], edges[1::2] - edges[::2]]).astype(np.int64)
+
+
+def is_constant(y: FloatArray) -> bool:
+    """Tell whether no two samples differ by more than rounding, or there are fewer than two."""
+    finite = y[np.isfinite(y)]
+    return len(finite) < 2 or bool(np.ptp(finite) <= 4.0 * np.spacing(np.abs(finite).max()))
+
+
+def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
+    """Mark samples that leave their neighbours for less than five samples and by far.
+
+    Far is ``SPIKE_SIGMAS`` robust standard deviations of the departures from the running median, of
+    the whole channel and of the surroundings (a gust is no spike), and one robust standard deviation
+    of the signal: smaller ones do no harm. ``hold`` is the number of samples each value is repeated.
+    """
+    finite = np.isfinite(y)
+    if finite.sum() < 2 * SPIKE_WINDOW or is_constant(y):
+        return np.zeros(len(y), dtype=np.bool_)
+    x = bridge(y)
+    median = ndimage.median_filter(x, size=(SPIKE_WINDOW - 1) * hold + 1, mode="nearest")
+    departure = np.abs(x - median)
+    usual = np.maximum(_surroundings(departure), np.median(departure[finite]))
+    quartiles = np.percentile(y[finite], [25.0, 75.0])
+    least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
+    far: BoolArray = departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least)
+    return finite & far
+
+
+def _surroundings(departure: FloatArray) -> FloatArray:
+    """Return for every sample the largest median of its block and the two beside it."""
+    n_blocks = max(len(departure) // SPIKE_BLOCK, 1)
+    edges = np.linspace(0, len(departure), n_blocks + 1).astype(np.int64)
+    medians = np.array([np.median(departure[i:j]) for i, j in zip(edges[:-1], edges[1:], strict=True)])
+    wide = ndimage.maximum_filter1d(medians, 3, mode="nearest")
+    out: FloatArray = np.repeat(wide, np.diff(edges))
+    return out
+
+
+def clipped(y: FloatArray) -> BoolArray:
+    """Mark samples at a rail: many equal extremes with few samples at the levels beside them."""
+    mask = np.zeros(len(y), dtype=np.bool_)
+    finite = np.isfinite(y)
+    levels, counts = np.unique(y[finite], return_counts=True)
+    if len(levels) < 2 * LEAST_AT_RAIL:
+        return mask
+    for rail, at_rail, beside in (
+        (levels[-1], counts[-1], counts[-4:-1]),
+        (levels[0], counts[0], counts[1:4]),
+    ):
+        if at_rail >= LEAST_AT_RAIL and at_rail > RAIL_RATIO * max(float(np.mean(beside)), 1.0):
+            mask |= y == rail
+    return mask
+
+
+def stuck(y: FloatArray, shortest: int) -> BoolArray:
+    """Mark runs of one value, at least ``shortest`` samples and far longer than usual, in a live channel."""
+    mask = np.zeros(len(y), dtype=np.bool_)
+    if is_constant(y):
+        return mask
+    same = np.concatenate([[False], np.diff(y) == 0.0])
+    found = runs(same)
+    if not len(found):
+        return mask
+    # A run of n equal values shows as n − 1 repetitions; values never repeated are runs of one.
+    usual = len(y) / max(len(y) - int(same.sum()), 1)
+    for start, length in found:
+        if length + 1 >= max(shortest, STUCK_RUN_RATIO * usual):
+            mask[start - 1 : start + length] = True
+    return mask
+
+
+def hold_length(y: FloatArray) -> int:
+    """Return how many samples every value is repeated: above 1, the channel has a lower rate."""
+    finite = np.isfinite(y)
+    if finite.sum() < 20 or is_constant(y):
+        return 1
+    changes = np.flatnonzero(np.diff(y[finite]) != 0.0)
+    steps = np.diff(changes)
+    if len(steps) < 5:
+        return 1
+    usual = int(np.median(steps))
+    regular = float(np.mean(steps % max(usual, 1) == 0))
+    return usual if usual > 1 and regular > 0.9 else 1
+
+
+def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
+    """Return the range of the slow part over the standard deviation of the fast part."""
+    finite = np.isfinite(slow) & np.isfinite(fast)
+    if finite.sum() < 2:
+        return 0.0
+    scale = float(np.std(fast[finite]))
+    return float(np.ptp(slow[finite])) / scale if scale > 0.0 else 0.0

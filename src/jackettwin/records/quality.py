@@ -1,0 +1,278 @@
+"""How good a record is: every fault found, in plain words, and whether it can be repaired."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records import faults, filters, signs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from jackettwin.records.record import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+
+STUCK_S = 1.0
+"""Shortest frozen reading [s]."""
+MOST_SPIKES = 0.02
+"""Share of samples beyond which outliers are the signal's nature, not spikes to remove."""
+EMPTY = 0.9
+"""Share of missing samples beyond which a channel carries nothing."""
+DRIFT_CYCLES = 5.0
+"""Drift is what is slower than this many cycles a record."""
+DRIFT_RATIO = 3.0
+"""Range of the slow part over the rms of the rest, beyond which it is drift."""
+WEAK_RATIO = 1e-4
+"""Rms over the median of the channels of one quantity, below which a sensor is hardly alive."""
+JITTER = 0.05
+"""Clock jitter as a share of the step that deserves a word."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One fault: where, which, in a sentence, and whether ``repair`` removes it.
+
+    ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
+    ``stuck``, ``held``, ``drift``, ``sign``, ``clock``; ``channel`` is None if it concerns the record.
+    """
+
+    fault: str
+    text: str
+    channel: str | None = None
+    repaired: bool = False
+
+
+@dataclass(frozen=True)
+class ChannelQuality:
+    """What was measured about one channel; shares are of all samples."""
+
+    name: str
+    score: float
+    dead: bool
+    gap_share: float
+    longest_gap_s: float
+    spike_share: float
+    clipped_share: float
+    stuck_share: float
+    hold_length: int
+    drift_ratio: float
+    swapped_sign: bool
+
+
+@dataclass(frozen=True)
+class Quality:
+    """The quality of a record.
+
+    Attributes
+    ----------
+    score : float
+        Mean score of the vibration channels: 1 is faultless, 0 carries nothing.
+    channels : tuple of ChannelQuality
+        In the record's order.
+    findings : tuple of Finding
+    suspect : (n_channels, n_samples) bool array
+        Samples that ``repair`` declares missing: spikes, clipped and frozen ones.
+    """
+
+    score: float
+    channels: tuple[ChannelQuality, ...]
+    findings: tuple[Finding, ...]
+    suspect: npt.NDArray[np.bool_]
+
+    def summary(self) -> dict[str, Any]:
+        """Return everything but the samples as plain JSON data."""
+        return {
+            "score": self.score,
+            "findings": [asdict(finding) for finding in self.findings],
+            "channels": [asdict(channel) for channel in self.channels],
+        }
+
+
+def assess(record: Record) -> Quality:
+    """Look for gaps, spikes, clipping, frozen and dead channels, drift, swapped signs and a bad clock.
+
+    Never fails, whatever the samples are.
+    """
+    slow_free = _without_slow(record)
+    swapped = _swapped(record, slow_free)
+    judged = [
+        _judge(record, i, slow_free[i], swapped.get(channel.name))
+        for i, channel in enumerate(record.channels)
+    ]
+    channels = tuple(quality for quality, _, _ in judged)
+    findings = [finding for _, _, found in judged for finding in found]
+    findings += [*_weak(record, channels), *_clock(record)]
+    vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
+    scores = vibrating or [q.score for q in channels]
+    suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
+    return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect)
+
+
+def _without_slow(record: Record) -> FloatArray:
+    """Return the data without mean and drift, spikes taken out lest they hide it."""
+    data = record.data.copy()
+    for row in data:
+        row[faults.spikes(row, hold=faults.hold_length(row))] = np.nan
+    return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
+
+
+def _judge(
+    record: Record, i: int, slow_free: FloatArray, sign: bool | None
+) -> tuple[ChannelQuality, npt.NDArray[np.bool_], list[Finding]]:
+    """Return the quality of one channel, its suspect samples and its findings."""
+    channel, y = record.channels[i], record.data[i]
+    n, vibrates = max(len(y), 1), channel.quantity in VIBRATIONS
+    missing = ~np.isfinite(y)
+    longest = faults.runs(missing)[:, 1].max(initial=0)
+    empty = bool(missing.mean() > EMPTY) if len(y) else True
+    dead = empty or (vibrates and faults.is_constant(y))
+    none = np.zeros(len(y), dtype=np.bool_)
+    look = vibrates and not dead
+    held = faults.hold_length(y) if look else 1
+    spikes = faults.spikes(y, hold=held) if look else none
+    clipped = faults.clipped(y) if look else none
+    stuck = faults.stuck(y, max(int(STUCK_S * record.sample_rate_hz), 20)) if look else none
+    outliers = bool(spikes.mean() > MOST_SPIKES) if look else False
+    kept = np.isfinite(slow_free)
+    drift = faults.drift_ratio(np.where(kept, y - slow_free, np.nan), slow_free) if look else 0.0
+    quality = ChannelQuality(
+        name=channel.name,
+        score=0.0,
+        dead=dead,
+        gap_share=float(missing.sum()) / n,
+        longest_gap_s=float(longest) / record.sample_rate_hz,
+        spike_share=float(spikes.sum()) / n,
+        clipped_share=float(clipped.sum()) / n,
+        stuck_share=float(stuck.sum()) / n,
+        hold_length=held,
+        drift_ratio=drift,
+        swapped_sign=bool(sign),
+    )
+    findings = list(_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
+    suspect = (none if outliers else spikes) | clipped | stuck
+    return replace(quality, score=_score(quality, sign)), suspect, findings
+
+
+def _findings(
+    channel: Channel, q: ChannelQuality, *, empty: bool, outliers: bool, sign: bool | None
+) -> Iterator[Finding]:
+    """Yield what is worth saying about one channel."""
+    name = q.name
+    if empty:
+        yield Finding("empty", f"{q.gap_share:.0%} of the samples are missing; left out", name, True)
+        return
+    if q.dead:
+        yield Finding("dead", "does not vary at all; left out", name, True)
+        return
+    if q.gap_share > 0.0:
+        text = f"{q.gap_share:.2%} of the samples are missing, at most {q.longest_gap_s:.3g} s in a row"
+        yield Finding("gaps", text, name)
+    if outliers:
+        text = f"{q.spike_share:.1%} of the samples stand out, too many to be spikes; kept"
+        yield Finding("outliers", text, name)
+    elif q.spike_share > 0.0:
+        yield Finding(
+            "spikes", f"{q.spike_share:.3%} of the samples are spikes; declared missing", name, True
+        )
+    yield from _signal_findings(channel, q)
+    yield from _sign_findings(name, sign)
+
+
+def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
+    """Yield what the sensor's range, its reading and its zero did."""
+    name = q.name
+    if q.clipped_share > 0.0:
+        text = f"{q.clipped_share:.2%} of the samples are at the range's end; declared missing"
+        yield Finding("clipped", text, name, True)
+    if q.stuck_share > 0.0:
+        text = f"reading is frozen for {q.stuck_share:.2%} of the time; declared missing"
+        yield Finding("stuck", text, name, True)
+    if q.hold_length > 1:
+        text = f"every value is repeated {q.hold_length} times: the sensor is read at a lower rate and lags"
+        yield Finding("held", text, name)
+    if _drifts(channel, q):
+        text = f"drifts over {q.drift_ratio:.1f} times the rms of its vibration; slow part removed"
+        yield Finding("drift", text, name, True)
+
+
+def _sign_findings(name: str, sign: bool | None) -> Iterator[Finding]:
+    if sign is True:
+        yield Finding("sign", "moves against all parallel channels; sign turned", name, True)
+    elif sign is False:
+        text = "moves against a parallel channel, and nothing says which of them is wrong; kept"
+        yield Finding("sign", text, name)
+
+
+def _drifts(channel: Channel, q: ChannelQuality) -> bool:
+    """Tell drift from the quasi-static response, which displacement, strain and tilt really have."""
+    return channel.quantity in ("acceleration", "velocity") and q.drift_ratio > DRIFT_RATIO
+
+
+def _score(q: ChannelQuality, sign: bool | None) -> float:
+    """Return 1 for a faultless channel, less for every fault, 0 for a dead one."""
+    if q.dead:
+        return 0.0
+    lost = 1.0 - min(1.0, q.gap_share + 10.0 * (q.spike_share + q.clipped_share + q.stuck_share))
+    doubt = (0.5 if sign is False else 1.0) * (0.9 if sign else 1.0) * (0.7 if q.hold_length > 1 else 1.0)
+    return lost * doubt
+
+
+def _swapped(record: Record, slow_free: FloatArray) -> dict[str, bool]:
+    """Return channels that move against parallel ones: True if certain, False if in doubt."""
+    found: dict[str, bool] = {}
+    for rows, senses in _parallel(record, slow_free):
+        coherency = signs.band_coherency(slow_free[rows] * senses[:, None])
+        minority, certain = signs.against_majority(coherency)
+        found.update({record.channels[rows[i]].name: certain for i in minority})
+    return found
+
+
+def _parallel(record: Record, slow_free: FloatArray) -> Iterator[tuple[list[int], FloatArray]]:
+    """Yield groups of live accelerations along one line, with the sense of each."""
+    left = [
+        i
+        for i, channel in enumerate(record.channels)
+        if channel.quantity == "acceleration"
+        and any(channel.direction)
+        and not faults.is_constant(slow_free[i])
+    ]
+    while left:
+        first = np.array(record.channels[left[0]].direction)
+        along = {i: float(first @ np.array(record.channels[i].direction)) for i in left}
+        rows = [i for i in left if abs(along[i]) > 0.98]
+        left = [i for i in left if i not in rows]
+        if len(rows) > 1:
+            yield rows, np.sign([along[i] for i in rows])
+
+
+def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
+    """Yield channels whose rms is a tiny part of that of their like."""
+    live = [i for i, q in enumerate(channels) if not q.dead and record.channels[i].quantity in VIBRATIONS]
+    rms = {i: float(np.nanstd(record.data[i])) for i in live}
+    for i in live:
+        like = [rms[j] for j in live if record.channels[j].quantity == record.channels[i].quantity]
+        if rms[i] < WEAK_RATIO * float(np.median(like)):
+            text = f"rms is {rms[i] / float(np.median(like)):.1e} of that of its like: sensor or unit wrong?"
+            yield Finding("weak", text, channels[i].name)
+
+
+def _clock(record: Record) -> Iterator[Finding]:
+    """Yield what the time stamps of the file said, if it had any."""
+    clock = record.metadata.get("clock")
+    if not isinstance(clock, dict):
+        return
+    jitter = float(clock.get("jitter_s") or 0.0) * record.sample_rate_hz
+    if jitter > JITTER:
+        yield Finding(
+            "clock", f"time stamps jitter by {jitter:.0%} of a step (rms); interpolated to a regular grid"
+        )
+    if clock.get("missing"):
+        yield Finding("clock", f"{clock['missing']} samples have no time stamp; declared missing")
+    if clock.get("disordered"):
+        yield Finding("clock", f"{clock['disordered']} time stamps repeat or run backwards; left out")

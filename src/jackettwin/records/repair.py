@@ -1,0 +1,59 @@
+"""Take out of a record what is certainly wrong with it, and say so; nothing is invented.
+
+Samples known to be wrong become missing samples, channels that carry nothing are dropped, drift is
+taken out, and a sign is turned only if the other channels leave no doubt. Everything done is listed
+in ``metadata["repair"]``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.records import filters
+from jackettwin.records.quality import DRIFT_CYCLES
+
+if TYPE_CHECKING:
+    from jackettwin.records.quality import Quality
+    from jackettwin.records.record import Record
+
+
+def repair(record: Record, quality: Quality) -> Record:
+    """Return the record without what ``assess`` found to be certainly wrong.
+
+    Raises
+    ------
+    InputError
+        If the quality is of another record, or no live channel is left.
+    """
+    if quality.suspect.shape != record.data.shape or [q.name for q in quality.channels] != list(
+        record.channel_names
+    ):
+        raise InputError("quality is of another record", file=record.name, remedy="assess this record first")
+    data = np.where(quality.suspect, np.nan, record.data)
+    fixed = {(f.channel, f.fault) for f in quality.findings if f.repaired}
+    for i, name in enumerate(record.channel_names):
+        if (name, "drift") in fixed:
+            data[i : i + 1] = filters.remove_slow(data[i : i + 1], DRIFT_CYCLES / data.shape[1])
+        if (name, "sign") in fixed:
+            data[i] = -data[i]
+    alive = [i for i, channel in enumerate(quality.channels) if not channel.dead]
+    if not alive:
+        raise InputError(
+            "no channel carries a signal",
+            file=record.name,
+            field="channels",
+            value=", ".join(record.channel_names),
+            allowed="at least one channel that varies",
+            remedy="check sensors and logger",
+        )
+    done = [f"{f.channel}: {f.text}" for f in quality.findings if f.repaired]
+    return replace(
+        record,
+        data=data[alive],
+        channels=tuple(record.channels[i] for i in alive),
+        metadata={**record.metadata, "repair": done} if done else record.metadata,
+    )

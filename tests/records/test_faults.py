@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.records import faults
+
+
+def test_runs_cover_both_ends() -> None:
+    assert faults.runs(np.array([True, True, False, True])).tolist() == [[0, 2], [3, 1]]
+    assert faults.runs(np.zeros(3, dtype=bool)).shape == (0, 2)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1, 10.0), (2, -20.0), (4, 50.0)])
+def test_planted_spikes_are_marked_and_nothing_else(
+    width: int, height: float, rng: np.random.Generator
+) -> None:
+    y = rng.normal(size=20_000)
+    at = np.arange(500, 19_500, 700)
+    planted = np.zeros(len(y), dtype=bool)
+    for k in range(width):
+        planted[at + k] = True
+    y[planted] = height  # at least 9 standard deviations beyond anything the noise does here
+    assert np.array_equal(faults.spikes(y), planted)
+
+
+@pytest.mark.parametrize("kind", ["noise", "laplace", "tone", "quantised", "steps", "bursts"])
+def test_lively_but_sound_signals_have_no_spikes(kind: str, rng: np.random.Generator) -> None:
+    t = np.arange(60_000) / 100.0
+    signals = {
+        "noise": rng.normal(size=len(t)),
+        "laplace": rng.laplace(size=len(t)),
+        "tone": np.sin(2 * np.pi * 23.0 * t),
+        "quantised": np.round(3.0 * np.sin(2 * np.pi * 0.18 * t)),
+        "steps": np.repeat(rng.normal(size=600), 100),
+        "bursts": rng.normal(size=len(t)) * (1.0 + 2.0 * (np.sin(0.05 * t) > 0.0)),
+    }
+    # e^-8 of Laplace noise lies beyond the threshold; nothing of the others does
+    allowed = 1e-3 if kind == "laplace" else 0.0
+    assert faults.spikes(signals[kind]).mean() <= allowed
+
+
+@pytest.mark.parametrize("level", [0.8, 1.5, 2.5])
+def test_clipping_is_marked_at_both_rails(level: float, rng: np.random.Generator) -> None:
+    y = rng.normal(size=20_000)
+    expected = np.abs(y) >= level
+    assert np.array_equal(faults.clipped(np.clip(y, -level, level)), expected)
+
+
+def test_one_rail_of_a_quantised_signal(rng: np.random.Generator) -> None:
+    y = np.minimum(np.round(rng.normal(size=20_000), 2), 1.2)
+    assert np.array_equal(faults.clipped(y), y == 1.2)
+
+
+@pytest.mark.parametrize("step", [0.0, 1e-3, 0.05, 0.3])
+def test_neither_tones_nor_coarse_converters_are_clipped(step: float, rng: np.random.Generator) -> None:
+    t = np.arange(30_000) / 50.0
+    for y in (np.sin(2 * np.pi * 0.1801 * t), rng.normal(size=len(t))):
+        assert not faults.clipped(np.round(y / step) * step if step else y).any()
+
+
+def test_a_frozen_reading_is_marked_whole(rng: np.random.Generator) -> None:
+    y = rng.normal(size=5000)
+    y[1000:1300] = y[1000]
+    marked = faults.stuck(y, 100)
+    assert marked[1000:1300].all() and marked.sum() == 300
+
+
+def test_a_coarse_slow_signal_is_not_frozen() -> None:
+    t = np.arange(30_000) / 50.0
+    assert not faults.stuck(np.round(4 * np.sin(2 * np.pi * 0.02 * t)), 50).any()
+
+
+@pytest.mark.parametrize("hold", [1, 2, 5, 20])
+def test_hold_length_is_counted(hold: int, rng: np.random.Generator) -> None:
+    assert faults.hold_length(np.repeat(rng.normal(size=500), hold)) == hold
+
+
+@pytest.mark.parametrize(
+    "y", [np.full(50, 0.1), np.full(50, np.nan), np.array([1.0]), np.zeros(0), np.full(9, 1e300)]
+)
+def test_what_does_not_vary_is_constant_and_disturbs_no_detector(y: np.ndarray) -> None:
+    assert faults.is_constant(y)
+    assert not faults.spikes(y).any() and not faults.clipped(y).any() and not faults.stuck(y, 5).any()
+    assert faults.hold_length(y) == 1
+
+
+def test_tiny_signals_on_a_large_offset_are_not_constant() -> None:
+    assert not faults.is_constant(1e3 + 1e-9 * np.sin(np.arange(100.0)))

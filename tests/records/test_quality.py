@@ -1,0 +1,183 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.records import Quality, Record, assess, repair
+
+
+def faults_of(quality: Quality) -> set[tuple[str | None, str]]:
+    return {(finding.channel, finding.fault) for finding in quality.findings}
+
+
+def with_row(record: Record, i: int, row: np.ndarray) -> Record:
+    data = record.data.copy()
+    data[i] = row
+    return replace(record, data=data)
+
+
+def test_clean_records_have_no_findings(tower: SimpleNamespace) -> None:
+    """40 ten-minute records of 8 channels: a false alarm in one of them would be 3 in 1000 channels."""
+    for seed in range(40):
+        quality = assess(tower.record(seed))
+        assert not quality.findings, quality.findings
+        assert quality.score == 1.0
+
+
+def test_gaps_are_measured_and_kept(tower: SimpleNamespace) -> None:
+    record = tower.record(1)
+    row = record.data[2].copy()
+    row[100:220] = np.nan
+    row[5000:5600:10] = np.nan
+    holed = with_row(record, 2, row)
+    quality = assess(holed)
+    assert faults_of(quality) == {("acc_41_x", "gaps")}
+    assert quality.channels[2].gap_share == pytest.approx(180 / 12_000)
+    assert quality.channels[2].longest_gap_s == pytest.approx(6.0)
+    assert np.array_equal(repair(holed, quality).data, holed.data, equal_nan=True)
+
+
+def test_spikes_become_missing_samples(tower: SimpleNamespace) -> None:
+    record = tower.record(2)
+    row = record.data[0].copy()
+    at = np.arange(50, 12_000, 400)
+    row[at] += 15.0 * row.std()
+    spiked = with_row(record, 0, row)
+    quality = assess(spiked)
+    assert faults_of(quality) == {("acc_144_x", "spikes")}
+    clean = repair(spiked, quality)
+    assert np.array_equal(np.flatnonzero(np.isnan(clean.data[0])), at)
+    assert clean.metadata["repair"] == ["acc_144_x: 0.250% of the samples are spikes; declared missing"]
+
+
+def test_a_signal_full_of_outliers_is_kept(rng: np.random.Generator, tower: SimpleNamespace) -> None:
+    record = tower.record(3)
+    row = record.data[0] + 20 * record.data[0].std() * (rng.random(12_000) < 0.05)
+    quality = assess(with_row(record, 0, row))
+    assert ("acc_144_x", "outliers") in faults_of(quality)
+    assert not quality.suspect.any()
+
+
+def test_clipped_and_frozen_stretches_become_missing(tower: SimpleNamespace) -> None:
+    record = tower.record(4)
+    level = 1.5 * record.data[1].std()
+    row = np.clip(record.data[1], -level, level)
+    row[3000:3500] = row[3000]
+    quality = assess(with_row(record, 1, row))
+    assert faults_of(quality) == {("acc_77_x", "clipped"), ("acc_77_x", "stuck")}
+    repaired = repair(with_row(record, 1, row), quality).data[1]
+    assert np.isnan(repaired[3000:3500]).all()
+    assert np.nanmax(np.abs(repaired)) < level
+
+
+@pytest.mark.parametrize("value", [0.0, 9.81, np.nan])
+def test_dead_channels_are_dropped(value: float, tower: SimpleNamespace) -> None:
+    record = with_row(tower.record(5), 3, np.full(12_000, value))
+    quality = assess(record)
+    assert faults_of(quality) == {("acc_28_x", "empty" if np.isnan(value) else "dead")}
+    assert quality.channels[3].score == 0.0
+    assert "acc_28_x" not in repair(record, quality).channel_names
+
+
+def test_drift_is_removed_and_the_vibration_left(tower: SimpleNamespace) -> None:
+    record = tower.record(6)
+    slope = np.linspace(0.0, 20.0 * record.data[4].std(), 12_000)
+    drifting = with_row(record, 4, record.data[4] + slope)
+    quality = assess(drifting)
+    assert faults_of(quality) == {("acc_144_y", "drift")}
+    left = repair(drifting, quality).data[4] - record.data[4]
+    # the middle half: ends of a moving mean are one-sided
+    assert np.abs(left[3000:9000]).max() < 0.1 * record.data[4].std()
+
+
+@pytest.mark.parametrize("i", range(8))
+def test_a_swapped_sign_is_found_and_turned_back(i: int, tower: SimpleNamespace) -> None:
+    """In every one of 8 channels of 5 records, second bending mode included."""
+    for seed in range(5):
+        record = tower.record(seed)
+        swapped = with_row(record, i, -record.data[i])
+        quality = assess(swapped)
+        assert faults_of(quality) == {(record.channels[i].name, "sign")}
+        assert np.array_equal(repair(swapped, quality).data, record.data)
+
+
+def test_a_sensor_mounted_backwards_and_described_so_is_sound(tower: SimpleNamespace) -> None:
+    record = tower.record(7)
+    backwards = replace(record.channels[0], direction=(-1.0, 0.0, 0.0))
+    turned = replace(with_row(record, 0, -record.data[0]), channels=(backwards, *record.channels[1:]))
+    assert not assess(turned).findings
+
+
+def test_with_two_sensors_nobody_knows_which_is_wrong(tower: SimpleNamespace) -> None:
+    record = tower.record(8).select(["acc_144_x", "acc_77_x"])
+    swapped = with_row(record, 0, -record.data[0])
+    quality = assess(swapped)
+    assert len(quality.findings) == 1 and quality.findings[0].fault == "sign"
+    assert not quality.findings[0].repaired
+    assert np.array_equal(repair(swapped, quality).data, swapped.data)
+
+
+def test_strong_second_bending_is_no_swapped_sign(tower: SimpleNamespace) -> None:
+    """Top and middle move against each other by nature; the first mode is there to tell."""
+    record = tower.record(9)
+    rng = np.random.default_rng(9)
+    second = tower.oscillator(rng.normal(size=24_000), 0.76, 0.02, 20.0)[12_000:]
+    strong = record.data[:4] + 5.0 * np.outer(tower.shapes[1], second)
+    data = np.vstack([strong, record.data[4:]])
+    assert not assess(replace(record, data=data)).findings
+
+
+def test_a_slower_sensor_is_recognised(tower: SimpleNamespace) -> None:
+    record = tower.record(10)
+    quality = assess(with_row(record, 5, np.repeat(record.data[5][::4], 4)))
+    assert faults_of(quality) == {("acc_77_y", "held")}
+    assert quality.channels[5].hold_length == 4
+
+
+def test_a_wrong_unit_shows_as_a_weak_sensor(tower: SimpleNamespace) -> None:
+    record = tower.record(11)
+    quality = assess(with_row(record, 6, 1e-6 * record.data[6]))
+    assert ("acc_41_y", "weak") in faults_of(quality)
+
+
+def test_the_clock_of_the_file_is_reported(tower: SimpleNamespace) -> None:
+    clock = {"jitter_s": 0.02, "missing": 7, "disordered": 2}
+    record = replace(tower.record(12), metadata={"clock": clock})
+    texts = [finding.text for finding in assess(record).findings]
+    assert [text.split()[0] for text in texts] == ["time", "7", "2"]
+
+
+def test_steady_wind_and_yaw_are_not_dead(tower: SimpleNamespace) -> None:
+    record = tower.record(13)
+    channels = (*record.channels[:7], replace(record.channels[7], quantity="yaw", unit="rad"))
+    assert not assess(replace(with_row(record, 7, np.zeros(12_000)), channels=channels)).findings
+
+
+def test_faults_lower_the_score(tower: SimpleNamespace) -> None:
+    record = tower.record(14)
+    row = record.data[0].copy()
+    row[:1200] = np.nan
+    assert assess(with_row(record, 0, row)).score == pytest.approx(1.0 - 0.1 / 8)
+
+
+def test_a_record_without_any_live_channel_is_refused(tower: SimpleNamespace) -> None:
+    record = tower.record(15)
+    dead = replace(record, data=np.zeros_like(record.data))
+    with pytest.raises(InputError, match=r"tower_15: channels: no channel carries a signal.*acc_144_x"):
+        repair(dead, assess(dead))
+
+
+def test_quality_of_another_record_is_refused(tower: SimpleNamespace) -> None:
+    quality = assess(tower.record(1, duration_s=60.0))
+    with pytest.raises(InputError, match="quality is of another record"):
+        repair(tower.record(1), quality)
+
+
+def test_summary_is_plain_json_data(tower: SimpleNamespace) -> None:
+    text = json.dumps(assess(tower.record(16)).summary(), allow_nan=False)
+    assert json.loads(text)["score"] == 1.0
