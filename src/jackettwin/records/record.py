@@ -22,7 +22,8 @@ class Channel:
     """One measured signal: what it is, where it sits and which way it points.
 
     ``height_m`` is above mean sea level on the tower axis; ``node`` names a node of the structure
-    instead. ``direction`` is a unit vector in global axes; zeros for a scalar quantity.
+    instead. ``direction`` is a unit vector in global axes (in the rotor's after ``to_rotor_axes``);
+    zeros for a scalar quantity.
     """
 
     name: str
