@@ -10,11 +10,12 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
 
@@ -89,6 +90,15 @@ class MissingExtra(InputError):
 
 class NumericalError(JackettwinError):
     """A computation did not reach the accuracy it promises."""
+
+
+@contextmanager
+def located(*, file: Path | str | None = None, field: str | None = None) -> Iterator[None]:
+    """Fill in the place of every input error raised inside."""
+    try:
+        yield
+    except InputError as error:
+        raise error.at(file=file, field=field) from None
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:

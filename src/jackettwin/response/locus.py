@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.response.follow import follow
-from jackettwin.response.modal import UndampedModes, state_matrix
+from jackettwin.response.modal import UndampedModes
 from jackettwin.response.reduced import Reduced, pinned_reference
+from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Pencil
 from jackettwin.soil.viscoelastic import Law
 

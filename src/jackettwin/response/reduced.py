@@ -19,8 +19,9 @@ import scipy.sparse.linalg as spla
 
 from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError
-from jackettwin.response.modal import UndampedModes, lowest_modes
+from jackettwin.response.modal import UndampedModes
 from jackettwin.response.system import Pencil, System
+from jackettwin.structure.eigen import lowest_modes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

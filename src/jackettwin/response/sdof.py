@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.modal import state_matrix
+from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, Pencil
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.damping import Rayleigh

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
 
-from jackettwin.response.modal import maxwell_branches, state_matrix
+from jackettwin.response.state import maxwell_branches, state_matrix
 from jackettwin.response.system import Pencil
 
 FloatArray = npt.NDArray[np.float64]

@@ -92,8 +92,7 @@ def assemble(
     Raises
     ------
     InputError
-        If an option is out of range, rigid links chain or loop, or gravity is asked of a structure that
-        stands on nothing.
+        If an option is out of range, or gravity is asked of a structure that stands on nothing.
     """
     theory = structure.beam if beam_theory is None else beam_theory
     rotary = (
@@ -136,13 +135,6 @@ def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
 def _rigid_links(structure: Structure, mesh: Mesh) -> sp.csr_array:
     """Return T with u = T q: followers are eliminated, everybody else keeps his DOFs."""
     leader = {link.follower: link.leader for link in structure.rigid_links}
-    if len(leader) != len(structure.rigid_links) or set(leader) & set(leader.values()):
-        raise InputError(
-            "rigid links chain or share a follower",
-            field="rigid_links",
-            value=sorted(leader),
-            remedy="let every follower have one leader that is no follower itself",
-        )
     T = sp.eye_array(mesh.n_dof, format="lil")
     for follower, name in leader.items():
         rows, columns = mesh.node_dofs(follower), mesh.node_dofs(name)

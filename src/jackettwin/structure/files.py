@@ -8,12 +8,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
-from jackettwin.structure.masses import rna_from_static_moments
+from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.model import (
     STEEL,
+    Inertia,
     Material,
     Member,
     PointMass,
@@ -27,7 +28,6 @@ from jackettwin.structure.subdyn import read_subdyn
 
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
-Inertia = tuple[float, float, float, float, float, float]
 
 
 class MaterialSchema(Schema):
@@ -38,15 +38,16 @@ class MaterialSchema(Schema):
     shear_modulus_pa: Positive | None = None
     density_kg_m3: NotNegative = STEEL.density_kg_m3
 
-    def build(self) -> Material:
+    def build(self, field: str) -> Material:
         """Return the material."""
-        if self.shear_modulus_pa is not None:
-            return Material(self.youngs_modulus_pa, self.shear_modulus_pa, self.density_kg_m3)
-        return Material.isotropic(
-            youngs_modulus_pa=self.youngs_modulus_pa,
-            poisson_ratio=self.poisson_ratio,
-            density_kg_m3=self.density_kg_m3,
-        )
+        with located(field=field):
+            if self.shear_modulus_pa is not None:
+                return Material(self.youngs_modulus_pa, self.shear_modulus_pa, self.density_kg_m3)
+            return Material.isotropic(
+                youngs_modulus_pa=self.youngs_modulus_pa,
+                poisson_ratio=self.poisson_ratio,
+                density_kg_m3=self.density_kg_m3,
+            )
 
 
 class SectionSchema(Schema):
@@ -57,10 +58,8 @@ class SectionSchema(Schema):
 
     def build(self, field: str) -> Section:
         """Return the section."""
-        try:
+        with located(field=field):
             return Section(self.outer_diameter_m, self.thickness_m)
-        except InputError as error:
-            raise error.at(field=field) from None
 
 
 class BodySchema(Schema):
@@ -72,30 +71,31 @@ class BodySchema(Schema):
     static_moment_kg_m: Vector | None = None
     inertia_about_node_kg_m2: Inertia | None = None
 
-    def build(self, node: str, part: str = "") -> PointMass:
+    def build(self, node: str, part: str = "", *, field: str) -> PointMass:
         """Return the point mass on ``node``."""
-        about_node = self.static_moment_kg_m is not None or self.inertia_about_node_kg_m2 is not None
-        if not about_node:
-            return PointMass(
-                node,
-                self.mass_kg,
-                self.cg_offset_m or (0.0, 0.0, 0.0),
-                self.inertia_about_cg_kg_m2 or (0.0,) * 6,
-                part,
+        with located(field=field):
+            if self.static_moment_kg_m is None and self.inertia_about_node_kg_m2 is None:
+                return PointMass(
+                    node,
+                    self.mass_kg,
+                    self.cg_offset_m or (0.0, 0.0, 0.0),
+                    self.inertia_about_cg_kg_m2 or (0.0,) * 6,
+                    part,
+                )
+            if self.cg_offset_m is not None or self.inertia_about_cg_kg_m2 is not None or self.mass_kg == 0.0:
+                raise InputError(
+                    "give a body either by its centre of gravity or by its moments about the node",
+                    field="mass_kg",
+                    value=self.mass_kg,
+                    remedy="keep cg_offset_m and inertia_about_cg_kg_m2, or the other two",
+                )
+            return body_from_static_moments(
+                node=node,
+                mass_kg=self.mass_kg,
+                static_moment_kg_m=self.static_moment_kg_m or (0.0, 0.0, 0.0),
+                inertia_about_node_kg_m2=self.inertia_about_node_kg_m2 or (0.0,) * 6,
+                part=part,
             )
-        if self.cg_offset_m is not None or self.inertia_about_cg_kg_m2 is not None or self.mass_kg == 0.0:
-            raise InputError(
-                "give a body either by its centre of gravity or by its moments about the node",
-                field="mass_kg",
-                value=self.mass_kg,
-                remedy="keep cg_offset_m and inertia_about_cg_kg_m2, or the other two",
-            )
-        return rna_from_static_moments(
-            node=node,
-            mass_kg=self.mass_kg,
-            static_moment_kg_m=self.static_moment_kg_m or (0.0, 0.0, 0.0),
-            inertia_about_node_kg_m2=self.inertia_about_node_kg_m2 or (0.0,) * 6,
-        )
 
 
 class MassSchema(BodySchema):
@@ -229,10 +229,8 @@ def read_structure(source: str | Path, *, folder: Path | None = None) -> Structu
 
 def _read_yaml_structure(path: Path) -> Structure:
     schema = validate(StructureSchema, read_yaml(path, what="structure file"), file=path)
-    try:
+    with located(file=path):
         return build_structure(schema, default_name=path.stem)
-    except InputError as error:
-        raise error.at(file=path) from None
 
 
 def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
@@ -258,13 +256,13 @@ def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
         raise InputError(
             "required key is missing", field="members", remedy="add members:, or a parametric jacket:"
         )
-    materials = {"steel": STEEL} | {key: m.build() for key, m in schema.materials.items()}
+    materials = {"steel": STEEL} | {key: m.build(f"materials.{key}") for key, m in schema.materials.items()}
     sections = {key: s.build(f"sections.{key}") for key, s in schema.sections.items()}
     return Structure(
         name=name,
         nodes=schema.nodes,
         members=tuple(_build_member(m, i, sections, materials) for i, m in enumerate(schema.members)),
-        masses=tuple(m.build(m.node) for m in schema.masses),
+        masses=tuple(m.build(m.node, field=f"masses.{i}") for i, m in enumerate(schema.masses)),
         rigid_links=tuple(RigidLink(link.leader, link.follower) for link in schema.rigid_links),
         reactions=tuple(Reaction(node) for node in schema.reaction_nodes),
         interface_nodes=tuple(schema.interface_nodes),
@@ -302,7 +300,7 @@ def _build_member(
 
 def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float) -> Structure:
     lattice, tp, tower = schema.lattice, schema.transition_piece, schema.tower
-    try:
+    with located(field="jacket"):
         return jacket(
             name=name,
             lattice=Lattice(
@@ -314,25 +312,23 @@ def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float) -> S
                 leg_diameter_m=lattice.leg_diameter_m,
                 leg_thickness_bottom_m=lattice.leg_thickness_bottom_m,
                 leg_thickness_top_m=lattice.leg_thickness_top_m,
-                brace=lattice.brace.build("brace"),
-                material=lattice.material.build(),
+                brace=lattice.brace.build("lattice.brace"),
+                material=lattice.material.build("lattice.material"),
                 mud_braces=lattice.mud_braces,
             ),
             transition_piece=TransitionPiece(
                 tp.top_z_m,
                 tp.tube.build("transition_piece.tube"),
                 tp.column.build("transition_piece.column"),
-                tp.material.build(),
+                tp.material.build("transition_piece.material"),
             ),
             tower=Tower(
                 tower.height_m,
                 tower.elements,
                 tower.bottom.build("tower.bottom"),
                 tower.top.build("tower.top"),
-                tower.material.build(),
+                tower.material.build("tower.material"),
             ),
-            rna=None if schema.rna is None else schema.rna.build("tower_top", part="rna"),
+            rna=None if schema.rna is None else schema.rna.build("tower_top", "rna", field="rna"),
             sea_level_z_m=sea_level_z_m,
         )
-    except InputError as error:
-        raise error.at(field="jacket") from None

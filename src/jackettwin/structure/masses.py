@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.structure.model import PointMass, Vector
+from jackettwin.structure.model import Inertia, PointMass, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,13 +26,11 @@ def rigid_body_mass(body: PointMass) -> FloatArray:
     :math:`M = [[m I, −m S(a)], [m S(a), I_{cg} − m S(a)S(a)]]`, a the offset of the centre of gravity.
     """
     m, S = body.mass_kg, cross_matrix(body.cg_offset_m)
-    xx, yy, zz, xy, xz, yz = body.inertia_kg_m2
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     M = np.zeros((6, 6))
     M[:3, :3] = m * np.eye(3)
     M[:3, 3:] = -m * S
     M[3:, :3] = m * S
-    M[3:, 3:] = inertia - m * S @ S
+    M[3:, 3:] = body.inertia_tensor - m * S @ S
     return M
 
 
@@ -53,30 +51,25 @@ def rigid_transfer(arm: FloatArray) -> FloatArray:
     return T
 
 
-def rna_from_static_moments(
+def body_from_static_moments(
     *,
     node: str,
     mass_kg: float,
     static_moment_kg_m: Vector,
     inertia_about_node_kg_m2: tuple[float, float, float, float, float, float],
+    part: str = "",
 ) -> PointMass:
-    """Return a rotor-nacelle assembly given by its moments about its node."""
+    """Return a rigid body given by its moments about its node (``mass_kg`` > 0).
+
+    Raises
+    ------
+    InputError
+        If the moments leave a negative inertia about the centre of gravity.
+    """
     a = np.asarray(static_moment_kg_m) / mass_kg
     xx, yy, zz, xy, xz, yz = inertia_about_node_kg_m2
-    about_node = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     S = cross_matrix(a)
-    I = about_node + mass_kg * S @ S  # noqa: E741
-    return PointMass(
-        node=node,
-        mass_kg=mass_kg,
-        cg_offset_m=(float(a[0]), float(a[1]), float(a[2])),
-        inertia_kg_m2=(
-            float(I[0, 0]),
-            float(I[1, 1]),
-            float(I[2, 2]),
-            float(I[0, 1]),
-            float(I[0, 2]),
-            float(I[1, 2]),
-        ),
-        part="rna",
-    )
+    I = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) + mass_kg * S @ S  # noqa: E741
+    rows, columns = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
+    inertia = tuple(float(I[i, j]) for i, j in zip(rows, columns, strict=True))
+    return PointMass(node, mass_kg, (float(a[0]), float(a[1]), float(a[2])), cast("Inertia", inertia), part)

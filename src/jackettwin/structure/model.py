@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FloatArray = npt.NDArray[np.float64]
 Vector = tuple[float, float, float]
+Inertia = tuple[float, float, float, float, float, float]
+
+
+def _require_between(field: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:
+        raise InputError(
+            "out of range",
+            field=field,
+            value=value,
+            allowed=f"{low:g} to {high:g}",
+            remedy="check the number and its unit",
+        )
 
 
 @dataclass(frozen=True)
@@ -26,11 +38,22 @@ class Material:
     shear_modulus_pa: float
     density_kg_m3: float
 
+    def __post_init__(self) -> None:
+        # generous bounds: they only keep typing errors and overflow out
+        _require_between("youngs_modulus_pa", self.youngs_modulus_pa, 1e3, 1e18)
+        _require_between("shear_modulus_pa", self.shear_modulus_pa, 1e3, 1e18)
+        _require_between("density_kg_m3", self.density_kg_m3, 0.0, 1e8)
+
     @classmethod
     def isotropic(cls, *, youngs_modulus_pa: float, poisson_ratio: float, density_kg_m3: float) -> Material:
         """Return a material with G = E / (2(1 + ν)) (thesis section 3.3.1)."""
         shear_modulus_pa = youngs_modulus_pa / (2.0 * (1.0 + poisson_ratio))
         return cls(youngs_modulus_pa, shear_modulus_pa, density_kg_m3)
+
+    @property
+    def poisson_ratio(self) -> float:
+        """ν = E/(2G) − 1."""
+        return self.youngs_modulus_pa / (2.0 * self.shear_modulus_pa) - 1.0
 
 
 STEEL = Material.isotropic(youngs_modulus_pa=210e9, poisson_ratio=0.3, density_kg_m3=7850.0)
@@ -44,14 +67,7 @@ class Section:
     thickness_m: float
 
     def __post_init__(self) -> None:
-        if not self.outer_diameter_m > 0.0:
-            raise InputError(
-                "diameter must be positive",
-                field="outer_diameter_m",
-                value=self.outer_diameter_m,
-                allowed="> 0",
-                remedy="give the outer diameter in metres",
-            )
+        _require_between("outer_diameter_m", self.outer_diameter_m, 1e-4, 1e3)
         if not 0.0 < self.thickness_m <= 0.5 * self.outer_diameter_m:
             raise InputError(
                 "thickness must be positive and at most the radius",
@@ -60,6 +76,11 @@ class Section:
                 allowed=f"0 < thickness_m ≤ {0.5 * self.outer_diameter_m:g}",
                 remedy="give the wall in metres",
             )
+
+    @property
+    def slenderness(self) -> float:
+        """Diameter over wall thickness."""
+        return self.outer_diameter_m / self.thickness_m
 
 
 @dataclass(frozen=True)
@@ -87,8 +108,29 @@ class PointMass:
     node: str
     mass_kg: float
     cg_offset_m: Vector = (0.0, 0.0, 0.0)
-    inertia_kg_m2: tuple[float, float, float, float, float, float] = (0.0,) * 6
+    inertia_kg_m2: Inertia = (0.0,) * 6
     part: str = ""
+
+    def __post_init__(self) -> None:
+        _require_between("mass_kg", self.mass_kg, 0.0, 1e12)
+        for value in self.cg_offset_m:
+            _require_between("cg_offset_m", value, -1e4, 1e4)
+        inertia = self.inertia_kg_m2
+        if not np.isfinite(inertia).all() or np.linalg.eigvalsh(self.inertia_tensor).min() < -1e-6 * max(
+            np.abs(inertia)
+        ):
+            raise InputError(
+                "inertia about the centre of gravity must not be negative in any direction",
+                field="inertia_kg_m2",
+                value=inertia,
+                remedy="state it about the centre of gravity, or give both moments about the node",
+            )
+
+    @property
+    def inertia_tensor(self) -> FloatArray:
+        """Inertia about the centre of gravity, (3, 3) [kg·m²]."""
+        xx, yy, zz, xy, xz, yz = self.inertia_kg_m2
+        return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 @dataclass(frozen=True)
@@ -128,20 +170,13 @@ class Structure:
     """Elements a member unless the analysis says otherwise."""
     beam: str = "euler-bernoulli"
     rotary_inertia: bool = False
-    parts: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        for index, member in enumerate(self.members):
-            place = f"members.{member.name or index}"
-            self._require(member.start, place)
-            self._require(member.end, place)
-            if np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])) <= 1e-9:
-                raise InputError(
-                    "member has zero length",
-                    field=place,
-                    value=[member.start, member.end],
-                    remedy="join it to two nodes that lie apart, or make it a rigid link",
-                )
+        for name, point in self.nodes.items():
+            for value in point:
+                with located(field=f"nodes.{name}"):
+                    _require_between("coordinate", value, -1e6, 1e6)
+        self._check_members()
         for kind, names in (
             ("masses", [m.node for m in self.masses]),
             ("rigid_links", [n for link in self.rigid_links for n in (link.leader, link.follower)]),
@@ -150,6 +185,71 @@ class Structure:
         ):
             for name in names:
                 self._require(name, kind)
+        self._check_links()
+        self._check_connected()
+
+    def _check_members(self) -> None:
+        names: set[str] = set()
+        for member in self.members:
+            place = f"members.{member.name}"
+            if member.name in names:
+                raise InputError(
+                    "two members have this name", field=place, value=member.name, remedy="rename one of them"
+                )
+            names.add(member.name)
+            self._require(member.start, place)
+            self._require(member.end, place)
+            if np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])) <= 1e-6:
+                raise InputError(
+                    "member has zero length",
+                    field=place,
+                    value=[member.start, member.end],
+                    remedy="join it to two nodes that lie apart, or make it a rigid link",
+                )
+
+    def _check_links(self) -> None:
+        followers = [link.follower for link in self.rigid_links]
+        leaders = {link.leader for link in self.rigid_links}
+        for name in followers:
+            if followers.count(name) > 1 or name in leaders:
+                raise InputError(
+                    "rigid links chain, loop or share a follower",
+                    field="rigid_links",
+                    value=name,
+                    remedy="let every follower have one leader that follows nobody",
+                )
+        for name in self.reaction_nodes:
+            if name in followers or self.reaction_nodes.count(name) > 1:
+                raise InputError(
+                    "reaction node is given twice or follows another by a rigid link",
+                    field="reaction_nodes",
+                    value=name,
+                    remedy="name it once, and make it the leader of its rigid links",
+                )
+
+    def _check_connected(self) -> None:
+        """Refuse nodes that members and rigid links do not join to the first member."""
+        if not self.members:
+            raise InputError("a structure needs members", field="members", value=[], remedy="add members")
+        neighbours: dict[str, list[str]] = {name: [] for name in self.nodes}
+        pairs = [(m.start, m.end) for m in self.members] + [(k.leader, k.follower) for k in self.rigid_links]
+        for a, b in pairs:
+            neighbours[a].append(b)
+            neighbours[b].append(a)
+        reached, stack = {self.members[0].start}, [self.members[0].start]
+        while stack:
+            for name in neighbours[stack.pop()]:
+                if name not in reached:
+                    reached.add(name)
+                    stack.append(name)
+        loose = [name for name in self.nodes if name not in reached]
+        if loose:
+            raise InputError(
+                "node is not connected to the structure",
+                field=f"nodes.{loose[0]}",
+                value=loose[0] if len(loose) == 1 else loose,
+                remedy="join it by a member or a rigid link, or delete it",
+            )
 
     def _require(self, node: str, place: str) -> None:
         if node not in self.nodes:

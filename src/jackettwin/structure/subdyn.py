@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files.yaml import read_text
 from jackettwin.structure.model import (
     Material,
@@ -101,7 +101,7 @@ def read_subdyn(path: Path) -> Structure:
     femmod = deck.scalar("FEMMod", "1")
     if femmod not in _THEORY:
         raise InputError("unsupported beam model", file=path, field="FEMMod", value=femmod, allowed="1, 3")
-    try:
+    with located(file=path):
         return Structure(
             name=path.stem,
             nodes=nodes,
@@ -115,8 +115,6 @@ def read_subdyn(path: Path) -> Structure:
             beam=_THEORY[femmod],
             rotary_inertia=True,
         )
-    except InputError as error:
-        raise error.at(file=path) from None
 
 
 def _joints(deck: _Deck) -> dict[str, Vector]:
@@ -144,10 +142,8 @@ def _sections(deck: _Deck) -> dict[str, tuple[Section, Material]]:
         E, G, rho, D, t = (
             _number(row, key, deck.path) for key in ("younge", "shearg", "matdens", "xsecd", "xsect")
         )
-        try:
+        with located(file=deck.path, field=f"PropSetID {row['propsetid']}"):
             sections[row["propsetid"]] = (Section(D, t), Material(E, G, rho))
-        except InputError as error:
-            raise error.at(file=deck.path, field=f"PropSetID {row['propsetid']}") from None
     return sections
 
 
@@ -224,11 +220,9 @@ def _masses(deck: _Deck) -> tuple[PointMass, ...]:
         offset = [value.get(f"mcg{axis}", value.get(f"cg{axis}", 0.0)) for axis in "xyz"]
         inertia = [value.get(f"jm{axes}", 0.0) for axes in ("xx", "yy", "zz", "xy", "xz", "yz")]
         xx, yy, zz, xy, xz, yz = inertia
-        bodies.append(
-            PointMass(
-                row["cmjointid"], value["jmass"], (offset[0], offset[1], offset[2]), (xx, yy, zz, xy, xz, yz)
-            )
-        )
+        place = (offset[0], offset[1], offset[2])
+        with located(file=deck.path, field=f"CMJointID {row['cmjointid']}"):
+            bodies.append(PointMass(row["cmjointid"], value["jmass"], place, (xx, yy, zz, xy, xz, yz)))
     return tuple(bodies)
 
 

@@ -1,0 +1,122 @@
+"""The first-order form ẋ = Ax of a system whose laws have finitely many states."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from jackettwin.errors import InputError
+from jackettwin.response.system import IntArray, Matrix, Pencil
+from jackettwin.soil.viscoelastic import Prony
+from jackettwin.structure.eigen import dense
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Branch(NamedTuple):
+    """A Maxwell branch on all the springs of a group: its internal variables live on ``dofs``."""
+
+    k: float
+    tau: float
+    S: Matrix
+    dofs: IntArray
+
+
+def maxwell_branches(pencil: Pencil) -> list[Branch]:
+    """Return every Maxwell branch with a live dashpot, in the order of the state vector."""
+    return [
+        Branch(k, tau, group.S, group.dofs)
+        for group in pencil.groups
+        if isinstance(group.law, Prony)
+        for k, tau in zip(group.law.k, group.law.tau, strict=True)
+        if k > 0.0 and tau > 0.0
+    ]
+
+
+def _instant_stiffness(pencil: Pencil) -> Matrix:
+    """Return K + Σ (k0 + Σ k_j) S: the stiffness with all Maxwell dashpots locked."""
+    total = pencil.static_stiffness()
+    for branch in maxwell_branches(pencil):
+        total = total + branch.k * branch.S
+    return total
+
+
+def _damping(pencil: Pencil) -> Matrix:
+    total = pencil.rayleigh.alpha * pencil.M + pencil.rayleigh.beta * pencil.K
+    for group in pencil.groups:
+        if isinstance(group.law, Prony) and group.law.c:
+            total = total + group.law.c * group.S
+    return total
+
+
+def state_matrix(pencil: Pencil) -> FloatArray:
+    """Return the dense state matrix on [q, q̇, y] (thesis (7.2), (7.5)) of a pencil whose laws are all finite.
+
+    The internal variables are displacements, τ ẏ = q − y, so that all states have one unit.
+
+    Raises
+    ------
+    InputError
+        If a law has no finite number of states.
+    """
+    if not all(isinstance(group.law, Prony) for group in pencil.groups):
+        raise InputError(
+            "a springpot has no finite state",
+            field="law",
+            value="springpot",
+            allowed="elastic, kelvin-voigt, zener, maxwell, maxwell-3",
+            remedy="use the damped modes of the full model, or a maxwell law instead",
+        )
+    n, branches = pencil.n, maxwell_branches(pencil)
+    M, K, C = dense(pencil.M), dense(_instant_stiffness(pencil)), dense(_damping(pencil))
+    size = 2 * n + sum(dofs.size for _, _, _, dofs in branches)
+    A = np.zeros((size, size))
+    A[:n, n : 2 * n] = np.eye(n)
+    forces = np.zeros((n, size))
+    forces[:, :n], forces[:, n : 2 * n] = -K, -C
+    at = 2 * n
+    for k, tau, S, dofs in branches:
+        here = np.arange(at, at + dofs.size)
+        forces[:, here] = k * dense(S)[:, dofs]
+        A[here, dofs], A[here, here] = 1.0 / tau, -1.0 / tau
+        at += dofs.size
+    A[n : 2 * n] = la.solve(M, forces, assume_a="pos")
+    return A
+
+
+def shifted_inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, int]:
+    """Return (A − σI)⁻¹ of the state matrix A through one factorisation of F(σ), and its size."""
+    branches = maxwell_branches(pencil)
+    size = 2 * pencil.n + sum(branch.dofs.size for branch in branches)
+    n, M, C = pencil.n, pencil.M, _damping(pencil)
+    F = sp.csc_array(pencil.F(sigma))
+    lu = factorised(F.real.copy())
+
+    def solve(b: FloatArray) -> FloatArray:
+        bq, bv = b[:n], b[n : 2 * n]
+        rhs = -(M @ (bv + sigma * bq)) - C @ bq
+        at = 2 * n
+        for k, tau, S, dofs in branches:
+            spread = np.zeros(n)
+            spread[dofs] = b[at : at + dofs.size] * tau / (1.0 + sigma * tau)
+            rhs -= k * (S @ spread)
+            at += dofs.size
+        q = lu.solve(rhs)
+        parts = [q, sigma * q + bq]
+        at = 2 * n
+        for _, tau, _, dofs in branches:
+            parts.append((q[dofs] - tau * b[at : at + dofs.size]) / (1.0 + sigma * tau))
+            at += dofs.size
+        return np.concatenate(parts)
+
+    return spla.LinearOperator((size, size), matvec=solve, dtype=np.float64), size
+
+
+def factorised(F: sp.csc_array) -> spla.SuperLU:
+    """Return the factors of a symmetric matrix: a symmetric order of elimination fills in least."""
+    return spla.splu(sp.csc_matrix(F), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1)

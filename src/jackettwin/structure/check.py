@@ -1,0 +1,103 @@
+"""Does the model make sense: its mass, its rigid-body modes, absurd sections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.axes import DOFS_PER_NODE
+from jackettwin.errors import InputError
+from jackettwin.structure.assemble import Assembly, assemble
+from jackettwin.structure.eigen import lowest_modes
+from jackettwin.structure.masses import rigid_transfer
+from jackettwin.structure.model import Member, Structure, Vector
+
+FloatArray = npt.NDArray[np.float64]
+
+SLENDER_WALLS = (10.0, 300.0)
+"""Diameter over wall of offshore tubes: thick-walled piles to thin towers."""
+
+
+@dataclass(frozen=True)
+class ModelCheck:
+    """What an engineer looks at before trusting a model.
+
+    Attributes
+    ----------
+    mass_kg : float
+    center_of_mass_m : (x, y, z) in the structure's frame
+    rigid_body_modes : int
+        Of the free structure without gravity; six for anything in one piece.
+    warnings : tuple of str
+        One sentence for each kind of oddity, naming the members.
+    """
+
+    mass_kg: float
+    center_of_mass_m: Vector
+    rigid_body_modes: int
+    warnings: tuple[str, ...]
+
+
+def check(assembly: Assembly) -> ModelCheck:
+    """Return the check of a model. Nodes that hang on nothing never get this far: a Structure refuses them.
+
+    Raises
+    ------
+    InputError
+        If the structure has no mass.
+    """
+    motion = rigid_body_motion(assembly)
+    body = motion.T @ (assembly.mass @ motion)
+    mass = float(body[2, 2])
+    if not mass > 0.0:
+        raise InputError("the structure has no mass", field="materials", value=mass, allowed="> 0 kg")
+    centre = np.array([body[1, 5], body[2, 3], body[0, 4]]) / mass
+    return ModelCheck(
+        mass_kg=mass,
+        center_of_mass_m=(float(centre[0]), float(centre[1]), float(centre[2])),
+        rigid_body_modes=_rigid_body_modes(assembly),
+        warnings=tuple(_warnings(assembly.structure)),
+    )
+
+
+def rigid_body_motion(assembly: Assembly) -> FloatArray:
+    """Return (n_dof, 6): unit translations along and rotations about the axes of the structure's frame."""
+    everywhere = np.vstack([rigid_transfer(point) for point in assembly.mesh.coordinates])
+    followers = [link.follower for link in assembly.structure.rigid_links]
+    gone = [assembly.mesh.node_names.index(name) for name in followers]
+    keep = np.setdiff1d(np.arange(len(assembly.mesh.node_names)), gone)
+    dofs = (DOFS_PER_NODE * keep[:, None] + np.arange(DOFS_PER_NODE)).ravel()
+    return np.asarray(everywhere[dofs])
+
+
+def _rigid_body_modes(assembly: Assembly) -> int:
+    """Return how many modes of the free structure have next to no frequency beside its first elastic one."""
+    free = assemble(assembly.structure) if assembly.gravity else assembly
+    omega, _ = lowest_modes(free.stiffness, free.mass, 7)
+    return int(np.sum(omega < 1e-3 * omega[-1]))
+
+
+def _warnings(structure: Structure) -> Iterator[str]:
+    low, high = SLENDER_WALLS
+
+    def wall(m: Member) -> bool:
+        return any(not low <= s.slenderness <= high for s in (m.section_start, m.section_end))
+
+    def stubby(m: Member) -> bool:
+        length = np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start]))
+        return bool(length < 0.5 * max(m.section_start.outer_diameter_m, m.section_end.outer_diameter_m))
+
+    oddities: tuple[tuple[str, Callable[[Member], bool]], ...] = (
+        (f"diameter over wall thickness outside {low:g} to {high:g}", wall),
+        ("shorter than half the diameter", stubby),
+        ("without mass", lambda m: m.material.density_kg_m3 == 0.0),
+        ("Poisson's ratio outside 0 to 0.5", lambda m: not 0.0 <= m.material.poisson_ratio <= 0.5),
+    )
+    for what, is_odd in oddities:
+        names = [member.name for member in structure.members if is_odd(member)]
+        if names:
+            more = f" and {len(names) - 5} more" if len(names) > 5 else ""
+            yield f"{what}: {', '.join(names[:5])}{more}"

@@ -1,0 +1,88 @@
+"""Real modes of Kφ = ω²Mφ."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from jackettwin.errors import InputError, NumericalError
+
+FloatArray = npt.NDArray[np.float64]
+Matrix = Any
+"""A NumPy array or a SciPy sparse array."""
+
+_SMALL = 150
+"""Matrices up to this size are solved densely: Lanczos needs room."""
+
+
+def lowest_modes(
+    K: Matrix, M: Matrix, number: int, *, shift: float | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the lowest ω [rad/s] and mass-normalised φ of Kφ = ω²Mφ; sparse matrices, M may be singular.
+
+    Parameters
+    ----------
+    shift : float, optional
+        A small negative number: K − shift·M must be definite for free-floating structures too.
+
+    Raises
+    ------
+    InputError
+        If K has a negative eigenvalue.
+    NumericalError
+        If the iteration does not converge.
+    """
+    n = int(K.shape[0])
+    number = min(number, n)
+    sigma = below_zero(K, M) if shift is None else shift
+    if n <= max(_SMALL, 3 * number):
+        w, x = _dense_modes(dense(K), dense(M), sigma, number)
+    else:
+        try:
+            w, x = spla.eigsh(
+                sp.csc_matrix(K),
+                k=number,
+                M=M,
+                sigma=sigma,
+                v0=np.random.default_rng(0).standard_normal(n),
+                tol=0.0,
+            )
+        except (spla.ArpackError, RuntimeError) as error:
+            raise NumericalError(f"undamped modes did not converge: {error}") from error
+    if w.min(initial=0.0) < 10.0 * sigma:
+        raise _unstable()
+    order = np.argsort(w)
+    return np.sqrt(np.maximum(w[order], 0.0)), x[:, order]
+
+
+def below_zero(K: Matrix, M: Matrix) -> float:
+    """Return a shift just below zero, small beside every elastic ω²."""
+    return -1e-9 * float(K.diagonal().sum() / M.diagonal().sum())
+
+
+def _dense_modes(K: FloatArray, M: FloatArray, sigma: float, number: int) -> tuple[FloatArray, FloatArray]:
+    """Return (ω², x) of the lowest modes from M x = μ (K − σM) x, μ = 1/(ω² − σ)."""
+    try:
+        mu, x = la.eigh(M, K - sigma * M, subset_by_index=[M.shape[0] - number, M.shape[0] - 1])
+    except la.LinAlgError:
+        raise _unstable() from None
+    moving = mu > 1e-14 * mu[-1]
+    return sigma + 1.0 / mu[moving], x[:, moving] / np.sqrt(mu[moving])
+
+
+def _unstable() -> InputError:
+    return InputError(
+        "the structure falls over: its stiffness with the weight on it is not positive",
+        field="structure",
+        remedy="stiffen the supports or the structure, lower the masses, or leave gravity out",
+    )
+
+
+def dense(matrix: Matrix) -> FloatArray:
+    """Return a dense array of a dense or sparse matrix."""
+    return np.asarray(matrix) if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
