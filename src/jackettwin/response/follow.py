@@ -25,6 +25,12 @@ def mass_mac(M: Any, phi: FloatArray, x: npt.NDArray[Any]) -> FloatArray:
     return np.asarray(cross / np.outer(own, np.einsum("ij,ij->j", x.conj(), Mx).real))
 
 
+def near_degenerate(frequencies: FloatArray) -> list[IntArray]:
+    """Return the indices of ascending frequencies in groups whose neighbours are near-degenerate."""
+    cuts = np.flatnonzero(np.diff(frequencies) > NEAR_DEGENERATE * frequencies[1:]) + 1
+    return np.split(np.arange(frequencies.size), cuts)
+
+
 def follow(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any]) -> IntArray:
     """Return for each reference mode the index of its successor among the candidates, or −1.
 
@@ -39,8 +45,9 @@ def follow(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any]) -> I
     if x.shape[1] == 0:
         return successor
     single = mass_mac(M, phi, x)
-    group = np.concatenate([[0], np.cumsum(np.diff(omega) > NEAR_DEGENERATE * omega[1:])])
-    subspace = np.array([single[group == group[j]].sum(axis=0) for j in range(omega.size)])
+    subspace = np.empty_like(single)
+    for group in near_degenerate(omega):
+        subspace[group] = single[group].sum(axis=0)
     # the subspace decides who belongs; inside it the single shapes say which is which
     rows, columns = linear_sum_assignment(-(subspace + 0.1 * single))
     known = subspace[rows, columns] >= RECOGNISED

@@ -1,0 +1,78 @@
+"""What a twin is made of, checked and in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import hypot
+from pathlib import Path
+from typing import Literal
+
+from jackettwin.identification import IdentificationSettings
+from jackettwin.response.sensors import Sensor
+from jackettwin.structure import Rayleigh, Structure
+from jackettwin.updating import DEFAULT_LAWS, Target
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """Relative standard deviation by which the model itself may miss some modes."""
+
+    modes: tuple[int, ...]
+    frequency: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True)
+class UpdateSettings:
+    """How the supports are updated.
+
+    ``damping_of`` names the modes whose damping the supports must explain: ``fore_aft``, ``all``, ``none``,
+    or labels. ``modes`` are the numbers of the fitted modes; by default both bending pairs and torsion:
+    beyond those, blades and brace details matter more than supports.
+    """
+
+    laws: tuple[str, ...] = DEFAULT_LAWS
+    method: Literal["least-squares", "nelder-mead"] = "least-squares"
+    starts: int = 16
+    seed: int = 0
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    weighting: Literal["auto", "relative", "covariance"] = "auto"
+    modes: tuple[int, ...] = (1, 2, 3, 4, 5)
+    damping_of: str | tuple[str, ...] = "fore_aft"
+    model_errors: tuple[ModelError, ...] = ()
+
+    def fits_damping(self, label: str) -> bool:
+        """Return whether the damping of a mode takes part in the fit."""
+        if isinstance(self.damping_of, tuple):
+            return label in self.damping_of
+        return self.damping_of == "all" or label.startswith(self.damping_of)
+
+    def model_error(self, mode: int) -> ModelError:
+        """Return the model error of one mode (quadratic sum of all that name it)."""
+        frequency = damping = 0.0
+        for error in self.model_errors:
+            if mode in error.modes:
+                frequency, damping = hypot(frequency, error.frequency), hypot(damping, error.damping)
+        return ModelError((mode,), frequency, damping)
+
+
+@dataclass(frozen=True)
+class TwinConfig:
+    """A checked twin file; relative paths are resolved."""
+
+    name: str
+    path: Path
+    structure: Structure
+    beam: str | None
+    rotary_inertia: bool | None
+    subdivide: int | None
+    gravity: bool
+    rayleigh: Rayleigh
+    rayleigh_ratio: float
+    tie: str
+    sensors: tuple[Sensor, ...]
+    records: tuple[Path, ...]
+    targets: tuple[Target, ...]
+    identification: IdentificationSettings
+    update: UpdateSettings

@@ -1,0 +1,149 @@
+"""A run's result as plain JSON data: the keys users script against."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jackettwin import __version__
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.twin.result import MeasuredMode, TwinResult
+from jackettwin.updating import Update
+
+
+def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
+    """Return the document of ``jackettwin run``."""
+    return {
+        "name": result.name,
+        "modes": [_measured(m) for m in result.measured],
+        "updates": [update_document(result, i) for i in range(len(result.updates))],
+        "identification": [identification_document(i) for i in result.identifications],
+        "unpaired_modes": [mode_document(e, None) for e in result.unpaired],
+        "assumptions": list(result.assumptions),
+        "warnings": list(result.warnings),
+        "report": report,
+        "code_version": __version__,
+    }
+
+
+def update_document(result: TwinResult, index: int) -> dict[str, Any]:
+    """Return the document of one law of ``jackettwin update``."""
+    u = result.updates[index]
+    names = [p.name for p in u.model.parameters]
+    stds = (
+        [None] * len(names)
+        if u.log_std is None
+        else [float(v * s) for v, s in zip(u.best.theta, u.log_std, strict=True)]
+    )
+    return {
+        "law": u.law,
+        "parameters": {
+            name: {"value": float(value), "std": std, "interval_90": interval, "unit": p.unit}
+            for name, p, value, std, interval in zip(
+                names, u.model.parameters, u.best.theta, stds, u.interval_90(), strict=True
+            )
+        },
+        "modes": _compared(result.measured, u),
+        "solutions": [
+            {
+                "parameters": dict(zip(names, map(float, s.theta), strict=True)),
+                "cost": s.cost,
+                "locked_damper": s.locked_damper,
+                "frequency_hz": s.frequency_hz,
+                "undamped_frequency_hz": s.undamped_hz,
+                "damping_ratio": s.damping_ratio,
+                "at_bound": list(s.at_bound),
+                "starts_that_ended_here": s.found,
+            }
+            for s in u.solutions
+        ],
+        "identifiability": dict(zip(names, u.identifiability(), strict=True)),
+        "log_evidence": None,
+        "real_poles_rad_s": u.modes.damped.real_poles,
+        "reference_frequency_hz": u.model.reference_hz,
+        "unexplained_damping": [
+            {
+                "label": e.label,
+                "measured_damping_ratio": e.measured,
+                "measured_damping_ratio_std": e.measured_std,
+                "damping_ratio": e.model,
+                "excess": e.measured - e.model,
+                "explained": e.explained,
+            }
+            for e in result.excess[index]
+        ],
+    }
+
+
+def _measured(m: MeasuredMode) -> dict[str, Any]:
+    return {
+        "mode": m.mode,
+        "label": m.label,
+        "frequency_hz": m.frequency_hz,
+        "frequency_std_hz": m.frequency_std_hz,
+        "damping_ratio": m.damping_ratio,
+        "damping_ratio_std": m.damping_ratio_std,
+        "mac": m.mac,
+        "fits_frequency": m.fits_frequency,
+        "fits_damping": m.fits_damping,
+    }
+
+
+def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
+    return [
+        {
+            "mode": m.mode,
+            "label": m.label,
+            "measured_frequency_hz": m.frequency_hz,
+            "frequency_hz": float(f),
+            "undamped_frequency_hz": float(undamped),
+            "measured_damping_ratio": m.damping_ratio,
+            "damping_ratio": float(zeta),
+        }
+        for m, f, undamped, zeta in zip(
+            measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio, strict=True
+        )
+    ]
+
+
+def identification_document(found: Identification) -> dict[str, Any]:
+    """Return the document of ``jackettwin identify``."""
+    names = [channel.name for channel in found.channels]
+    s = found.settings
+    return {
+        "records": list(found.records),
+        "modes": [mode_document(m, names) for m in found.modes],
+        "rejected": [
+            {"frequency_hz": r.frequency_hz, "damping_ratio": r.damping_ratio, "reason": r.reason}
+            for r in found.rejected
+        ],
+        "settings": {
+            "lowest_frequency_hz": s.lowest_frequency_hz,
+            "highest_frequency_hz": s.highest_frequency_hz,
+            "sample_rate_hz": s.sample_rate_hz,
+            "block_rows": s.block_rows,
+            "lag_window_s": s.lag_window_s,
+            "orders": list(s.orders),
+        },
+        "duration_s": found.duration_s,
+        "warnings": list(found.warnings),
+    }
+
+
+def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any]:
+    """Return one identified mode; shapes as [real, imaginary] a channel."""
+    document: dict[str, Any] = {
+        "frequency_hz": m.frequency_hz,
+        "frequency_std_hz": m.frequency_std_hz,
+        "damping_ratio": m.damping_ratio,
+        "damping_ratio_std": m.damping_ratio_std,
+        "frequency_interval_95": m.frequency_interval_95,
+        "damping_ratio_interval_95": m.damping_ratio_interval_95,
+        "mpc": m.mpc,
+        "method": m.method,
+        "status": m.status,
+    }
+    if channels is not None:
+        document["mode_shape"] = {
+            name: [float(v.real), float(v.imag)] for name, v in zip(channels, m.mode_shape, strict=True)
+        }
+    return document

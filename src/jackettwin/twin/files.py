@@ -1,0 +1,206 @@
+"""Twin files: YAML to a checked configuration."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.identification import IdentificationSettings
+from jackettwin.response.sensors import Sensor
+from jackettwin.structure import Rayleigh, Structure, read_structure
+from jackettwin.structure.files import BodySchema
+from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
+from jackettwin.updating import DEFAULT_LAWS, Target, family
+
+Positive = Annotated[float, Field(gt=0.0)]
+Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
+Vector = tuple[float, float, float]
+
+
+class StructureChoice(Schema):
+    """A structure with overrides."""
+
+    source: str
+    rna: BodySchema | None = None
+
+
+class RayleighSchema(Schema):
+    """Steel damping: a least ratio and where it stands."""
+
+    ratio: Ratio
+    frequency_hz: Positive
+
+
+class DampingSchema(Schema):
+    """``damping``."""
+
+    rayleigh: RayleighSchema
+
+
+class SupportSchema(Schema):
+    """``support``: the law to report first, and which translations share parameters."""
+
+    law: str | None = None
+    tie: Literal["all", "horizontal-vertical", "per-leg"] = "all"
+
+
+class SensorSchema(Schema):
+    """A sensor: where a channel of the record sits in the structure."""
+
+    channel: str
+    node: str | None = None
+    height_m: float | None = None
+    direction: Vector
+
+
+class TargetSchema(Schema):
+    """A mode known from elsewhere."""
+
+    mode: Annotated[int, Field(ge=1, le=50)]
+    frequency_hz: Positive | None = None
+    frequency_std_hz: Positive | None = None
+    damping_ratio: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
+    damping_ratio_std: Positive | None = None
+
+
+class ModelErrorSchema(Schema):
+    """How well the model itself can be expected to meet some modes."""
+
+    modes: list[Annotated[int, Field(ge=1, le=50)]]
+    frequency: Ratio = 0.0
+    damping: Ratio = 0.0
+
+
+class UpdateSchema(Schema):
+    """``update``."""
+
+    laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
+    method: Literal["least-squares", "nelder-mead"] = "least-squares"
+    starts: Annotated[int, Field(ge=1, le=10000)] = 16
+    seed: Annotated[int, Field(ge=0)] = 0
+    bounds: dict[str, tuple[float, float]] = {}
+    weighting: Literal["auto", "relative", "covariance"] = "auto"
+    modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
+    damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
+    model_error: list[ModelErrorSchema] = []
+
+
+class TwinSchema(Schema):
+    """A twin file."""
+
+    structure: str | StructureChoice
+    rna: BodySchema | None = None
+    beam: Literal["euler-bernoulli", "timoshenko"] | None = None
+    rotary_inertia: bool | None = None
+    subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
+    gravity: bool = False
+    damping: DampingSchema | None = None
+    support: SupportSchema = SupportSchema()
+    sensors: list[SensorSchema] = []
+    records: list[str] = []
+    targets: list[TargetSchema] = []
+    identification: dict[str, Any] = {}
+    update: UpdateSchema = UpdateSchema()
+
+
+def shipped_twins() -> tuple[str, ...]:
+    """Return the names of the twins that come with the package."""
+    folder = resources.files("jackettwin.data").joinpath("twins")
+    return tuple(
+        sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
+    )
+
+
+def read_twin(source: str | Path) -> TwinConfig:
+    """Read a twin: a shipped name or a YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or anything in it is wrong; the message names file, field and value.
+    """
+    name = str(source)
+    if name in shipped_twins():
+        with resources.as_file(resources.files("jackettwin.data").joinpath("twins", f"{name}.yaml")) as path:
+            return _read(path)
+    path = Path(source)
+    if not path.exists() and path.suffix == "":
+        raise InputError(
+            "no such twin",
+            field="twin",
+            value=name,
+            allowed=f"{', '.join(shipped_twins())}, or a .yaml file",
+            remedy=did_you_mean(name, shipped_twins()),
+        )
+    return _read(path)
+
+
+def _read(path: Path) -> TwinConfig:
+    schema = validate(TwinSchema, read_yaml(path, what="twin file"), file=path)
+    with located(file=path):
+        return _build(schema, path)
+
+
+def _build(schema: TwinSchema, path: Path) -> TwinConfig:
+    if bool(schema.records) == bool(schema.targets):
+        raise InputError(
+            "give records or targets",
+            field="records",
+            remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
+        )
+    if len({s.channel for s in schema.sensors}) != len(schema.sensors):
+        raise InputError(
+            "a channel is given twice", field="sensors", value=[s.channel for s in schema.sensors]
+        )
+    for law in (*schema.update.laws, *([schema.support.law] if schema.support.law else [])):
+        family(law)
+    damping = schema.damping.rayleigh if schema.damping is not None else None
+    return TwinConfig(
+        name=path.stem,
+        path=path,
+        structure=_structure(schema, path.parent),
+        beam=schema.beam,
+        rotary_inertia=schema.rotary_inertia,
+        subdivide=schema.subdivide,
+        gravity=schema.gravity,
+        rayleigh=Rayleigh() if damping is None else Rayleigh.minimum(damping.ratio, damping.frequency_hz),
+        rayleigh_ratio=0.0 if damping is None else damping.ratio,
+        tie=schema.support.tie,
+        sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
+        records=tuple(path.parent / record for record in schema.records),
+        targets=tuple(Target(**target.model_dump()) for target in schema.targets),
+        identification=IdentificationSettings.from_mapping(schema.identification),
+        update=_update_settings(schema),
+    )
+
+
+def _structure(schema: TwinSchema, folder: Path) -> Structure:
+    choice = schema.structure
+    structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
+    rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
+    if rna is None:
+        return structure
+    top = structure.top_node
+    others = tuple(mass for mass in structure.masses if mass.node != top)
+    return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
+
+
+def _update_settings(schema: TwinSchema) -> UpdateSettings:
+    u = schema.update
+    first = [schema.support.law] if schema.support.law else []
+    return UpdateSettings(
+        laws=tuple(dict.fromkeys([*first, *u.laws])),
+        method=u.method,
+        starts=u.starts,
+        seed=u.seed,
+        bounds=dict(u.bounds),
+        weighting=u.weighting,
+        modes=tuple(u.modes),
+        damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
+        model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
+    )

@@ -1,0 +1,80 @@
+"""What was assumed and what to beware of, in sentences."""
+
+from __future__ import annotations
+
+from math import hypot
+
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.measure import Measured
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import Update
+
+
+def assumptions(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> tuple[str, ...]:
+    """Return what the run took for granted."""
+    s = config.structure
+    theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[config.beam or s.beam]
+    rotary = s.rotary_inertia if config.rotary_inertia is None else config.rotary_inertia
+    lines = [
+        f"{theory} beams, {'with' if rotary or theory == 'Timoshenko' else 'without'} rotary inertia; "
+        + ("gravity's P-Δ stiffness is on." if config.gravity else "no gravity stiffness."),
+        f"Steel damping: Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum, on the structure only."
+        if config.rayleigh_ratio
+        else "The steel is undamped.",
+        f"The support law acts on the three translations of {len(s.reactions)} reaction nodes "
+        f"(tie: {config.tie}).",
+        "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
+        f"Fitted: {', '.join(filter(None, map(_fitted, measured)))}.",
+    ]
+    for e in config.update.model_errors:
+        lines.append(
+            f"Model error of modes {', '.join(map(str, e.modes))}: {100 * e.frequency:.3g} % on frequency, "
+            f"{100 * e.damping:.3g} % on damping."
+        )
+    if len(config.records) > 1:
+        lines.append(
+            f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "
+            "scatter."
+        )
+    return tuple(lines)
+
+
+def _fitted(m: MeasuredMode) -> str:
+    what = [word for word, flag in (("f", m.fits_frequency), ("ζ", m.fits_damping)) if flag]
+    return f"{m.label} ({' and '.join(what)})" if what else ""
+
+
+def cautions(
+    config: TwinConfig,
+    found: Measured | None,
+    measured: tuple[MeasuredMode, ...],
+    updates: tuple[Update, ...],
+) -> tuple[str, ...]:
+    """Return what the reader should beware of."""
+    lines = []
+    if found is not None:
+        lines += [f"{i.records[0]}: {text}" for i in found.identifications for text in i.warnings]
+        if found.unpaired:
+            places = ", ".join(f"{f:.3f}" for f in sorted(e.frequency_hz for e in found.unpaired))
+            lines.append(f"Identified but without a counterpart in the model (Hz): {places}.")
+    for u in updates:
+        if u.best.locked_damper:
+            lines.append(
+                f"{u.law}: every solution locks a damper; its undamped structure is more than 5 % off."
+            )
+        if u.best.at_bound:
+            lines.append(f"{u.law}: {', '.join(u.best.at_bound)} ended on a bound.")
+        lines += [
+            f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %."
+            for m, f in zip(measured, u.modes.frequency_hz, strict=True)
+            if m.frequency_hz is not None and _misses(config, m, float(f))
+        ]
+    return tuple(lines)
+
+
+def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:
+    """Return whether a fitted frequency is off by more than 1 % and three standard deviations."""
+    if m.frequency_hz is None or not m.fits_frequency:
+        return False
+    std = hypot(m.frequency_std_hz or 0.0, config.update.model_error(m.mode).frequency * m.frequency_hz)
+    return abs(f - m.frequency_hz) > max(3.0 * std, 0.01 * m.frequency_hz)

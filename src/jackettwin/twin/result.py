@@ -1,0 +1,93 @@
+"""What one run of the twin produced: everything the report shows, nothing it would have to compute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.records import Record
+from jackettwin.response.modal import UndampedModes
+from jackettwin.response.sensors import Sensor
+from jackettwin.structure import Assembly
+from jackettwin.updating import Update
+
+
+@dataclass(frozen=True)
+class MeasuredMode:
+    """A measured mode paired with a mode of the model.
+
+    Attributes
+    ----------
+    mode : int
+        Number on pinned supports, from 1.
+    label : str
+        ``fore_aft_1``, ``side_side_2``, ``torsion_1`` …
+    estimate : ModalEstimate or None
+        What was identified; None if the value was given as a target.
+    mac : float or None
+        Between the measured shape and the model's at the sensors.
+    fits_frequency, fits_damping : bool
+        Whether the value took part in the update.
+    """
+
+    mode: int
+    label: str
+    frequency_hz: float | None
+    frequency_std_hz: float | None
+    damping_ratio: float | None
+    damping_ratio_std: float | None
+    estimate: ModalEstimate | None
+    mac: float | None
+    fits_frequency: bool
+    fits_damping: bool
+
+
+@dataclass(frozen=True)
+class DampingExcess:
+    """Measured damping of a mode that took no part in the fit, beside what the updated support gives it."""
+
+    label: str
+    measured: float
+    measured_std: float | None
+    model: float
+    explained: bool
+    """Whether the difference is within two standard deviations."""
+
+
+@dataclass(frozen=True)
+class TwinResult:
+    """Everything one run produced.
+
+    Attributes
+    ----------
+    numbered, labels
+        Undamped modes on pinned supports and what to call them.
+    record : Record or None
+        The first record, as read.
+    identifications : tuple of Identification
+        One a record.
+    measured : tuple of MeasuredMode
+        In the order of mode numbers.
+    unpaired : tuple of ModalEstimate
+        Identified modes the model has no counterpart for.
+    updates : tuple of Update
+        One a law; each covers the modes of ``measured``.
+    excess : tuple of tuple of DampingExcess
+        For each update, the modes whose damping was left out of the fit.
+    assumptions, warnings : tuple of str
+        Sentences for the report.
+    """
+
+    name: str
+    assembly: Assembly
+    sensors: tuple[Sensor, ...]
+    numbered: UndampedModes
+    labels: tuple[str, ...]
+    record: Record | None
+    identifications: tuple[Identification, ...]
+    measured: tuple[MeasuredMode, ...]
+    unpaired: tuple[ModalEstimate, ...]
+    updates: tuple[Update, ...]
+    excess: tuple[tuple[DampingExcess, ...], ...]
+    assumptions: tuple[str, ...]
+    warnings: tuple[str, ...]

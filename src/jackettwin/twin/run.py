@@ -1,0 +1,189 @@
+"""The main job: records to modes to updated supports."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import hypot
+
+import numpy as np
+
+from jackettwin.errors import InputError, located
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.structure import Assembly, assemble
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.measure import Measured, Sighting, fuse, measure
+from jackettwin.twin.narrative import assumptions, cautions
+from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
+from jackettwin.updating import Residuals, Target, Update, family, numbered_modes, support_model, update
+
+_PAIRED_MODES = 12
+"""Modes of the model that measured modes may be paired with."""
+
+
+def run_twin(
+    config: TwinConfig,
+    *,
+    laws: tuple[str, ...] | None = None,
+    step: Callable[[str], None] = lambda _: None,
+) -> TwinResult:
+    """Identify the records of a twin (or take its targets) and update its supports under each law.
+
+    Parameters
+    ----------
+    laws : tuple of str, optional
+        Instead of the twin file's.
+    step : callable
+        Told what is being done, once a step; ``count_steps`` says how many there are.
+
+    Raises
+    ------
+    InputError
+        If records, sensors or targets do not fit the structure.
+    NumericalError
+        If no solution can be found.
+    """
+    step("assemble the structure")
+    assembly = assemble(
+        config.structure,
+        beam_theory=config.beam,
+        rotary_inertia=config.rotary_inertia,
+        subdivide=config.subdivide,
+        gravity=config.gravity,
+    )
+    number = max([_PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
+    numbered = numbered_modes(assembly, number)
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    found = measure(config, assembly, numbered, step=step) if config.records else None
+    measured = _from_records(config, found, labels) if found is not None else _from_targets(config, labels)
+    residuals = _residuals(config, measured)
+    updates = []
+    for law in laws or config.update.laws:
+        step(f"update {law}")
+        updates.append(_update(config, assembly, law, residuals))
+    return TwinResult(
+        name=config.name,
+        assembly=assembly,
+        sensors=() if found is None else found.sensors,
+        numbered=numbered,
+        labels=labels,
+        record=None if found is None else found.record,
+        identifications=() if found is None else found.identifications,
+        measured=measured,
+        unpaired=() if found is None else found.unpaired,
+        updates=tuple(updates),
+        excess=tuple(_excess(measured, result) for result in updates),
+        assumptions=assumptions(config, measured),
+        warnings=cautions(config, found, measured, tuple(updates)),
+    )
+
+
+def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
+    """Return how many steps ``run_twin`` announces."""
+    return 1 + len(config.records) + len(laws or config.update.laws)
+
+
+def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residuals) -> Update:
+    chosen = family(law)
+    own = {p.name for p in chosen.parameters}
+    bounds = {
+        k: v for k, v in config.update.bounds.items() if any(k == n or k.startswith(f"{n}_") for n in own)
+    }
+    try:
+        model = support_model(
+            assembly, family=chosen, rayleigh=config.rayleigh, tie=config.tie, bounds=bounds
+        )
+    except InputError as error:
+        raise error.at(file=config.path, field="update" if bounds else None) from None
+    s = config.update
+    return update(model, residuals, method=s.method, starts=s.starts, seed=s.seed)
+
+
+def _from_targets(config: TwinConfig, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+    return tuple(
+        MeasuredMode(
+            mode=t.mode,
+            label=labels[t.mode - 1],
+            frequency_hz=t.frequency_hz,
+            frequency_std_hz=t.frequency_std_hz,
+            damping_ratio=t.damping_ratio,
+            damping_ratio_std=t.damping_ratio_std,
+            estimate=None,
+            mac=None,
+            fits_frequency=t.frequency_hz is not None,
+            fits_damping=t.damping_ratio is not None,
+        )
+        for t in sorted(config.targets, key=lambda t: t.mode)
+    )
+
+
+def _from_records(config: TwinConfig, found: Measured, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+    if not found.sightings:
+        raise InputError(
+            "no identified mode resembles a mode of the model",
+            file=config.path,
+            field="records",
+            value=[path.name for path in config.records],
+            remedy="check the sensors' places and directions, and the structure",
+        )
+    return tuple(
+        _measured_mode(config, mode, labels[mode - 1], seen) for mode, seen in found.sightings.items()
+    )
+
+
+def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighting, ...]) -> MeasuredMode:
+    f, f_std, zeta, zeta_std = fuse(seen)
+    best = max(seen, key=lambda s: s.mac)
+    chosen = mode in config.update.modes
+    wanted = config.update.damping_of
+    damped = wanted == "all" or (
+        wanted != "none" and (label.startswith(wanted) if isinstance(wanted, str) else label in wanted)
+    )
+    return MeasuredMode(
+        mode, label, f, f_std, zeta, zeta_std, best.estimate, best.mac, chosen, chosen and damped
+    )
+
+
+def _residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residuals:
+    """Return the residuals of all measured modes; what takes no part in the fit keeps its place with None."""
+    complete = all(
+        (m.frequency_std_hz is not None or not m.fits_frequency)
+        and (m.damping_ratio_std is not None or not m.fits_damping)
+        for m in measured
+    )
+    weighting = config.update.weighting
+    if weighting == "covariance" and not complete:
+        raise InputError(
+            "covariance weighting needs a standard deviation of every target",
+            file=config.path,
+            field="update.weighting",
+            value=weighting,
+            remedy="give frequency_std_hz and damping_ratio_std, or weighting: relative",
+        )
+    relative = weighting == "relative" or not complete
+    targets = []
+    for m in measured:
+        error = config.update.model_error(m.mode)
+        f = m.frequency_hz if m.fits_frequency else None
+        zeta = m.damping_ratio if m.fits_damping else None
+        targets.append(
+            Target(
+                m.mode,
+                f,
+                None if relative or f is None else hypot(m.frequency_std_hz or 0.0, error.frequency * f),
+                zeta,
+                None if relative or zeta is None else hypot(m.damping_ratio_std or 0.0, error.damping * zeta),
+            )
+        )
+    with located(file=config.path):
+        return Residuals(tuple(targets), relative)
+
+
+def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:
+    rows = []
+    for m, model in zip(measured, result.modes.damping_ratio, strict=True):
+        if m.fits_damping or m.damping_ratio is None or np.isnan(model):
+            continue
+        std = m.damping_ratio_std
+        explained = std is not None and abs(m.damping_ratio - model) <= 2.0 * std
+        rows.append(DampingExcess(m.label, m.damping_ratio, std, float(model), explained))
+    return tuple(rows)

@@ -1,0 +1,65 @@
+"""Twin files: every mistake is refused with file, field, value and remedy."""
+
+from pathlib import Path
+
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.twin import read_twin, shipped_twins
+
+GOOD = """\
+structure: jacket15
+damping: {rayleigh: {ratio: 0.01, frequency_hz: 0.1832}}
+support: {tie: all}
+targets:
+  - {mode: 1, frequency_hz: 0.1819, damping_ratio: 0.0127}
+  - {mode: 4, frequency_hz: 0.7362}
+"""
+
+
+@pytest.mark.parametrize("name", shipped_twins())
+def test_shipped_twins_read(name: str) -> None:
+    config = read_twin(name)
+    assert all(path.exists() for path in config.records)
+
+
+def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
+    (tmp_path / "t.yaml").write_text(GOOD + "update: {bounds: {k: [1e8, 5e10]}}\n")
+    assert read_twin(tmp_path / "t.yaml").update.bounds["k"] == (1e8, 5e10)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("structure:", "strcture:", r"strcture: unknown key .*did you mean 'structure'"),
+        ("rayleigh:", "raleigh:", r"damping\.raleigh: unknown key .*did you mean 'rayleigh'"),
+        ("frequency_hz: 0.1819", "frequency_hz: .nan", r"targets\.0\.frequency_hz.*finite"),
+        ("frequency_hz: 0.1819", "frequency_hz: -1", r"targets\.0\.frequency_hz.*greater than 0.*-1"),
+        ("mode: 4", "mode: 0", r"targets\.1\.mode.*≥ 1"),
+        ("ratio: 0.01,", "ratio: 1.5,", r"damping\.rayleigh\.ratio.*< 1"),
+        ("jacket15", "jacket51", r"no such structure.*did you mean 'jacket15'"),
+        ("tie: all", "tie: some", r"support\.tie.*horizontal-vertical"),
+        ("tie: all", "law: zenner", r"unknown law.*did you mean 'zener'"),
+        ("support: {tie: all}\n", "support: {tie: all}\nsupport: {tie: all}\n", r"'support' is given twice"),
+        ("targets:", "records: [a.parquet]\ntargets:", r"give records or targets"),
+        ("{mode: 4", "[mode: 4", r"line 6"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(GOOD.replace(old, new, 1))
+    with pytest.raises(InputError, match=message) as caught:
+        read_twin(path)
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("content", ["", "- a\n- b\n", "just text", "{", "a: [1, 2", "\x00"])
+def test_files_that_are_no_twin(tmp_path: Path, content: str) -> None:
+    (tmp_path / "t.yaml").write_text(content)
+    with pytest.raises(InputError):
+        read_twin(tmp_path / "t.yaml")
+
+
+def test_missing_file() -> None:
+    with pytest.raises(InputError, match=r"gone\.yaml: no such twin file"):
+        read_twin("gone.yaml")

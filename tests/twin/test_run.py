@@ -1,0 +1,123 @@
+"""The main job end to end, on the records OpenFAST made and on the thesis's own targets."""
+
+import json
+
+import numpy as np
+import pytest
+
+from jackettwin.files.atomic import null_for_nan
+from jackettwin.identification import ModalEstimate
+from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
+from jackettwin.twin.measure import Sighting, fuse
+
+
+@pytest.fixture(scope="module")
+def steps() -> list[str]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def pile(steps: list[str]) -> TwinResult:
+    return run_twin(read_twin("openfast_pile"), step=steps.append)
+
+
+@pytest.fixture(scope="module")
+def thesis() -> TwinResult:
+    return run_twin(read_twin("thesis_table_6_1"))
+
+
+def test_progress_counts_every_step(pile: TwinResult, steps: list[str]) -> None:
+    assert len(steps) == count_steps(read_twin("openfast_pile"))
+
+
+def test_both_bending_pairs_are_found_and_named_in_every_record(pile: TwinResult) -> None:
+    for found in pile.identifications:
+        assert sum(0.170 < m.frequency_hz < 0.182 for m in found.modes) >= 2
+        assert sum(0.72 < m.frequency_hz < 0.81 for m in found.modes) >= 2
+    assert [m.label for m in pile.measured][:5] == [
+        "side_side_1", "fore_aft_1", "torsion_1", "side_side_2", "fore_aft_2",
+    ]  # fmt: skip
+
+
+def test_frequencies_are_near_the_truth(pile: TwinResult) -> None:
+    truth = {mode["label"]: mode["frequency_hz"] for mode in pile.record.metadata["true_modes"]}
+    for m in pile.measured:
+        if m.label in truth:
+            # 1 % is the bar for fused records
+            assert m.frequency_hz == pytest.approx(truth[m.label], rel=0.01)
+
+
+def test_the_model_meets_the_fitted_frequencies_within_its_model_error(pile: TwinResult) -> None:
+    config = read_twin("openfast_pile")
+    for update in pile.updates:
+        for m, f in zip(pile.measured, update.modes.frequency_hz, strict=True):
+            if m.fits_frequency:
+                std = np.hypot(
+                    m.frequency_std_hz, config.update.model_error(m.mode).frequency * m.frequency_hz
+                )
+                assert abs(f - m.frequency_hz) < 3.0 * std
+
+
+def test_side_side_damping_is_reported_as_more_than_supports_explain(pile: TwinResult) -> None:
+    for excess in pile.excess:
+        first = next(e for e in excess if e.label == "side_side_1")
+        assert not first.explained
+        assert first.measured > 2.0 * first.model
+
+
+def test_vertical_soil_stiffness_is_identified_near_the_truth(pile: TwinResult) -> None:
+    """Closed form of the pile: √(k EA)·(tanh λL + κ)/(1 + κ tanh λL) = 4.1e9 N/m."""
+    update = next(u for u in pile.updates if u.law == "maxwell-3")
+    names = [p.name for p in update.model.parameters]
+    i = names.index("k_vertical")
+    assert update.identifiability()[i] == "identified"
+    assert abs(np.log(update.best.theta[i] / 4.1e9)) < 2.5 * update.log_std[i]
+
+
+def test_table_6_1_is_met(thesis: TwinResult) -> None:
+    for update in thesis.updates[:2]:
+        f = [m.frequency_hz for m in thesis.measured]
+        np.testing.assert_allclose(update.modes.frequency_hz, f, rtol=0.0040)
+        assert update.modes.damping_ratio[0] == pytest.approx(0.0127, rel=0.0067)
+
+
+def test_result_is_json_with_null_for_unknown(pile: TwinResult, thesis: TwinResult) -> None:
+    for result in (pile, thesis):
+        document = json.loads(json.dumps(null_for_nan(run_document(result, report=None)), allow_nan=False))
+        assert {"modes", "updates", "report"} <= set(document)
+        for update in document["updates"]:
+            assert {"law", "parameters", "modes", "solutions", "identifiability", "log_evidence"} <= set(
+                update
+            )
+            assert all({"value", "std", "interval_90"} <= set(p) for p in update["parameters"].values())
+
+
+def sighting(f: float, zeta: float, f_std: float | None = None, zeta_std: float | None = None) -> Sighting:
+    shape = np.array([1.0 + 0j])
+    estimate = ModalEstimate(
+        f, zeta, shape, 1.0, 0.0, 1.0, frequency_std_hz=f_std, damping_ratio_std=zeta_std
+    )
+    return Sighting(estimate, 1.0, 600.0)
+
+
+def test_fusing_one_record_returns_it() -> None:
+    assert fuse((sighting(0.18, 0.01, 0.001, 0.003),)) == pytest.approx((0.18, 0.001, 0.01, 0.003))
+
+
+def test_fusing_equal_records_shrinks_the_interval_by_the_root_of_their_number() -> None:
+    f, f_std, zeta, zeta_std = fuse(tuple(sighting(0.18, 0.01, 0.001, 0.003) for _ in range(9)))
+    assert (f, f_std, zeta, zeta_std) == pytest.approx((0.18, 0.001 / 3, 0.01, 0.001))
+
+
+def test_scatter_beyond_the_stated_precision_widens_the_interval(rng: np.random.Generator) -> None:
+    values = 0.18 * np.exp(0.02 * rng.standard_normal(50))
+    _, f_std, _, _ = fuse(tuple(sighting(float(v), 0.01, 1e-5, 0.003) for v in values))
+    # standard error of the mean of 50 values with 2 % scatter; ±30 % is three standard errors of a std
+    assert f_std == pytest.approx(0.18 * 0.02 / np.sqrt(50), rel=0.3)
+
+
+def test_records_without_a_standard_deviation_take_the_information_limit() -> None:
+    """Au: CoV f = √(ζ/2πfT), CoV ζ = 1/√(2πζfT): 0.43 % and 34 % at 0.18 Hz, 1.27 %, 600 s (evidence)."""
+    f, f_std, zeta, zeta_std = fuse((sighting(0.18, 0.0127),))
+    assert f_std / f == pytest.approx(0.0043, abs=5e-5)
+    assert zeta_std / zeta == pytest.approx(0.34, abs=5e-3)
