@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import Channel, Record, merge, shared_channels
+from jackettwin.records import Channel, Record
+from jackettwin.records.merge import merge, shared_channels
 
 START = datetime(2025, 1, 1, tzinfo=UTC)
 

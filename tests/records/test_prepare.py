@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import Channel, Record, bandpass, decimate, detrend, highpass
+from jackettwin.records import Channel, Record, decimate, detrend
+from jackettwin.records.prepare import bandpass, highpass
 
 START = datetime(2025, 1, 1, tzinfo=UTC)
 
@@ -96,6 +97,17 @@ def test_a_long_gap_stays_a_gap_and_single_samples_are_bridged(rng: np.random.Ge
     # a line over one lost sample of 0.75 Hz at 100 Hz misses by (2π·0.75·0.01)²/2 = 1.1e-3, two lost
     # in a row by more, of which a filter 20 samples wide sees a fraction
     np.testing.assert_allclose(out.data[1, kept], out.data[0, kept], atol=5e-4)
+
+
+def test_scattered_losses_are_closed_and_too_many_are_refused(rng: np.random.Generator) -> None:
+    clean = tone(0.18, 30_000, 100.0)
+    scattered = np.where(rng.random(30_000) < 0.25, np.nan, clean)
+    out = decimate(record_of(scattered), sample_rate_hz=5.0).data[0]
+    # at 0.18 Hz a line over ten samples misses by (2π·0.18·0.1)²/8 = 1.6e-3 at most
+    np.testing.assert_allclose(out[50:-50], tone(0.18, 1500, 5.0)[50:-50], atol=2e-3)
+    half = np.where(np.arange(30_000) % 6 < 3, np.nan, clean)
+    with pytest.raises(InputError, match="gaps leave nothing of the channel.*'c0'"):
+        decimate(record_of(half), sample_rate_hz=50.0)
 
 
 def test_decimated_yaw_does_not_smear_a_turn() -> None:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import Quality, Record, assess, repair
+from jackettwin.records import Record, assess, repair
+from jackettwin.records.quality import Quality
 
 
 def faults_of(quality: Quality) -> set[tuple[str | None, str]]:

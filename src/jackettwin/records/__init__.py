@@ -1,29 +1,13 @@
-"""What was measured: records, their quality and their preparation."""
+"""What was measured: records, their quality and their preparation.
 
-from jackettwin.records.merge import merge, shared_channels
-from jackettwin.records.prepare import bandpass, decimate, detrend, highpass
-from jackettwin.records.quality import Quality, assess
-from jackettwin.records.readers import from_sep005, read_record, to_sep005, write_record
+The names here are the daily ones. Filters are in ``prepare``, rotation to the rotor's axes in ``yaw``,
+several loggers in ``merge``, SEP005 dictionaries in ``readers``.
+"""
+
+from jackettwin.records.prepare import decimate, detrend
+from jackettwin.records.quality import assess
+from jackettwin.records.readers import read_record, write_record
 from jackettwin.records.record import Channel, Record
 from jackettwin.records.repair import repair
-from jackettwin.records.yaw import to_global_axes, to_rotor_axes
 
-__all__ = [
-    "Channel",
-    "Quality",
-    "Record",
-    "assess",
-    "bandpass",
-    "decimate",
-    "detrend",
-    "from_sep005",
-    "highpass",
-    "merge",
-    "read_record",
-    "repair",
-    "shared_channels",
-    "to_global_axes",
-    "to_rotor_axes",
-    "to_sep005",
-    "write_record",
-]
+__all__ = ["Channel", "Record", "assess", "decimate", "detrend", "read_record", "repair", "write_record"]

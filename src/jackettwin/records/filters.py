@@ -2,14 +2,15 @@
 
 A missing sample is never taken as a number. Slow parts are estimated as weighted means of the
 samples that exist; low-pass filters bridge a gap by a straight line and declare every output
-missing in which the bridge carries more than ``MISSING_WEIGHT`` of the filter.
+missing in which bridges carry more than ``MISSING_WEIGHT`` of the filter. Bridges of at most half an
+output step do not count: what the filter passes hardly bends over so short a time.
 """
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
+from scipy import ndimage, signal
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -96,7 +97,7 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
     kept = slice(first, first + n_out)
     padded_taps = np.concatenate([np.zeros(lead), taps])
 
-    missing = ~np.isfinite(y)
+    missing = _long_gaps(~np.isfinite(y), shortest=down // (2 * up) + 1)
     bridged = np.pad(
         np.apply_along_axis(bridge, 1, y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd"
     )
@@ -112,6 +113,16 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
 def half_length(taps: FloatArray, up: int = 1) -> int:
     """Input samples on either side that one output of ``resample`` rests on."""
     return -(-(len(taps) // 2) // up)
+
+
+def _long_gaps(missing: npt.NDArray[np.bool_], *, shortest: int) -> npt.NDArray[np.bool_]:
+    """Keep only runs of at least ``shortest`` missing samples."""
+    if shortest <= 1 or not missing.any():
+        return missing
+    line = np.ones((1, shortest), dtype=np.bool_)
+    padded = np.pad(missing, ((0, 0), (shortest, shortest)), constant_values=False)
+    opened: npt.NDArray[np.bool_] = ndimage.binary_opening(padded, structure=line)
+    return opened[:, shortest:-shortest]
 
 
 def bridge(y: FloatArray) -> FloatArray:

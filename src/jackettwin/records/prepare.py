@@ -58,7 +58,8 @@ def bandpass(record: Record, *, low_hz: float, high_hz: float) -> Record:
     Raises
     ------
     InputError
-        If the edges are reversed, beyond Nyquist, or the record is shorter than half the filter.
+        If the edges are reversed, beyond Nyquist, the record is shorter than half the filter, or gaps
+        leave nothing of a channel.
     """
     _check_band(record, "high_hz", high_hz, low_hz)
     out = highpass(record, cutoff_hz=low_hz)
@@ -66,6 +67,7 @@ def bandpass(record: Record, *, low_hz: float, high_hz: float) -> Record:
     taps = filters.lowpass_taps(min(high_hz / record.sample_rate_hz, PASS_SHARE * stop), stop)
     edge_s = _check_length(record, filters.half_length(taps))
     out = _on_vibrations(out, lambda y: filters.resample(y, taps))
+    _refuse_emptied(record, out.data)
     return _done(out, "lowpass", pass_hz=high_hz, edge_s=edge_s)
 
 
@@ -74,14 +76,14 @@ def decimate(record: Record, *, sample_rate_hz: float) -> Record:
 
     The gain is 1 up to 0.8 of the new Nyquist frequency and 1e-4 from the new Nyquist frequency on,
     so nothing folds back. Every channel is treated. About 25 new samples at either end rest on
-    point-reflected data. Gaps bridged by less than a tenth of the filter's weight are closed,
-    others stay gaps.
+    point-reflected data. Gaps of up to half a new step, and longer ones with less than a tenth of
+    the filter's weight, are closed; others stay gaps.
 
     Raises
     ------
     InputError
-        If the new rate is higher, not a ratio of whole numbers up to 1000 of the old, or the record
-        is shorter than half the filter.
+        If the new rate is higher, not a ratio of whole numbers up to 1000 of the old, the record is
+        shorter than half the filter, or gaps leave nothing of a channel.
 
     Examples
     --------
@@ -99,6 +101,7 @@ def decimate(record: Record, *, sample_rate_hz: float) -> Record:
     taps = filters.lowpass_taps(PASS_SHARE * stop, stop)
     edge_s = _check_length(record, filters.half_length(taps, up))
     data = filters.resample(_unwrapped(record), taps, up, down)
+    _refuse_emptied(record, data)
     out = replace(record, data=data, sample_rate_hz=float(record.sample_rate_hz * ratio))
     return _done(out, "decimate", from_hz=record.sample_rate_hz, to_hz=out.sample_rate_hz, edge_s=edge_s)
 
@@ -162,6 +165,20 @@ def _check_length(record: Record, half_length: int) -> float:
             remedy="use a longer record or a higher rate",
         )
     return half_length / record.sample_rate_hz
+
+
+def _refuse_emptied(record: Record, filtered: filters.FloatArray) -> None:
+    """Refuse to turn a channel with data into one without."""
+    emptied = np.isfinite(record.data).any(axis=1) & ~np.isfinite(filtered).any(axis=1)
+    if emptied.any():
+        raise InputError(
+            "gaps leave nothing of the channel behind the filter",
+            file=record.name,
+            field="channels",
+            value=", ".join(np.array(record.channel_names)[emptied]),
+            allowed="stretches without gaps longer than the filter",
+            remedy="leave the channel out, or keep the sample rate",
+        )
 
 
 def _done(record: Record, step: str, **settings: Any) -> Record:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, signs
+from jackettwin.records.record import LARGEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +40,8 @@ class Finding:
     """One fault: where, which, in a sentence, and whether ``repair`` removes it.
 
     ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
-    ``stuck``, ``held``, ``drift``, ``sign``, ``clock``; ``channel`` is None if it concerns the record.
+    ``stuck``, ``held``, ``drift``, ``sign``, ``unreadable``, ``clock``; ``channel`` is None if it concerns
+    the record.
     """
 
     fault: str
@@ -99,6 +101,8 @@ def assess(record: Record) -> Quality:
 
     Never fails, whatever the samples are.
     """
+    unreadable = np.isinf(record.data) | (np.abs(record.data) > LARGEST)
+    record = replace(record, data=np.where(unreadable, np.nan, record.data))
     slow_free = _without_slow(record)
     swapped = _swapped(record, slow_free)
     judged = [
@@ -107,11 +111,11 @@ def assess(record: Record) -> Quality:
     ]
     channels = tuple(quality for quality, _, _ in judged)
     findings = [finding for _, _, found in judged for finding in found]
-    findings += [*_weak(record, channels), *_clock(record)]
+    findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
     suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
-    return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect)
+    return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect | unreadable)
 
 
 def _without_slow(record: Record) -> FloatArray:
@@ -249,6 +253,14 @@ def _parallel(record: Record, slow_free: FloatArray) -> Iterator[tuple[list[int]
         left = [i for i in left if i not in rows]
         if len(rows) > 1:
             yield rows, np.sign([along[i] for i in rows])
+
+
+def _unreadable(record: Record, unreadable: npt.NDArray[np.bool_]) -> Iterator[Finding]:
+    """Yield channels with infinite or absurdly large samples."""
+    for channel, row in zip(record.channels, unreadable, strict=True):
+        if row.any():
+            text = f"{row.sum()} samples are infinite or beyond {LARGEST:g}; declared missing"
+            yield Finding("unreadable", text, channel.name, True)
 
 
 def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+LARGEST = 1e15
+"""No sensor reads more than this in SI units; what does is damage, and would overflow when squared."""
+
 
 @dataclass(frozen=True)
 class Channel:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records import Record, from_sep005, to_sep005
+from jackettwin.records import Record
+from jackettwin.records.readers import from_sep005, to_sep005
 
 
 def signal(**changes: Any) -> dict[str, Any]:

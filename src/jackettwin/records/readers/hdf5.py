@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from jackettwin.records.readers.table import Table
     from jackettwin.records.record import Record
 
-MOST_BYTES = 2**32
-"""Data sets announce their size before they are read; a record is smaller than this."""
+MOST_COMPRESSION = 1000
+"""A damaged header announces any size; what deflate cannot have packed into the file is refused."""
 
 
 def read(path: Path) -> Table:
@@ -65,10 +65,8 @@ def write(record: Record, path: Path) -> None:
     h5py = _h5py()
     with h5py.File(path, "w") as file:
         for key, value in arrays_from_record(record).items():
-            text = value.dtype.kind == "U"
-            file.create_dataset(
-                key, data=value.astype(object) if text else value, dtype=h5py.string_dtype() if text else None
-            )
+            # texts of fixed length: readable everywhere, and no heap that damage could blow up
+            file[key] = np.char.encode(value, "utf-8") if value.dtype.kind == "U" else value
 
 
 def _h5py() -> Any:
@@ -81,8 +79,8 @@ def _h5py() -> Any:
 
 
 def _dataset(h5py: Any, item: Any) -> npt.NDArray[Any]:
-    if item.dtype.itemsize * item.size > MOST_BYTES:
-        raise InputError("announces more data than a record holds", field=item.name, value=item.shape)
+    if item.dtype.itemsize * item.size > MOST_COMPRESSION * item.file.id.get_filesize():
+        raise InputError("announces more data than the file can hold", field=item.name, value=item.shape)
     value = np.asarray(item[()])
     if h5py.check_ref_dtype(item.dtype) is not None:  # MATLAB's cell array: one reference a cell
         return np.array([_matlab_text(np.asarray(item.file[cell][()])) for cell in value.ravel()])

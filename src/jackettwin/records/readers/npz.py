@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 def read(path: Path) -> Table:
     """Read the archive; pickled objects are refused."""
-    with np.load(path, allow_pickle=False) as archive:
+    # np.load leaves a file open that it opened itself and could not read.
+    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
         return table_from_arrays({key: archive[key] for key in archive.files})
 
 

@@ -46,7 +46,7 @@ def read_record(path: Path | str) -> Record:
 
     The JSON chooses and describes channels and wins over what the file says of them; a
     contradiction in the sample rate is an error. Numbers are brought to SI units; what is not a
-    finite number becomes a missing sample (NaN).
+    finite number, or is beyond 1e15, becomes a missing sample (NaN).
 
     Raises
     ------

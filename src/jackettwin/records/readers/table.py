@@ -15,7 +15,7 @@ from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import VIBRATIONS, guess_quantity, plain_unit, quantity, to_si
 from jackettwin.records.clock import regularise
 from jackettwin.records.readers.description import ChannelEntry, Description
-from jackettwin.records.record import Channel, Record
+from jackettwin.records.record import LARGEST, Channel, Record
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -131,7 +131,7 @@ def to_record(table: Table, beside: Description | None, path: Path) -> Record:
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
         data = data * np.array([factor for _, factor in described])[:, None]
     return Record(
-        data=np.where(np.isfinite(data), data, np.nan),
+        data=np.where(np.abs(data) <= LARGEST, data, np.nan),
         sample_rate_hz=stated,
         channels=tuple(channel for channel, _ in described),
         start_utc=said.start_utc or table.start_utc,
