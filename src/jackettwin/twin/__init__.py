@@ -1,8 +1,9 @@
 """The living model: the main job, from a twin file to a result."""
 
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.document import identification_document, run_document, update_document
+from jackettwin.twin.document import observation_document, run_document, update_document
 from jackettwin.twin.files import read_twin, shipped_twins
+from jackettwin.twin.observe import Observation, observe
 from jackettwin.twin.result import TwinResult
 from jackettwin.twin.run import count_steps, run_twin
 
@@ -10,7 +11,9 @@ __all__ = [
     "TwinConfig",
     "TwinResult",
     "count_steps",
-    "identification_document",
+    "Observation",
+    "observation_document",
+    "observe",
     "read_twin",
     "run_document",
     "run_twin",

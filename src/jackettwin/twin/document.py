@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from jackettwin import __version__
-from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification import ModalEstimate
+from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.updating import Update
 
@@ -16,7 +17,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "name": result.name,
         "modes": [_measured(m) for m in result.measured],
         "updates": [update_document(result, i) for i in range(len(result.updates))],
-        "identification": [identification_document(i) for i in result.identifications],
+        "identification": [observation_document(seen) for seen in result.observations],
         "unpaired_modes": [mode_document(e, None) for e in result.unpaired],
         "assumptions": list(result.assumptions),
         "warnings": list(result.warnings),
@@ -105,8 +106,9 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
     ]
 
 
-def identification_document(found: Identification) -> dict[str, Any]:
-    """Return the document of ``jackettwin identify``."""
+def observation_document(seen: Observation) -> dict[str, Any]:
+    """Return the document of one record of ``jackettwin identify``."""
+    found = seen.identification
     names = [channel.name for channel in found.channels]
     s = found.settings
     return {
@@ -125,6 +127,7 @@ def identification_document(found: Identification) -> dict[str, Any]:
             "orders": list(s.orders),
         },
         "duration_s": found.duration_s,
+        "quality": seen.quality.summary(),
         "warnings": list(found.warnings),
     }
 

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.identification import Identification, ModalEstimate, identify
-from jackettwin.records import Record, read_record
+from jackettwin.errors import located
+from jackettwin.identification import ModalEstimate
+from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.observe import Observation, observe
 from jackettwin.updating.pairing import pair
 
 FloatArray = npt.NDArray[np.float64]
-
-_MOTION = ("acceleration", "velocity", "displacement")
 
 
 @dataclass(frozen=True)
@@ -38,17 +36,14 @@ class Measured:
 
     Attributes
     ----------
-    record : Record
-        The first one.
+    observations : one a record
     sensors : tuple of Sensor
-    identifications : one a record
     sightings : {mode number from 1: its sightings, one a record at most}
     unpaired : identified modes without a counterpart in the model
     """
 
-    record: Record
+    observations: tuple[Observation, ...]
     sensors: tuple[Sensor, ...]
-    identifications: tuple[Identification, ...]
     sightings: dict[int, tuple[Sighting, ...]]
     unpaired: tuple[ModalEstimate, ...]
 
@@ -67,20 +62,19 @@ def measure(
     InputError
         If a record cannot be read or identified, or a sensor and a channel disagree; names file and field.
     """
-    records, identifications, sensors = [], [], config.sensors
+    channels = tuple(s.channel for s in config.sensors) or None
+    observations = []
     for path in config.records:
         step(f"identify {path.name}")
-        record = _usable(read_record(path), config.sensors, path)
-        with located(file=path):
-            identifications.append(identify(record, config.identification))
-        records.append(record)
-        sensors = sensors or _sensors_of(record)
+        observations.append(observe(path, config.identification, channels=channels))
     sightings: dict[int, list[Sighting]] = {}
     unpaired: list[ModalEstimate] = []
-    for found, record in zip(identifications, records, strict=True):
-        by_channel = {s.channel: s for s in (config.sensors or _sensors_of(record))}
-        seen_by = tuple(by_channel[c.name] for c in found.channels)
-        shapes = observation_matrix(assembly, seen_by) @ numbered.shapes
+    for seen in observations:
+        found = seen.identification
+        by_channel = {s.channel: s for s in (config.sensors or _sensors_of(seen.record))}
+        places = tuple(by_channel[c.name] for c in found.channels)
+        with located(file=config.path):
+            shapes = observation_matrix(assembly, places) @ numbered.shapes
         pairs = pair(found.modes, numbered.frequency_hz, shapes)
         for mode, (index, likeness) in pairs.items():
             sightings.setdefault(mode + 1, []).append(
@@ -89,9 +83,8 @@ def measure(
         used = {index for index, _ in pairs.values()}
         unpaired += [e for i, e in enumerate(found.modes) if i not in used]
     return Measured(
-        records[0],
-        sensors,
-        tuple(identifications),
+        tuple(observations),
+        config.sensors or _sensors_of(observations[0].record),
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
         tuple(unpaired),
     )
@@ -134,32 +127,6 @@ def _pooled(values: FloatArray, std: FloatArray) -> tuple[float, float]:
         w = 1.0 / (std**2 + scatter)
         mean = float(w @ values / w.sum())
     return mean, float(w.sum() ** -0.5)
-
-
-def _usable(record: Record, sensors: tuple[Sensor, ...], path: Path) -> Record:
-    """Return the record with the channels that sensors name, or all that measure motion."""
-    if not sensors:
-        names = [c.name for c in record.channels if c.quantity in _MOTION]
-        if not names:
-            raise InputError(
-                "no channel measures motion",
-                file=path,
-                field="channels",
-                value=record.channel_names,
-                allowed=", ".join(_MOTION),
-                remedy="name the quantity of each channel, or list sensors in the twin file",
-            )
-        return record.select(names)
-    for sensor in sensors:
-        if sensor.channel not in record.channel_names:
-            raise InputError(
-                f"sensor's channel is not in the record {path.name}",
-                field=f"sensors.{sensor.channel}.channel",
-                value=sensor.channel,
-                allowed=", ".join(record.channel_names),
-                remedy=did_you_mean(sensor.channel, record.channel_names),
-            )
-    return record.select([s.channel for s in sensors])
 
 
 def _sensors_of(record: Record) -> tuple[Sensor, ...]:

@@ -53,7 +53,10 @@ def cautions(
     """Return what the reader should beware of."""
     lines = []
     if found is not None:
-        lines += [f"{i.records[0]}: {text}" for i in found.identifications for text in i.warnings]
+        for seen in found.observations:
+            name = seen.record.name
+            lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
+            lines += [f"{name}: {text}" for text in seen.identification.warnings]
         if found.unpaired:
             places = ", ".join(f"{f:.3f}" for f in sorted(e.frequency_hz for e in found.unpaired))
             lines.append(f"Identified but without a counterpart in the model (Hz): {places}.")

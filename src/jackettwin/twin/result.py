@@ -9,6 +9,7 @@ from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
+from jackettwin.twin.observe import Observation
 from jackettwin.updating import Update
 
 
@@ -62,10 +63,8 @@ class TwinResult:
     ----------
     numbered, labels
         Undamped modes on pinned supports and what to call them.
-    record : Record or None
-        The first record, as read.
-    identifications : tuple of Identification
-        One a record.
+    observations : tuple of Observation
+        One a record: its quality, the repaired record, what was identified.
     measured : tuple of MeasuredMode
         In the order of mode numbers.
     unpaired : tuple of ModalEstimate
@@ -83,11 +82,20 @@ class TwinResult:
     sensors: tuple[Sensor, ...]
     numbered: UndampedModes
     labels: tuple[str, ...]
-    record: Record | None
-    identifications: tuple[Identification, ...]
+    observations: tuple[Observation, ...]
     measured: tuple[MeasuredMode, ...]
     unpaired: tuple[ModalEstimate, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
     assumptions: tuple[str, ...]
     warnings: tuple[str, ...]
+
+    @property
+    def record(self) -> Record | None:
+        """The first record, repaired."""
+        return self.observations[0].record if self.observations else None
+
+    @property
+    def identifications(self) -> tuple[Identification, ...]:
+        """What was identified, one a record."""
+        return tuple(seen.identification for seen in self.observations)

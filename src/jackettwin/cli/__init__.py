@@ -1,0 +1,5 @@
+"""The commands of jackettwin."""
+
+from jackettwin.cli.main import main
+
+__all__ = ["main"]

@@ -1,0 +1,25 @@
+"""Entry point; each command lives in a file of its own."""
+
+from __future__ import annotations
+
+import click
+
+from jackettwin import __version__
+from jackettwin.cli.console import Commands
+from jackettwin.cli.identify import identify_command
+from jackettwin.cli.modes import modes_command
+from jackettwin.cli.update import update_command
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__)
+@click.option("--traceback", is_flag=True, help="Show the traceback of an internal error.")
+def main(traceback: bool) -> None:
+    """Digital twin for the jacket foundations of offshore wind turbines.
+
+    Start with `jackettwin run`: it needs no argument.
+    """
+
+
+for command in (modes_command, identify_command, update_command):
+    main.add_command(command)

@@ -1,0 +1,169 @@
+"""``jackettwin modes``: undamped and damped modes of a structure."""
+
+from __future__ import annotations
+
+import re
+from math import pi
+from typing import Any
+
+import click
+import numpy as np
+from rich.table import Table
+
+from jackettwin.cli.console import number as show
+from jackettwin.cli.console import output, print_json
+from jackettwin.errors import InputError
+from jackettwin.response.follow import follow
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
+from jackettwin.response.system import System, build_system
+from jackettwin.soil import read_support
+from jackettwin.structure import Assembly, Rayleigh, assemble, check, read_structure
+from jackettwin.updating import numbered_modes
+
+_OVERDAMPED = 0.3
+"""A pole this damped that resembles no mode of the pinned structure is a motion of the supports."""
+
+
+@click.command("modes")
+@click.argument("structure")
+@click.option(
+    "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
+)
+@click.option("--number", default=10, show_default=True, type=click.IntRange(1, 200), help="How many modes.")
+@click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
+@click.option(
+    "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
+)
+@click.option("--rotary-inertia", is_flag=True, default=None, help="Add rotary inertia.")
+@click.option(
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+)
+@click.option(
+    "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: least ratio and its frequency."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def modes_command(
+    structure: str,
+    support: str | None,
+    number: int,
+    gravity: bool,
+    beam: str | None,
+    rotary_inertia: bool | None,
+    subdivide: int | None,
+    rayleigh: str | None,
+    as_json: bool,
+) -> None:
+    """Undamped and damped modes of STRUCTURE: a shipped name, a YAML file, or a SubDyn .dat file."""
+    chosen = read_structure(structure)
+    assembly = assemble(
+        chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
+    )
+    held = read_support(
+        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
+    )
+    system = build_system(assembly, held, rayleigh=_rayleigh(rayleigh))
+    document = _document(assembly, system, number)
+    if as_json:
+        print_json(document)
+    else:
+        _print(document)
+
+
+def _rayleigh(text: str | None) -> Rayleigh:
+    if text is None:
+        return Rayleigh()
+    match = re.fullmatch(r"([^,]+),([^,]+)", text)
+    try:
+        zeta, f = (float(part) for part in match.groups()) if match else (np.nan, np.nan)
+    except ValueError:
+        zeta = f = np.nan
+    if not np.isfinite([zeta, f]).all():
+        raise InputError("not ZETA,F_HZ", field="--rayleigh", value=text, remedy="write e.g. 0.01,0.183")
+    return Rayleigh.minimum(zeta, f)
+
+
+def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:
+    structure, M = assembly.structure, assembly.mass
+    undamped = undamped_modes(system, number + 12)
+    damped = damped_modes(
+        system, below_hz=1.1 * float(undamped.frequency_hz[min(number, undamped.omega.size) - 1])
+    )
+    damped = _enough(system, damped, number)
+    static = follow(M, undamped.omega, undamped.shapes, damped.shapes)
+    of_damped = {int(column): row for row, column in enumerate(static) if column >= 0}
+    numbers = _numbers(assembly, damped, number)
+    labels = mode_labels(mode_kinds(assembly, damped.shapes))
+    rows: list[dict[str, Any]] = []
+    others: list[dict[str, Any]] = []
+    for i, (f, zeta) in enumerate(zip(damped.frequency_hz, damped.damping_ratio, strict=True)):
+        row = {
+            "frequency_hz": float(f),
+            "damping_ratio": float(zeta),
+            "undamped_frequency_hz": float(undamped.frequency_hz[of_damped[i]]) if i in of_damped else None,
+            "mode": numbers.get(i),
+            "label": labels[i],
+        }
+        (others if i not in numbers and zeta > _OVERDAMPED else rows).append(row)
+    books = check(assembly)
+    return {
+        "structure": structure.name,
+        "mass_kg": books.mass_kg,
+        "center_of_mass_m": books.center_of_mass_m,
+        "n_dof": system.pencil.n,
+        "modes": rows[:number],
+        "overdamped_poles": others,
+        "real_poles_rad_s": damped.real_poles,
+    }
+
+
+def _enough(system: System, damped: DampedModes, number: int) -> DampedModes:
+    """Return at least ``number`` modes: strong dampers lift frequencies above the undamped ones."""
+    below = 1.5 * max([*damped.frequency_hz[-1:], 0.01])
+    for _ in range(8):
+        if np.count_nonzero(damped.damping_ratio <= _OVERDAMPED) >= min(number, system.pencil.n):
+            break
+        damped = damped_modes(system, below_hz=below)
+        below *= 1.5
+    return damped
+
+
+def _numbers(assembly: Assembly, damped: DampedModes, number: int) -> dict[int, int]:
+    """Return {index of a damped mode: its number on pinned supports}."""
+    if not assembly.structure.reactions:
+        return {}
+    reference = numbered_modes(assembly, number + 6)
+    successor = follow(assembly.mass, reference.omega, reference.shapes, damped.shapes)
+    return {int(column): mode + 1 for mode, column in enumerate(successor) if column >= 0}
+
+
+def _print(document: dict[str, Any]) -> None:
+    x, y, z = document["center_of_mass_m"]
+    output.print(
+        f"{document['structure']}: {document['mass_kg'] / 1e3:,.1f} t, "
+        f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m, {document['n_dof']} degrees of freedom"
+    )
+    table = Table("mode", "label", "f [Hz]", "ζ [%]", "undamped f [Hz]", "difference [%]")
+    for row in document["modes"]:
+        f, f0 = row["frequency_hz"], row["undamped_frequency_hz"]
+        apart = None if f0 is None else 100.0 * (f0 / f - 1.0)
+        table.add_row(
+            str(row["mode"] or "–"),
+            row["label"],
+            f"{f:.4f}",
+            f"{100 * row['damping_ratio']:.3f}",
+            "–" if f0 is None else f"{f0:.4f}",
+            show(apart, 3),
+        )
+    output.print(table)
+    if document["overdamped_poles"]:
+        output.print(
+            f"{len(document['overdamped_poles'])} overdamped motions of the supports, e.g. "
+            f"{document['overdamped_poles'][0]['frequency_hz']:.4f} Hz"
+        )
+    if len(document["real_poles_rad_s"]):
+        slow = np.abs(document["real_poles_rad_s"])
+        output.print(
+            f"{slow.size} real poles (relaxation) from {slow.min():.3g} to {slow.max():.3g} rad/s; "
+            f"slowest time constant {1.0 / slow.min():.3g} s ({slow.min() / (2 * pi):.3g} Hz)"
+        )

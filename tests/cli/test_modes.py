@@ -1,0 +1,77 @@
+"""``jackettwin modes``: the contract's keys, numbers, and refusals."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(main, ["modes", *arguments])
+
+
+def document(*arguments: str) -> dict:
+    result = run(*arguments, "--json")
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def test_json_has_the_keys_of_the_contract() -> None:
+    found = document("jacket15", "--number", "6")
+    assert {"mass_kg", "center_of_mass_m", "n_dof", "modes", "real_poles_rad_s"} <= set(found)
+    frequencies = [mode["frequency_hz"] for mode in found["modes"]]
+    assert frequencies == pytest.approx([0.1832, 0.1859, 0.5720, 0.7489, 0.7941, 0.9145], rel=2e-3)
+    assert [mode["mode"] for mode in found["modes"]] == [1, 2, 3, 4, 5, 6]
+    assert found["mass_kg"] == pytest.approx(3578e3, rel=2e-4)
+
+
+def test_thesis_point_1_of_kelvin_voigt() -> None:
+    """Tables 8.1 and 8.2: f within 0.6 %, ζ1 within 2 %, ζ4 within 2.5 %."""
+    found = document("jacket15", "--support", "kelvin-voigt:k=2.5e9,c=7.6e8", "--rayleigh", "0.01,0.1832")
+    by_number = {mode["mode"]: mode for mode in found["modes"]}
+    assert [by_number[m]["frequency_hz"] for m in (1, 2, 4)] == pytest.approx(
+        [0.1812, 0.1845, 0.7362], rel=6e-3
+    )
+    assert by_number[1]["damping_ratio"] == pytest.approx(0.01277, rel=0.02)
+    assert by_number[4]["damping_ratio"] == pytest.approx(0.04237, rel=0.025)
+    assert len(found["real_poles_rad_s"]) == 12
+
+
+def test_a_nearly_locked_damper_does_not_shift_the_numbering() -> None:
+    """Table 8.3: damped f near pinned, undamped far below."""
+    found = document("jacket15", "--support", "kelvin-voigt:k=1.1e8,c=1e11")
+    first = found["modes"][0]
+    assert first["mode"] == 1
+    assert first["frequency_hz"] == pytest.approx(0.1827, rel=6e-3)
+    assert first["undamped_frequency_hz"] == pytest.approx(0.1506, rel=6e-3)
+
+
+def test_the_table_is_for_people() -> None:
+    result = run("jacket15", "--number", "3")
+    assert result.exit_code == 0
+    assert "side_side_1" in result.stdout
+    assert "0.1832" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["jacket51"], "did you mean 'jacket15'"),
+        (["gone.yaml"], "no such structure file"),
+        (["jacket15", "--support", "kelvinvoigt:k=1,c=1"], "did you mean 'kelvin-voigt'"),
+        (["jacket15", "--support", "kelvin-voigt:k=1"], "argument is missing"),
+        (["jacket15", "--support", "kelvin-voigt:k=-1,c=1"], "must not be negative"),
+        (["jacket15", "--support", "kelvin-voigt:k=x,c=1"], "not a finite number"),
+        (["jacket15", "--rayleigh", "0.01"], "not ZETA,F_HZ"),
+        (["jacket15", "--number", "0"], "Invalid value for '--number'"),
+        (["jacket15", "--nonsense"], "No such option"),
+    ],
+)
+def test_bad_input_exits_2_with_one_message(arguments: list[str], message: str) -> None:
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr.replace("\n", " ")
+    assert "Traceback" not in result.stderr
+    assert result.stdout == ""
