@@ -41,7 +41,10 @@ def test_no_suggestion_for_a_distant_word() -> None:
         ("GenPwr", "kW", "power"),
         ("Wind1VelX", "m/s", "wind speed"),
         ("Wave1Elev", "m", "wave elevation"),
-        ("RootMxb1", "kN-m", "other"),
+        ("RootMxb1", "kN-m", "moment"),
+        ("Azimuth", "deg", "azimuth"),
+        ("WindDir", "deg", "wind direction"),
+        ("Status", "mode", "other"),
         ("ch1", "deg", "other"),  # yaw, pitch or inclination: nothing says which
         ("ch1", "", "other"),
     ],

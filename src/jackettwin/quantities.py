@@ -59,6 +59,17 @@ QUANTITIES: dict[str, Quantity] = {
     "power": Quantity("W", "power", "P", (("kW", 1e3), ("MW", 1e6))),
     "wave elevation": Quantity("m", "wave elevation", "η"),
     "temperature": Quantity("degC", "temperature", "T", (("°C", 1.0), ("C", 1.0))),
+    "wind direction": Quantity("rad", "wind direction", "θ_w", (("deg", DEGREE), ("°", DEGREE))),
+    "azimuth": Quantity("rad", "rotor azimuth", "φ", (("deg", DEGREE), ("°", DEGREE))),
+    "angular velocity": Quantity("rad/s", "angular velocity", "ω", (("deg/s", DEGREE), ("°/s", DEGREE))),
+    "force": Quantity("N", "force", "F", (("kN", 1e3), ("MN", 1e6))),
+    "moment": Quantity(
+        "N m", "moment", "M", (("N-m", 1.0), ("Nm", 1.0), ("kN-m", 1e3), ("kNm", 1e3), ("MNm", 1e6))
+    ),
+    "stress": Quantity("Pa", "stress", "σ", (("MPa", 1e6), ("N/mm^2", 1e6))),
+    "pressure": Quantity("Pa", "pressure", "p", (("hPa", 1e2), ("mbar", 1e2), ("kPa", 1e3), ("bar", 1e5))),
+    "water level": Quantity("m", "water level", "h", (("mm", 1e-3), ("cm", 1e-2))),
+    "current speed": Quantity("m/s", "current speed", "U_c", (("m s-1", 1.0), ("cm/s", 1e-2))),
     "other": Quantity("-", "other", "?"),
 }
 
@@ -130,7 +141,11 @@ _WORDS = (
     ("yaw", ("yaw",)),
     ("rotor speed", ("rotspeed", "rotor_speed", "rotorspeed", "rotor speed")),
     ("pitch", ("bldpitch", "blpitch", "blade_pitch", "blade pitch")),
+    ("wind direction", ("wind_dir", "winddir", "wind dir")),
     ("wind speed", ("wind",)),
+    ("water level", ("level", "tide")),
+    ("current speed", ("current",)),
+    ("azimuth", ("azimuth",)),
     ("wave elevation", ("wave",)),
     ("power", ("power", "genpwr")),
     ("inclination", ("incl", "tilt")),
@@ -145,8 +160,8 @@ _WORDS = (
 def guess_quantity(name: str, unit: str) -> str:
     """Return the quantity that a channel's name and unit both allow, else ``"other"``.
 
-    A unit that only one quantity has is enough; an unstated unit leaves the decision to the name,
-    and so does a wrong one behind a name in ``acc…``, lest a typo hide an accelerometer.
+    A unit that only one quantity has is enough; an unstated unit leaves vibrations to the name, and
+    so does a wrong one behind a name in ``acc…``, lest a typo hide an accelerometer.
 
     >>> guess_quantity("YawBrTAxp", "m/s^2"), guess_quantity("Wind1VelX", "m/s")
     ('acceleration', 'wind speed')
@@ -155,7 +170,7 @@ def guess_quantity(name: str, unit: str) -> str:
     lower = name.lower()
     named = [kind for kind, words in _WORDS if any(word in lower for word in words)]
     if not unit or (not allowed and lower.startswith("acc")):
-        return named[0] if named else "other"
+        return named[0] if named and named[0] in VIBRATIONS else "other"
     both = [kind for kind in named if kind in allowed]
     if both:
         return both[0]

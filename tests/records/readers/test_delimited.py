@@ -91,3 +91,17 @@ def test_wrong_text_is_refused_with_its_place(text: str, message: str, tmp_path:
     with pytest.raises(InputError, match=message) as caught:
         read_text(text, tmp_path)
     assert str(caught.value.file).endswith("r.csv")
+
+
+def test_an_index_without_a_name_is_a_count_or_a_time(tmp_path: Path) -> None:
+    counted = read_text("# fs: 5\n,acc_x [g]\n0,1\n1,2\n2,3\n", tmp_path)
+    assert counted.channel_names == ("acc_x",) and counted.sample_rate_hz == 5.0
+    rows = [f"2025-01-01 00:00:00.{2 * k},{k}" for k in range(4)]
+    dated = read_text("\n".join([",acc_x [g]", *rows]), tmp_path)
+    assert dated.channel_names == ("acc_x",) and dated.sample_rate_hz == 5.0
+
+
+def test_a_column_of_words_is_left_out_and_named(tmp_path: Path) -> None:
+    record = read_text("time [s],acc_x [g],state\n0,1,idling\n0.2,2,idling\n0.4,3,parked\n", tmp_path)
+    assert record.channel_names == ("acc_x",)
+    assert record.metadata["left_out"] == ["state"]

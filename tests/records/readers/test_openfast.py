@@ -52,6 +52,7 @@ def test_every_binary_layout_reads(identifier: int, tmp_path: Path) -> None:
     record = read_record(tmp_path / "r.outb")
     y = samples()[1:]
     y[2] *= 2 * np.pi / 60
+    y[4] *= 1e3
     # int16 over the span of a channel: half a step, and the float32 scales
     step = 1e-12 if identifier == 3 else 2.0 / 65535
     np.testing.assert_allclose(
@@ -64,10 +65,10 @@ def test_every_binary_layout_reads(identifier: int, tmp_path: Path) -> None:
         "acceleration",
         "rotor speed",
         "wind speed",
-        "other",
+        "moment",
     ]
     assert record.channels[1].direction == (0.0, 1.0, 0.0)
-    assert (record.channels[2].unit, record.channels[4].unit) == ("rad/s", "kN-m")
+    assert (record.channels[2].unit, record.channels[4].unit) == ("rad/s", "N m")
     assert record.metadata["source"] == "a test"
 
 

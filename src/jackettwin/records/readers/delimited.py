@@ -153,10 +153,9 @@ def _names_and_units(row: list[str]) -> tuple[list[str], dict[str, str]]:
         names.append(name)
     while names and not names[-1]:  # a separator at the end of the line
         names.pop()
-    if not all(names):
-        raise InputError(
-            "a column has no name", field=f"column {names.index('') + 1}", remedy="name every column"
-        )
+    if not all(names[1:]):  # the first may be an index
+        number = names.index("", 1) + 1
+        raise InputError("a column has no name", field=f"column {number}", remedy="name every column")
     return names, units
 
 
@@ -166,8 +165,11 @@ def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int)
         return np.array(cells, dtype=np.float64)
     except ValueError:
         pass
-    if i == 0 and cells and re.match(r"^\s*\d{4}-\d\d-\d\d", cells[0]):
+    if cells and re.match(r"^\s*\d{4}-\d\d-\d\d", cells[0]):
         return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+    known = [cell for cell in cells if cell.strip().lower() not in MISSING]
+    if known and not any(_is_value(cell.strip(), delimiter) for cell in known):
+        return np.array(cells)  # words: not a signal
     return np.array([_number(cell, delimiter, name, line + k) for k, cell in enumerate(cells)])
 
 
@@ -187,7 +189,7 @@ def _number(cell: str, delimiter: str, name: str, line: int) -> float:
             field=f"line {line}, channel {name}",
             value=cell,
             allowed="a number or an empty cell",
-            remedy="mend the cell",
+            remedy="mend the cell; write times as 2025-01-01T13:00:00Z",
         ) from None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from jackettwin.errors import InputError
 from jackettwin.records.readers.table import Table, table_from_columns
 
 if TYPE_CHECKING:
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 def read(path: Path) -> Table:
     """Read every column; nulls are missing samples."""
     stored = pq.read_table(path)
-    names = [str(name) for name in stored.column_names]
-    columns = [_numbers(name, stored.column(i)) for i, name in enumerate(names)]
+    # pandas calls an index without a name like this
+    names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
+    columns = [_values(stored.column(i)) for i in range(len(names))]
     return table_from_columns(names, columns)
 
 
@@ -32,16 +33,10 @@ def write(record: Record, path: Path) -> None:
     pq.write_table(pa.table(columns), path)
 
 
-def _numbers(name: str, column: Any) -> npt.NDArray[Any]:
+def _values(column: Any) -> npt.NDArray[Any]:
     if pa.types.is_timestamp(column.type):
         stamps: npt.NDArray[Any] = column.cast(pa.timestamp("ns")).to_numpy().astype("datetime64[ns]")
         return stamps
     if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
-        raise InputError(
-            "column does not hold numbers",
-            field=f"channels.{name}",
-            value=str(column.type),
-            allowed="float or integer",
-            remedy="drop the column or store numbers",
-        )
+        return np.full(len(column), "")  # not a signal
     return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=np.float64)

@@ -60,7 +60,11 @@ def table_from_columns(
     units: Mapping[str, str] | None = None,
     **known: Any,
 ) -> Table:
-    """Return a table of equally long columns; the first one named like a time becomes the stamps.
+    """Return a table of equally long columns.
+
+    The first column is the time if its name says so, or if it has no name and does not just count
+    rows; a column of datetimes is the time wherever it stands. Columns without numbers are left out
+    and named in ``metadata["left_out"]``.
 
     Raises
     ------
@@ -68,14 +72,27 @@ def table_from_columns(
         If there is no column left or a name is given twice.
     """
     channels = {name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit}
-    if names and names[0].strip().lower() in TIME_NAMES:
-        times_s, start_utc = seconds(columns[0], channels.pop(names[0], ChannelEntry()).unit)
+    time = _time_column(names, columns)
+    if time is not None:
+        times_s, start_utc = seconds(columns[time], channels.pop(names[time], ChannelEntry()).unit)
         known = {"start_utc": start_utc, **known, "times_s": times_s}
-        names, columns = names[1:], columns[1:]
-    if not names:
+    kept = [i for i in range(len(names)) if i != time and names[i] and columns[i].dtype.kind == "f"]
+    left_out = [name for i, name in enumerate(names) if name and i != time and i not in kept]
+    if left_out:
+        known["metadata"] = {**known.get("metadata", {}), "left_out": left_out}
+    if not kept:
         raise InputError("holds no channels", field="channels", allowed="at least one column of numbers")
-    data = np.vstack([np.asarray(column, dtype=np.float64) for column in columns])
-    return Table(tuple(names), data, channels, **known)
+    return Table(tuple(names[i] for i in kept), np.vstack([columns[i] for i in kept]), channels, **known)
+
+
+def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> int | None:
+    dated = [i for i, column in enumerate(columns) if column.dtype.kind == "M"]
+    if dated:
+        return dated[0]
+    if not names or columns[0].dtype.kind != "f":
+        return None
+    counts_rows = np.array_equal(columns[0], np.arange(len(columns[0])))
+    return 0 if names[0].strip().lower() in TIME_NAMES or (not names[0] and not counts_rows) else None
 
 
 def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
