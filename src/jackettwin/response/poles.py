@@ -95,7 +95,7 @@ def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: floa
     Arnoldi from one vector sees one state of a multiple pole. So it runs again beside what is already known,
     from another start, until all it finds lies outside.
     """
-    Q, k = np.zeros((size, 0)), 60
+    Q, k = np.zeros((size, 0)), 24
     while True:
         known = Q
 
@@ -106,19 +106,21 @@ def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: floa
         k = min(k, size - Q.shape[1] - 2)
         if k < 1:
             return np.eye(size)
+        operator = spla.LinearOperator((size, size), matvec=rest, dtype=np.float64)
         try:
             theta, x = spla.eigs(
-                spla.LinearOperator((size, size), matvec=rest, dtype=np.float64),
-                k=k, which="LM", v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=0.0,
-                maxiter=2000,
-            )  # fmt: skip
+                operator, k=k, v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=1e-12, maxiter=300
+            )
         except (spla.ArpackError, RuntimeError) as error:
+            if k > 4:  # the last of the many were too small beside the first to converge
+                k //= 2
+                continue
             raise NumericalError(f"damped modes did not converge: {error}") from error
         found = _inside(theta, sigma, radius)
         if not found.any():
             return Q
         Q = _extended(Q, x[:, found])
-        k = 60 if found.all() else 8
+        k = 48 if found.all() else 8
 
 
 def _extended(Q: FloatArray, x: ComplexArray) -> FloatArray:
