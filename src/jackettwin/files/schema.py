@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -71,24 +71,24 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
 
 def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:
     """Return the keys allowed at a place of the schema, as far as they can be followed."""
-    current: Any = schema
+    current: list[type[BaseModel]] = [schema]
     for part in location:
-        if isinstance(part, int):
-            continue
-        info = current.model_fields.get(part) or next(
-            (f for f in current.model_fields.values() if f.alias == part), None
-        )
-        if info is None:
-            continue  # a union's branch name or the key of a free mapping
-        current = _model_inside(info.annotation) or current
-    return [f.alias or name for name, f in current.model_fields.items()]
+        inside = [model for info in _fields(current, part) for model in _models_inside(info.annotation)]
+        # what is no field is an index, the key of a free mapping, or the tag of one model of a union
+        current = inside or [model for model in current if part in _tags(model)] or current
+    return [f.alias or name for model in current for name, f in model.model_fields.items()]
 
 
-def _model_inside(annotation: Any) -> type[BaseModel] | None:
+def _fields(models: list[type[BaseModel]], key: Any) -> list[Any]:
+    return [f for model in models for name, f in model.model_fields.items() if key in (name, f.alias)]
+
+
+def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
+    info = model.model_fields.get("type")
+    return get_args(info.annotation) if info is not None else ()
+
+
+def _models_inside(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    for argument in getattr(annotation, "__args__", ()):
-        found = _model_inside(argument)
-        if found is not None:
-            return found
-    return None
+        return [annotation]
+    return [model for argument in get_args(annotation) for model in _models_inside(argument)]

@@ -10,10 +10,18 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
-from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.soil.viscoelastic import (
+    Law,
+    Prony,
+    Springpot,
+    kelvin_voigt,
+    maxwell_3,
+    require_positive,
+    zener,
+)
 from jackettwin.structure.model import Structure
 
 NotNegative = Annotated[float, Field(ge=0.0)]
@@ -165,20 +173,20 @@ def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]
     number, branches = _arguments(name, arguments)
 
     def f0() -> float:
-        return _positive(number["f0"] if "f0" in number else first_frequency_hz(), "f0")
+        f = number["f0"] if "f0" in number else first_frequency_hz()
+        require_positive("f0", f)
+        return f
 
     builders: Mapping[str, Callable[[], Law]] = {
         "elastic": lambda: Prony(k0=number["k"]),
         "kelvin-voigt": lambda: kelvin_voigt(number["k"], number["c"]),
-        "zener": lambda: zener(number["k0"], number["c"], _positive(number["k1"], "k1")),
+        "zener": lambda: zener(number["k0"], number["c"], number["k1"]),
         "maxwell": lambda: Prony(number["k0"], 0.0, *_branches(branches)),
         "maxwell-3": lambda: maxwell_3(number["k"], number["loss_factor"], f0()),
         "springpot": lambda: Springpot(number["k"], number["alpha"], 2.0 * pi * f0()),
     }
-    try:
+    with located(field=f"support.{name}"):
         return builders[name]()
-    except InputError as error:
-        raise error.at(field=f"support.{name}") from None
 
 
 def _arguments(name: str, text: str) -> tuple[dict[str, float], str]:
@@ -217,12 +225,6 @@ def _number(name: str, key: str, text: str) -> float:
     return value
 
 
-def _positive(value: float, field: str) -> float:
-    if not value > 0.0:
-        raise InputError("must be positive", field=field, value=value, allowed="> 0")
-    return value
-
-
 def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     pairs = [pair.split("/") for pair in text.split(";") if pair]
     if not pairs or any(len(pair) != 2 for pair in pairs):
@@ -230,7 +232,9 @@ def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
             "branches are pairs k/tau joined by ;", field="branches", value=text, allowed="k/tau;k/tau"
         )
     k = tuple(_number("maxwell", "branches", pair[0]) for pair in pairs)
-    tau = tuple(_positive(_number("maxwell", "branches", pair[1]), "tau") for pair in pairs)
+    tau = tuple(_number("maxwell", "branches", pair[1]) for pair in pairs)
+    for value in tau:
+        require_positive("tau", value)
     return k, tau
 
 
@@ -249,11 +253,9 @@ def _read_support_file(path: Path, structure: Structure) -> Support:
                     value=node,
                     remedy=did_you_mean(node, structure.nodes),
                 )
-        try:
-            matrix = _matrix(entry.stiffness)
-        except InputError as error:
-            raise error.at(file=path, field=place) from None
-        springs += [Spring(node, matrix, entry.law.build()) for node in nodes]
+        with located(file=path, field=place):
+            matrix, law = _matrix(entry.stiffness), entry.law.build()
+        springs += [Spring(node, matrix, law) for node in nodes]
     return Support(springs=tuple(springs))
 
 

@@ -24,6 +24,10 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
+_LARGEST = 1e25
+"""Of stiffness, damping and relaxation time; rigid in any structure, and clear of overflow."""
+
+
 class Law(Protocol):
     """A complex stiffness; vectorised over s [rad/s]."""
 
@@ -71,12 +75,13 @@ class Prony:
     def __post_init__(self) -> None:
         for name, values in (("k0", (self.k0,)), ("c", (self.c,)), ("k", self.k), ("tau", self.tau)):
             for value in values:
-                if not (np.isfinite(value) and value >= 0.0):
+                if not 0.0 <= value <= _LARGEST:
                     raise InputError(
-                        "must not be negative: the support would feed energy in",
+                        "out of range; a negative value would feed energy in",
                         field=name,
                         value=value,
-                        allowed="≥ 0",
+                        allowed=f"0 to {_LARGEST:g}",
+                        remedy="check the number; SI units",
                     )
         if len(self.k) != len(self.tau):
             raise InputError(
@@ -161,14 +166,12 @@ class Springpot:
     omega0: float
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.k) and self.k > 0.0):
-            raise InputError("must be positive", field="k", value=self.k, allowed="> 0")
+        require_positive("k", self.k)
+        require_positive("omega0", self.omega0)
         if not 0.0 <= self.alpha < 1.0:
             raise InputError(
                 "exponent out of range", field="alpha", value=self.alpha, allowed="0 ≤ alpha < 1"
             )
-        if not (np.isfinite(self.omega0) and self.omega0 > 0.0):
-            raise InputError("must be positive", field="omega0", value=self.omega0, allowed="> 0 rad/s")
 
     @classmethod
     def from_loss_factor(cls, k: float, loss_factor: float, omega0: float) -> Springpot:
@@ -199,6 +202,18 @@ class Springpot:
         return np.asarray(self.k * (self.omega0 * np.asarray(t)) ** (-self.alpha) / gamma(1.0 - self.alpha))
 
 
+def require_positive(field: str, value: float) -> None:
+    """Refuse what is not a positive number.
+
+    Raises
+    ------
+    InputError
+        Names the field.
+    """
+    if not 0.0 < value <= _LARGEST:
+        raise InputError("must be positive", field=field, value=value, allowed=f"> 0, at most {_LARGEST:g}")
+
+
 def kelvin_voigt(k: float, c: float) -> Prony:
     """Return D = k + c s, thesis (4.5)."""
     return Prony(k0=k, c=c)
@@ -206,11 +221,13 @@ def kelvin_voigt(k: float, c: float) -> Prony:
 
 def maxwell(k: float, c: float) -> Prony:
     """Return a spring and a dashpot in series, thesis (4.3)."""
+    require_positive("k", k)
     return Prony(k=(k,), tau=(c / k,))
 
 
 def zener(k0: float, c: float, k1: float) -> Prony:
     """Return k0 beside a Maxwell branch (k1, c), thesis (4.7) and (7.5)."""
+    require_positive("k1", k1)
     return Prony(k0=k0, k=(k1,), tau=(c / k1,))
 
 
@@ -230,6 +247,7 @@ def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
     InputError
         If the loss factor is beyond what the shape can give at f0.
     """
+    require_positive("f0", f0)
     fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
     response = complex(np.sum(w * (1j * f0 / fc) / (1.0 + 1j * f0 / fc)))
     limit = response.imag / response.real
@@ -269,23 +287,24 @@ def prony_fit(law: Springpot, low_hz: float, high_hz: float, per_decade: int = 4
 
     .. math:: D(s) = \frac{\sin πα}{π} k \int (ω/ω_0)^α \frac{s}{s + ω} \, d\ln ω
 
-    converges exponentially. The spectrum below is lumped into one slow branch with its weight and mean
-    corner, the spectrum above into a dashpot.
+    converges exponentially with the number of branches. Its infinite tails are geometric series: those below
+    are lumped into one slow branch with their weight and mean corner, those above into a dashpot.
     """
     alpha = law.alpha
     if alpha == 0.0:
         return Prony(k0=law.k)
     number = int(np.ceil(per_decade * np.log10(high_hz / low_hz))) + 1
-    log_omega, step = np.linspace(np.log(2.0 * pi * low_hz), np.log(2.0 * pi * high_hz), number, retstep=True)
-    slowest, fastest = np.exp(log_omega[0] - 0.5 * step), np.exp(log_omega[-1] + 0.5 * step)
-
-    def density(omega: FloatArray) -> FloatArray:
-        return np.asarray(np.sin(pi * alpha) / pi * law.k * (omega / law.omega0) ** alpha)
-
-    omega = np.concatenate([[slowest * alpha / (1.0 + alpha)], np.exp(log_omega)])
-    k = np.concatenate([[density(slowest) / alpha], density(omega[1:]) * step])
-    c = float(density(fastest)) / ((1.0 - alpha) * fastest)
-    return Prony(c=c, k=tuple(map(float, k)), tau=tuple(map(float, 1.0 / omega)))
+    log_omega, h = np.linspace(np.log(2.0 * pi * low_hz), np.log(2.0 * pi * high_hz), number, retstep=True)
+    omega = np.exp(log_omega)
+    k = np.sin(pi * alpha) / pi * law.k * (omega / law.omega0) ** alpha * h
+    below = k[0] / np.expm1(alpha * h)
+    below_moment = k[0] * omega[0] / np.expm1((1.0 + alpha) * h)
+    above = k[-1] / omega[-1] / np.expm1((1.0 - alpha) * h)
+    return Prony(
+        c=float(above),
+        k=(float(below), *map(float, k)),
+        tau=(float(below / below_moment), *map(float, 1.0 / omega)),
+    )
 
 
 def _step_response(A: FloatArray, b: FloatArray, x0: FloatArray, t: FloatArray) -> FloatArray:
