@@ -1,0 +1,99 @@
+"""What a pile does to the foot it carries: the 6×6 impedance of its head, exact and lumped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from jackettwin.soil.piles import Pile, PileSprings, pile_beams
+from jackettwin.soil.support import ELASTIC, Spring, Support
+from jackettwin.soil.viscoelastic import Law
+from jackettwin.structure.assemble import assemble
+from jackettwin.structure.model import Structure
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class PileMatrices:
+    """A free pile with its head's six DOFs first: steel, mass and soil springs (unit law), sparse."""
+
+    steel: sp.csc_array
+    mass: sp.csc_array
+    soil: sp.csc_array
+
+
+def pile_matrices(pile: Pile, springs: PileSprings) -> PileMatrices:
+    """Return the matrices of one pile, from the same beams as every other member."""
+    below, members = pile_beams("head", (0.0, 0.0, 0.0), pile, springs.node_depth)
+    free = assemble(Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members)))
+    zero = np.zeros_like(springs.lateral)
+    nodal = np.stack([springs.lateral, springs.lateral, springs.axial, zero, zero, springs.torsional], axis=1)
+    return PileMatrices(free.stiffness, free.mass, sp.csc_array(sp.diags_array(nodal.ravel())))
+
+
+def head_impedance(
+    pile: Pile, springs: PileSprings, s: ComplexArray | complex, *, law: Law = ELASTIC
+) -> ComplexArray:
+    """Return the head's dynamic stiffness K*(s) of a pile, (n_s, 6, 6); s = iω [rad/s].
+
+    The pile's other DOFs are eliminated exactly at each s: K* = F_hh − F_hi F_ii⁻¹ F_ih with
+    F = K + D(s) S + s² M.
+    """
+    m = pile_matrices(pile, springs)
+    values = np.atleast_1d(np.asarray(s, dtype=np.complex128))
+    result = np.empty((values.size, 6, 6), dtype=np.complex128)
+    for i, value in enumerate(values):
+        F = sp.csc_array(m.steel + complex(law.stiffness(value)) * m.soil + value**2 * m.mass)
+        result[i] = F[:6, :6].toarray() - F[:6, 6:] @ spla.splu(sp.csc_matrix(F[6:, 6:])).solve(
+            F[6:, :6].toarray()
+        )
+    return 0.5 * (result + result.transpose(0, 2, 1))
+
+
+@dataclass(frozen=True)
+class PileHead:
+    """A pile lumped at its head: K* ≈ steel + D(s)·soil + s²·mass, each 6×6."""
+
+    steel: FloatArray
+    soil: FloatArray
+    mass: FloatArray
+    law: Law = ELASTIC
+
+    def impedance(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return the lumped K*(s), (n_s, 6, 6)."""
+        s = np.atleast_1d(np.asarray(s, dtype=np.complex128))[:, None, None]
+        return np.asarray(self.steel + self.law.stiffness(s) * self.soil + s**2 * self.mass)
+
+
+def lumped_head(pile: Pile, springs: PileSprings, *, law: Law = ELASTIC) -> PileHead:
+    """Return a pile reduced to its head by its static shapes (Guyan).
+
+    Rayleigh's principle makes K* right to second order in D(s) − 1 and in (ω/ω_p)², ω_p the pile's own first
+    frequency with its head held: well above the structure's modes for any driven pile.
+    """
+    m = pile_matrices(pile, springs)
+    static = sp.csc_array(m.steel + m.soil)
+    inner = -spla.splu(sp.csc_matrix(static[6:, 6:])).solve(static[6:, :6].toarray())
+    T = np.vstack([np.eye(6), inner])
+
+    def reduced(matrix: sp.csc_array) -> FloatArray:
+        full = T.T @ (matrix @ T)
+        return np.asarray(0.5 * (full + full.T))
+
+    return PileHead(reduced(m.steel), reduced(m.soil), reduced(m.mass), law)
+
+
+def on_pile_heads(structure: Structure, head: PileHead) -> tuple[Structure, Support]:
+    """Return the structure with a lumped pile on every reaction node: springs, law and mass at the feet."""
+    mass = tuple(tuple(float(v) for v in row) for row in head.mass)
+    reactions = tuple(replace(reaction, mass=mass) for reaction in structure.reactions)
+    springs = []
+    for foot in structure.reaction_nodes:
+        springs += [Spring(foot, head.steel), Spring(foot, head.soil, head.law)]
+    return replace(structure, reactions=reactions), Support(springs=tuple(springs))

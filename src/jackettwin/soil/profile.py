@@ -1,0 +1,137 @@
+"""Layered ground: what each layer is made of, and the effective stress it carries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.soil.scour import NO_SCOUR, Scour
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sand:
+    """Siliceous sand; API RP 2GEO (2011) table 1 gives β and its limits by density.
+
+    ``modulus_n_m3`` is the initial modulus of subgrade reaction k; None takes it from the friction angle.
+    """
+
+    friction_angle_deg: float
+    beta: float = 0.46
+    limit_friction_pa: float = 96e3
+    bearing_factor: float = 40.0
+    limit_bearing_pa: float = 10e6
+    modulus_n_m3: float | None = None
+
+    def __post_init__(self) -> None:
+        _check("friction_angle_deg", self.friction_angle_deg, 20.0, 45.0)
+        for name in ("beta", "limit_friction_pa", "bearing_factor", "limit_bearing_pa"):
+            _check(name, getattr(self, name), 0.0, np.inf)
+        if self.modulus_n_m3 is not None:
+            _check("modulus_n_m3", self.modulus_n_m3, 0.0, np.inf)
+
+
+@dataclass(frozen=True)
+class Clay:
+    """Clay; the undrained shear strength goes linearly from the layer's top to its bottom.
+
+    ``stiff`` chooses the p-y curve of Reese et al. (1975) in place of Matlock's (1970).
+    """
+
+    strength_top_pa: float
+    strength_bottom_pa: float
+    strain_50: float = 0.01
+    J: float = 0.5
+    residual: float = 0.9
+    stiff: bool = False
+
+    def __post_init__(self) -> None:
+        _check("strength_top_pa", self.strength_top_pa, 0.0, np.inf)
+        _check("strength_bottom_pa", self.strength_bottom_pa, 0.0, np.inf)
+        _check("strain_50", self.strain_50, 1e-4, 0.1)
+        _check("J", self.J, 0.0, 1.0)
+        _check("residual", self.residual, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer of one soil; ``effective_weight_n_m3`` is its submerged unit weight."""
+
+    thickness_m: float
+    effective_weight_n_m3: float
+    soil: Sand | Clay
+
+    def __post_init__(self) -> None:
+        _check("thickness_m", self.thickness_m, 1e-6, np.inf)
+        _check("effective_weight_n_m3", self.effective_weight_n_m3, 0.0, 30e3)
+
+
+@dataclass(frozen=True)
+class SoilProfile:
+    """Layers from the original mudline downwards; the lowest reaches as deep as it is asked."""
+
+    layers: tuple[Layer, ...]
+    scour: Scour = NO_SCOUR
+
+    def __post_init__(self) -> None:
+        if not self.layers:
+            raise InputError("a soil profile needs a layer", field="layers", value=[])
+
+    @property
+    def boundaries_m(self) -> FloatArray:
+        """Depth of the layers' lower edges [m], the lowest left out."""
+        return np.cumsum([layer.thickness_m for layer in self.layers])[:-1]
+
+    def effective_stress(self, z: FloatArray | float) -> FloatArray:
+        """Return σ'_v [Pa] at depth ``z`` [m] below the original mudline, without scour.
+
+        >>> SoilProfile((Layer(5.0, 10e3, Sand(35.0)),)).effective_stress(2.0).tolist()
+        20000.0
+        """
+        z = np.asarray(z, dtype=np.float64)
+        weights = np.array([layer.effective_weight_n_m3 for layer in self.layers])
+        tops = np.concatenate([[0.0], self.boundaries_m])
+        bottoms = np.append(self.boundaries_m, np.inf)
+        inside = np.clip(z[..., None], tops, bottoms) - tops
+        return np.asarray(inside @ weights)
+
+
+@dataclass(frozen=True)
+class Point:
+    """The ground at one depth, scour allowed for.
+
+    ``depth_m`` counts from the bottom of the scour hole, ``stress_pa`` is σ'_v, ``strength_pa`` is s_u (zero
+    in sand).
+    """
+
+    depth_m: float
+    stress_pa: float
+    strength_pa: float
+    soil: Sand | Clay
+
+
+def ground_at(profile: SoilProfile, z: float, layer: int, *, diameter: float) -> Point | None:
+    """Return the ground at depth ``z`` [m] below the original mudline in ``layer``; None if scoured away."""
+    scour = profile.scour
+    depth = z - scour.total_m
+    if depth < 0.0:
+        return None
+    share = scour.stress_share(depth, diameter)
+    overburden = profile.effective_stress(z) - profile.effective_stress(scour.general_m)
+    stress = float(overburden * share)
+    soil = profile.layers[layer].soil
+    strength = 0.0
+    if isinstance(soil, Clay):
+        top = float(np.sum([one.thickness_m for one in profile.layers[:layer]]))
+        at = min((z - top) / profile.layers[layer].thickness_m, 1.0)
+        strength = soil.strength_top_pa + (soil.strength_bottom_pa - soil.strength_top_pa) * at
+    return Point(depth, stress, strength, soil)
+
+
+def _check(field: str, value: float, low: float, high: float) -> None:
+    if not (np.isfinite(value) and low <= value <= high):
+        raise InputError("out of range", field=field, value=value, allowed=f"{low:g} to {high:g}")

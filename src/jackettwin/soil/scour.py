@@ -1,0 +1,45 @@
+"""Scour: how much ground is gone, and how much of the overburden with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.errors import InputError
+
+
+@dataclass(frozen=True)
+class Scour:
+    """General scour lowers the whole seabed, local scour is a hole around the pile.
+
+    Under a hole the vertical effective stress grows linearly from zero at its bottom to its value without
+    the hole at ``recovery_diameters`` pile diameters below (API RP 2GEO 2011, section 8.3: 6 D).
+    """
+
+    general_m: float = 0.0
+    local_m: float = 0.0
+    recovery_diameters: float = 6.0
+
+    def __post_init__(self) -> None:
+        for field in ("general_m", "local_m", "recovery_diameters"):
+            value = getattr(self, field)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InputError("out of range", field=f"scour.{field}", value=value, allowed="≥ 0")
+
+    @property
+    def total_m(self) -> float:
+        """Depth of the hole's bottom below the original mudline [m]."""
+        return self.general_m + self.local_m
+
+    def stress_share(self, depth: float, diameter: float) -> float:
+        """Return σ'_v / (σ'_v without the hole) at ``depth`` [m] below the hole's bottom.
+
+        >>> Scour(local_m=2.0).stress_share(3.0, 1.0)
+        0.5
+        """
+        recovery = self.recovery_diameters * diameter
+        return 1.0 if self.local_m == 0.0 or depth >= recovery else depth / recovery
+
+
+NO_SCOUR = Scour()

@@ -1,0 +1,162 @@
+"""Reaction curves against API RP 2GEO / RP 2A values computed independently (tests/data/soil)."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.soil import shaft, springs
+from jackettwin.soil.curves import CubeRoot, Table, Tanh, secant_stiffness, tangent_stiffness
+
+CASES = {
+    case["id"]: case
+    for case in json.loads(
+        (Path(__file__).parents[1] / "data" / "soil" / "soil_values.json").read_text(encoding="utf-8")
+    )["cases"]
+}
+CLOSED_FORM = 1e-9  # the same formulas in another program: rounding only
+KILO = 1e3
+
+
+@pytest.mark.parametrize("name", ["PY_SAND_1", "PY_SAND_2"])
+def test_sand_py(name: str) -> None:
+    case = CASES[name]
+    given = case["inputs"]
+    z, D = given["z_m"], given["D_m"]
+    phi = given["phi_deg"]
+    np.testing.assert_allclose(
+        springs.sand_coefficients(phi), [case["C1"], case["C2"], case["C3"]], rtol=CLOSED_FORM
+    )
+    curve = springs.sand_py(friction_angle_deg=phi, stress_pa=given["gamma_eff_kN_m3"] * z * KILO, z=z, D=D)
+    assert curve.capacity == pytest.approx(case["A"] * case["pu"] * KILO, rel=CLOSED_FORM)
+    assert curve.initial_stiffness == pytest.approx(case["k_init_kN_m2"] * KILO, rel=CLOSED_FORM)
+    for y, p in case["p_kN_m"].items():
+        assert float(curve.force(float(y))) == pytest.approx(p * KILO, rel=CLOSED_FORM)
+
+
+@pytest.mark.parametrize("name", ["PY_CLAY_1", "PY_CLAY_3"])
+def test_clay_py(name: str) -> None:
+    case = CASES[name]
+    given = case["inputs"]
+    stress = given["gamma_eff_kN_m3"] * given["z_m"] * KILO
+    clay = {
+        "strength_pa": given["su_kPa"] * KILO,
+        "stress_pa": stress,
+        "z": given["z_m"],
+        "D": given["D_m"],
+        "strain_50": given["eps50"],
+        "J": given["J"],
+    }
+    table = springs.soft_clay_py(**clay)
+    parabola = springs.soft_clay_py(**clay, form="cube-root")
+    y = np.array(case["y_m"])
+    np.testing.assert_allclose(table.force(y), np.multiply(case["p_table_kN_m"], KILO), rtol=CLOSED_FORM)
+    np.testing.assert_allclose(
+        parabola.force(y), np.multiply(case["p_cuberoot_kN_m"], KILO), rtol=CLOSED_FORM
+    )
+    for curve in (table, parabola):
+        assert curve.initial_stiffness == pytest.approx(case["k_init_0p1y50_kN_m2"] * KILO, rel=CLOSED_FORM)
+    for xi, key in ((10.0, "xi10"), (30.0, "xi30")):
+        k = springs.clay_initial_stiffness(
+            capacity_n_m=case["pu"] * KILO, D=given["D_m"], strain_50=given["eps50"], xi=xi
+        )
+        assert k == pytest.approx(case["dnv_initial_k_kN_m2"][key] * KILO, rel=CLOSED_FORM)
+
+
+def test_clay_tz() -> None:
+    case = CASES["TZ_CLAY_1"]
+    given = case["inputs"]
+    f = shaft.clay_friction(strength_pa=given["su_kPa"] * KILO, stress_pa=given["sigma_v_eff_kPa"] * KILO)
+    assert f == pytest.approx(case["f_kPa"] * KILO, rel=CLOSED_FORM)
+    curve = shaft.clay_tz(friction_pa=f, D=given["D_m"], residual=given["residual"])
+    perimeter = np.pi * given["D_m"]
+    np.testing.assert_allclose(
+        curve.force(case["z_m"]), np.multiply(case["t_kPa"], KILO * perimeter), rtol=CLOSED_FORM
+    )
+    assert curve.initial_stiffness == pytest.approx(case["k_init_kN_m_per_m"] * KILO, rel=CLOSED_FORM)
+
+
+def test_sand_tz_in_both_forms() -> None:
+    case = CASES["TZ_SAND_1"]
+    given = case["inputs"]
+    f = shaft.sand_friction(
+        stress_pa=given["sigma_v_eff_kPa"] * KILO, beta=given["beta"], limit_pa=case["f_lim_kPa"] * KILO
+    )
+    assert f == pytest.approx(case["f_kPa"] * KILO, rel=CLOSED_FORM)
+    perimeter = np.pi * given["D_m"]
+    for form, key in (("rp2a", "2.54mm"), ("rp2geo", "0.3f at 0.16%D")):
+        curve = shaft.sand_tz(friction_pa=f, D=given["D_m"], form=form)
+        assert curve.initial_stiffness == pytest.approx(
+            case["k_init_kPa_per_m"][key] * KILO * perimeter, rel=CLOSED_FORM
+        )
+    with pytest.raises(InputError, match="rp2geo, rp2a"):
+        shaft.sand_tz(friction_pa=f, D=2.0, form="iso")
+
+
+def test_clay_tip() -> None:
+    case = CASES["QZ_CLAY_1"]
+    D = case["inputs"]["D_m"]
+    q = shaft.clay_bearing(case["inputs"]["su_kPa"] * KILO)
+    assert q == pytest.approx(case["q_kPa"] * KILO, rel=CLOSED_FORM)
+    curve = shaft.tip_qz(bearing_pa=q, D=D, area_m2=0.25 * np.pi * D**2)
+    np.testing.assert_allclose(
+        curve.force(case["z_m"]) / (0.25 * np.pi * D**2), np.multiply(case["Q_kPa"], KILO), rtol=CLOSED_FORM
+    )
+    assert curve.initial_stiffness == pytest.approx(case["k_init_tip_kN_m_full_area"] * KILO, rel=CLOSED_FORM)
+
+
+def test_deep_soft_clay_flows_around_the_pile() -> None:
+    """Below z_R the capacity is 9 s_u D whatever the overburden."""
+    shallow, deep = (
+        springs.soft_clay_capacity(strength_pa=30e3, stress_pa=6e3 * z, z=z, D=2.0, J=0.5)
+        for z in (2.0, 40.0)
+    )
+    assert deep == pytest.approx(9.0 * 30e3 * 2.0)
+    assert shallow < deep
+
+
+def test_cyclic_clay_keeps_072_below_the_transition_and_loses_it_above() -> None:
+    """API RP 2GEO (2011) table 2: 0.72 beyond 3 y50, and 0.72 z/z_R at 15 y50 above z_R."""
+    clay = {"strength_pa": 50e3, "D": 2.0, "strain_50": 0.01, "cyclic": True}
+    y50 = 0.05
+    deep = springs.soft_clay_py(**clay, stress_pa=8e3 * 30, z=30.0)
+    assert float(deep.force(20 * y50)) == pytest.approx(0.72 * 9.0 * 50e3 * 2.0)
+    z = 4.0
+    shallow = springs.soft_clay_py(**clay, stress_pa=8e3 * z, z=z)
+    z_R = CASES["PY_CLAY_1"]["z_R"]
+    assert float(shallow.force(20 * y50)) == pytest.approx(0.72 * 464e3 * z / z_R, rel=CLOSED_FORM)
+
+
+@pytest.mark.parametrize("cyclic", [False, True])
+def test_stiff_clay_is_continuous_brittle_and_never_pulls(cyclic: bool) -> None:
+    """Reese 1975: the pieces meet (0.936 A at 0.6 y_p is rounded to three digits) and fall after a peak."""
+    D, z, su, e50 = 1.5, 6.0, 150e3, 0.005
+    curve = springs.stiff_clay_py(strength_pa=su, stress_pa=9e3 * z, z=z, D=D, strain_50=e50, cyclic=cyclic)
+    pc = min((2 * su + 9e3 * z) * D + 2.83 * su * z, 11 * su * D)
+    p = np.array(curve.p)
+    assert p.min() >= 0.0
+    assert np.abs(np.diff(p)).max() < 0.02 * pc  # 400 steps: a jump would be larger
+    A = 0.2 + (0.1 * np.tanh(1.5 * z / D) if cyclic else 0.4 * np.tanh(0.62 * z / D))
+    if cyclic:
+        assert p.max() == pytest.approx(A * pc, rel=1e-3)
+    else:
+        assert float(curve.force(A * e50 * D)) == pytest.approx(0.5 * np.sqrt(A) * pc, rel=1e-3)
+        assert p[-1] / pc == pytest.approx(0.5 * np.sqrt(6 * A) - 0.411 - 0.75 * A, rel=1e-6)
+    assert p[-1] < 0.7 * p.max()
+
+
+def test_linearisation_of_a_curve() -> None:
+    curve = Tanh(capacity=1e6, initial_stiffness=1e8)
+    assert float(secant_stiffness(curve, 0.0)) == 1e8
+    assert float(secant_stiffness(curve, 0.02)) == pytest.approx(1e6 * np.tanh(2.0) / 0.02)
+    assert float(tangent_stiffness(curve, 0.02)) == pytest.approx(1e8 / np.cosh(2.0) ** 2, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "curve", [Tanh(1e6, 1e8), Table((0.0, 0.01, 0.02), (0.0, 1e5, 8e4)), CubeRoot(1e6, 0.05, 1e8)]
+)
+def test_curves_are_odd(curve) -> None:
+    y = np.linspace(0.0, 0.1, 11)
+    np.testing.assert_array_equal(curve.force(-y), -curve.force(y))
