@@ -1,0 +1,313 @@
+"""Put the report together: ``TwinResult`` in, ``report.html`` and its figures out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from jackettwin import __version__
+from jackettwin.identification import Identification, ModalEstimate, mac
+from jackettwin.report import (
+    explore,
+    figures_identification,
+    figures_landscape,
+    figures_record,
+    figures_structure,
+    tables,
+)
+from jackettwin.report import figures_updating as compare
+from jackettwin.report.figures_structure import Shape
+from jackettwin.report.numbers import fixed, frequency, percent, words
+from jackettwin.report.page import Block, Plot, Section, Table, Text, write_figures, write_page
+from jackettwin.report.summary import headline, shown_update
+from jackettwin.twin import TwinResult
+from jackettwin.updating import Update
+
+_NEAR = 0.08
+"""A mode of one record lies this close to the same mode of another."""
+
+
+def build_report(result: TwinResult, out_dir: Path) -> Path:
+    """Write ``report.html`` (self-contained) and ``figures/NAME.html``; return the path of the report.
+
+    Raises
+    ------
+    OSError
+        If the directory cannot be written.
+    """
+    sections = report_sections(result)
+    write_figures(sections, out_dir / "figures")
+    title = f"{result.name}: digital twin of {result.assembly.structure.name}"
+    return write_page(sections, out_dir / "report.html", title=title, subtitle=_subtitle(result))
+
+
+def build_gallery(sections: Sequence[Section], out_dir: Path, title: str) -> Path:
+    """Write sections as ``gallery.html`` with its figures beside it; return the path of the page."""
+    write_figures(sections, out_dir / "figures")
+    return write_page(sections, out_dir / "gallery.html", title=title, subtitle=f"jackettwin {__version__}")
+
+
+def report_sections(result: TwinResult) -> list[Section]:
+    """Return the report's sections in the order an engineer reads them; empty ones are left out."""
+    makers: tuple[tuple[str, Callable[[TwinResult], list[Block]]], ...] = (
+        ("Summary", _summary),
+        ("Structure", _structure),
+        ("Record", _record),
+        ("Identification", _identification),
+        ("Identified against updated", _comparison),
+        ("Damped and undamped", _damped_undamped),
+        ("Mode shapes", _mode_shapes),
+        ("Solutions", _solutions),
+        ("Sensitivity and root locus", _landscape),
+        ("Damping no support explains", _excess),
+        ("Assumptions and warnings", _assumptions),
+        ("Provenance", _provenance),
+    )
+    sections = [Section(title, tuple(make(result))) for title, make in makers]
+    return [section for section in sections if section.blocks]
+
+
+def mode_names(result: TwinResult, found: Identification) -> list[str]:
+    """Return the label of each identified mode; empty for one the model lacks."""
+    lost = {id(mode) for mode in result.unpaired}
+    return ["" if id(mode) in lost else _name(result, mode) for mode in found.modes]
+
+
+def _name(result: TwinResult, mode: ModalEstimate) -> str:
+    """Return the label of the measured mode that a paired estimate belongs to."""
+    best, resemblance = "", 0.0
+    for m in result.measured:
+        if m.estimate is mode:
+            return m.label
+        if m.estimate is None or m.estimate.mode_shape.shape != mode.mode_shape.shape:
+            continue
+        near = abs(m.estimate.frequency_hz / mode.frequency_hz - 1.0) < _NEAR
+        value = float(mac(mode.mode_shape, m.estimate.mode_shape)) if near else 0.0
+        if value > resemblance:
+            best, resemblance = m.label, value
+    return best
+
+
+def _subtitle(result: TwinResult) -> str:
+    names = [name for found in result.identifications for name in found.records]
+    source = (
+        f"record {names[0]}" if len(names) == 1 else f"{len(names)} records" if names else "given targets"
+    )
+    return f"{source} · jackettwin {__version__}"
+
+
+def _summary(result: TwinResult) -> list[Block]:
+    blocks: list[Block] = [Text(headline(result)), tables.key_table(result)]
+    if result.warnings:
+        blocks.append(Text(result.warnings[:3], "warnings"))
+    return blocks
+
+
+def _structure(result: TwinResult) -> list[Block]:
+    figure = figures_structure.structure_3d(result.assembly, result.sensors)
+    caption = (
+        "The structure, members coloured by the quantity chosen above. "
+        "Drag to turn, scroll to zoom; axes are equal."
+    )
+    return [Plot("structure", caption, figure), tables.structure_table(result)]
+
+
+def _record(result: TwinResult) -> list[Block]:
+    if result.record is None:
+        return []
+    caption = (
+        f"{result.record.name}: every channel. Blue along x (fore-aft), vermillion along y (side-side). "
+        "Long channels are drawn as the extremes of each bin."
+    )
+    blocks: list[Block] = [Plot("time_series", caption, figures_record.time_series(result.record))]
+    if result.identifications:
+        found = result.identifications[0]
+        modes = list(zip(mode_names(result, found), found.modes, strict=True))
+        caption = (
+            "Power spectral density (PSD) of each channel by Welch's method, and singular values of the "
+            "spectral matrix of the channels scaled to unit variance, largest darkest. "
+            "Dashed lines: identified modes."
+        )
+        blocks.insert(0, tables.quality_table(result.observations[0]))
+        blocks.append(Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes)))
+    return blocks
+
+
+def _identification(result: TwinResult) -> list[Block]:
+    blocks: list[Block] = []
+    for i, found in enumerate(result.identifications):
+        names = mode_names(result, found)
+        if i == 0:
+            blocks += _diagrams(found, names)
+        blocks.append(tables.identified_table(found, names, folded=i > 0))
+    if result.identifications:
+        first = result.identifications[0]
+        if first.rejected:
+            blocks.append(tables.rejected_table(first))
+        blocks.append(tables.pairing_table(result.measured, result.unpaired))
+    return blocks
+
+
+def _diagrams(found: Identification, names: list[str]) -> list[Block]:
+    s = found.settings
+    modes = list(zip(names, found.modes, strict=True))
+    caption = (
+        f"{found.records[0]}, stabilisation in frequency: poles of every model order, "
+        f"{s.orders[0]} to {s.orders[-1]}; lines are the modes kept, shaded bands their 95 % intervals "
+        "where known."
+    )
+    blocks: list[Block] = [
+        Plot("stabilisation_frequency", caption, figures_identification.stabilisation(found, names)),
+        Plot(
+            "stabilisation_damping",
+            "Stabilisation in damping: the same poles against their damping ratio.",
+            figures_identification.stabilisation_damping(found, names),
+        ),
+        Plot(
+            "damping_frequency",
+            "Damping against frequency of all poles, the modes kept on top.",
+            figures_identification.damping_against_frequency(found, names),
+        ),
+    ]
+    if any(figures_identification.damping_interval(mode) for _, mode in modes):
+        caption = "Identified modes with their 95 % intervals."
+        blocks.append(Plot("intervals", caption, figures_identification.intervals(modes)))
+    return blocks
+
+
+def _comparison(result: TwinResult) -> list[Block]:
+    if not result.updates:
+        return []
+    f, zeta = compare.frequency_errors, compare.damping_comparison
+    return [
+        Plot(
+            "frequencies",
+            "Updated frequencies relative to the measured ones, whose 95 % intervals are the bars.",
+            f(result.measured, result.updates),
+        ),
+        Plot(
+            "damping",
+            "Measured damping ratios with 95 % intervals, and those of each updated law.",
+            zeta(result.measured, result.updates),
+        ),
+        tables.parameter_table(result.updates),
+    ]
+
+
+def _damped_undamped(result: TwinResult) -> list[Block]:
+    if not result.updates:
+        return []
+    text = (
+        "A dashpot that is too strong to move acts as a spring: the damped frequencies fit while the "
+        "structure without damping is wrong. Differences beyond 5 % are flagged as locked dampers."
+    )
+    caption = "Difference of undamped from damped frequencies."
+    figure = compare.damped_undamped(result.measured, result.updates)
+    return [Text((text,)), tables.damped_undamped_table(result), Plot("damped_undamped", caption, figure)]
+
+
+def _mode_shapes(result: TwinResult) -> list[Block]:
+    if not result.updates:
+        return []
+    u = shown_update(result)
+    shapes = _shapes(result, u)
+    caption = (
+        f"Mode shapes of the full model updated with {u.law}. Coloured: damped, moving; dotted: undamped at "
+        "its largest; pale: at rest. Arrows: the measured shape at the sensors, scaled to the model's."
+    )
+    return [
+        Plot(
+            "mode_shapes", caption, figures_structure.mode_shapes_3d(result.assembly, shapes, result.sensors)
+        )
+    ]
+
+
+def _shapes(result: TwinResult, u: Update) -> list[Shape]:
+    undamped = explore.undamped_shapes(u)
+    order = {
+        channel.name: i for found in result.identifications[:1] for i, channel in enumerate(found.channels)
+    }
+    rows = [order.get(sensor.channel, -1) for sensor in result.sensors]
+    shapes = []
+    for i, m in enumerate(result.measured):
+        f, zeta = float(u.modes.frequency_hz[i]), float(u.modes.damping_ratio[i])
+        text = f"<b>{words(m.label)}</b><br>{frequency(f)} Hz, ζ {percent(zeta)} %"
+        seen = m.estimate.mode_shape[rows] if m.estimate is not None and rows and min(rows) >= 0 else None
+        shapes.append(Shape(text, m.label, u.modes.shapes[:, i], undamped[:, i], seen))
+    return shapes
+
+
+def _solutions(result: TwinResult) -> list[Block]:
+    return [tables.solutions_table(result, u) for u in result.updates]
+
+
+def _landscape(result: TwinResult) -> list[Block]:
+    if not result.updates:
+        return []
+    curves = [c for u in result.updates for c in explore.sensitivities(u.model, u.residuals, u.best.theta)]
+    caption = "Cost as one parameter moves by ±50 % about the solution, the others held."
+    blocks: list[Block] = [Plot("sensitivity", caption, figures_landscape.sensitivity(curves))]
+    blocks += [
+        _surface(u) for u in result.updates if u.law == "kelvin-voigt" and len(u.model.parameters) == 2
+    ]
+    labels = tuple(m.label for m in result.measured)
+    for u in result.updates:
+        path = explore.locus(u.model, u.best.theta, u.residuals.modes, labels)
+        caption = (
+            f"{u.law}: poles of each mode as {path.parameter} of every support goes from bound to bound."
+        )
+        blocks.append(Plot(f"root_locus_{u.law}", caption, figures_landscape.root_locus(path)))
+    return blocks
+
+
+def _surface(u: Update) -> Plot:
+    x, y, cost = explore.surface(u)
+    (px, py), parameters = u.best.theta, u.model.parameters
+    figure = figures_landscape.cost_surface(
+        x,
+        y,
+        cost,
+        names=(parameters[0].name, parameters[1].name),
+        units=(parameters[0].unit, parameters[1].unit),
+        points=[("solution", float(px), float(py))],
+    )
+    return Plot(f"cost_surface_{u.law}", f"{u.law}: the cost over the whole bounds.", figure)
+
+
+def _excess(result: TwinResult) -> list[Block]:
+    if not any(result.excess):
+        return []
+    u = shown_update(result)
+    rows = result.excess[result.updates.index(u)]
+    text = (
+        "These modes' damping took no part in the fit. What exceeds steel and support has another source: "
+        "for side-side modes of a parked rotor, above all its aerodynamics. It is reported, not forced into "
+        "the soil."
+    )
+    caption = f"Measured damping beside what steel and the updated support ({u.law}) give."
+    return [
+        Text((text,)),
+        Plot("damping_excess", caption, compare.damping_excess(u.law, rows)),
+        tables.excess_table(result),
+    ]
+
+
+def _assumptions(result: TwinResult) -> list[Block]:
+    blocks: list[Block] = [Text(result.assumptions, "list")] if result.assumptions else []
+    return [*blocks, Text(result.warnings, "warnings")] if result.warnings else blocks
+
+
+def _provenance(result: TwinResult) -> list[Block]:
+    rows = [("jackettwin", __version__), ("twin", result.name), ("structure", result.assembly.structure.name)]
+    rows.append(("degrees of freedom", str(result.assembly.n_dof)))
+    for found in result.identifications:
+        s = found.settings
+        rows.append(("record", ", ".join(found.records)))
+        rows.append(("channels", ", ".join(c.name for c in found.channels)))
+        rows.append(("band", f"{fixed(s.lowest_frequency_hz, 3)} to {fixed(s.highest_frequency_hz, 3)} Hz"))
+        rows.append(("decimated to", f"{s.sample_rate_hz:.4g} Hz"))
+        rows.append(("lag window", f"{s.lag_window_s:.3g} s, {s.block_rows} block rows"))
+        rows.append(("model orders", f"{s.orders[0]} to {s.orders[-1]}, {len(s.orders)} of them"))
+    if result.record is not None:
+        rows += [(key.replace("_", " "), str(value)) for key, value in result.record.conditions.items()]
+    return [Table("Where the numbers come from.", ("what", "value"), tuple(rows), 2)]

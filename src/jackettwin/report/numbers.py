@@ -1,0 +1,99 @@
+"""Numbers as people read them: sensible digits, units, a dash for what is not known."""
+
+from __future__ import annotations
+
+import math
+
+UNKNOWN = "–"
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_Z95 = 1.959963984540054
+
+
+def known(value: float | None) -> bool:
+    """Return whether there is a finite number."""
+    return value is not None and math.isfinite(value)
+
+
+def fixed(value: float | None, decimals: int, *, sign: bool = False) -> str:
+    """Return a number with so many decimals.
+
+    >>> fixed(-0.00001, 2), fixed(None, 2)
+    ('0.00', '–')
+    """
+    if value is None or not math.isfinite(value):
+        return UNKNOWN
+    rounded = round(float(value), decimals) + 0.0
+    return f"{rounded:+.{decimals}f}" if sign and rounded else f"{rounded:.{decimals}f}"
+
+
+def frequency(value: float | None, std: float | None = None) -> str:
+    """Return hertz with four decimals.
+
+    >>> frequency(0.18192, 0.00081)
+    '0.1819 ± 0.0008'
+    """
+    return _with_std(value, std, 1.0, 4)
+
+
+def percent(value: float | None, std: float | None = None, *, decimals: int = 2) -> str:
+    """Return a ratio in per cent, without the sign.
+
+    >>> percent(0.0127, 0.004)
+    '1.27 ± 0.40'
+    """
+    return _with_std(value, std, 100.0, decimals)
+
+
+def _with_std(value: float | None, std: float | None, scale: float, decimals: int) -> str:
+    if value is None or not math.isfinite(value):
+        return UNKNOWN
+    text = fixed(scale * value, decimals)
+    return text if std is None or not math.isfinite(std) else f"{text} ± {fixed(scale * std, decimals)}"
+
+
+def interval(low_high: tuple[float, float] | None, scale: float, decimals: int) -> str:
+    """Return ``low … high``."""
+    if low_high is None:
+        return UNKNOWN
+    return " … ".join(fixed(scale * value, decimals) for value in low_high)
+
+
+def scientific(value: float | None, digits: int = 3) -> str:
+    """Return a number of any size with ``digits`` significant ones.
+
+    >>> scientific(2.5e9), scientific(0.1234)
+    ('2.50 × 10⁹', '0.123')
+    """
+    if value is None or not math.isfinite(value):
+        return UNKNOWN
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    power = int(exponent)
+    if -3 <= power <= digits:
+        return f"{float(f'{mantissa}e{exponent}'):.{max(digits - 1 - power, 0)}f}"
+    return f"{mantissa} × 10{str(power).translate(_SUPERSCRIPT)}"
+
+
+def log_interval_95(value: float, std: float) -> tuple[float, float]:
+    """Return the 95 % interval of a positive number, symmetric in its logarithm."""
+    spread = math.exp(_Z95 * std / value)
+    return value / spread, value * spread
+
+
+def words(label: str) -> str:
+    """Return a mode's label as text.
+
+    >>> words("fore_aft_1")
+    'fore-aft 1'
+    """
+    kind, _, number = label.rpartition("_")
+    return f"{kind.replace('_', '-')} {number}" if kind else label
+
+
+def count(n: int, noun: str) -> str:
+    """Return ``1 mode``, ``2 modes``."""
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
+
+
+def listed(items: list[str]) -> str:
+    """Return ``a, b and c``."""
+    return items[0] if len(items) == 1 else ", ".join(items[:-1]) + " and " + items[-1] if items else "none"

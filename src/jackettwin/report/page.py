@@ -1,0 +1,119 @@
+"""What a page is made of, and how it becomes one self-contained file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import plotly.graph_objects as go
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from jackettwin.files import atomic_path
+
+
+@dataclass(frozen=True)
+class Text:
+    """Paragraphs, or the items of a list."""
+
+    paragraphs: tuple[str, ...]
+    style: Literal["paragraphs", "list", "warnings"] = "paragraphs"
+    kind: Literal["text"] = "text"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Cells as they are printed; columns whose name ends in a unit are set as numbers."""
+
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    text_columns: int = 1
+    """How many columns on the left hold words."""
+    marked: frozenset[int] = frozenset()
+    """Rows that deserve attention."""
+    folded: bool = False
+    """Shown only on request: long lists that few will read."""
+    kind: Literal["table"] = "table"
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A figure under a name that is also its file's."""
+
+    name: str
+    caption: str
+    figure: go.Figure
+    kind: Literal["plot"] = "plot"
+
+    @property
+    def json(self) -> Markup:
+        """The figure as JSON that may stand inside a script element."""
+        return Markup(self.figure.to_json().replace("</", "<\\/"))
+
+    @property
+    def scenes(self) -> int:
+        """How many 3D scenes it has: each holds a WebGL context."""
+        return sum(1 for key in self.figure.layout.to_plotly_json() if key.startswith("scene"))
+
+    @property
+    def height(self) -> int:
+        """Height [px]."""
+        return int(self.figure.layout.height)
+
+
+Block = Text | Table | Plot
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands under it."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+    @property
+    def anchor(self) -> str:
+        """Fragment of its address."""
+        return "".join(c if c.isalnum() else "-" for c in self.title.lower()).strip("-")
+
+
+def write_page(sections: Sequence[Section], path: Path, *, title: str, subtitle: str = "") -> Path:
+    """Write one self-contained HTML file."""
+    return _write("page.html.j2", path, sections=sections, title=title, subtitle=subtitle, plotly=_plotly())
+
+
+def write_figures(sections: Sequence[Section], directory: Path) -> None:
+    """Write every figure as a page of its own, beside one shared ``plotly.min.js``."""
+    plots = list(_plots(sections))
+    if not plots:
+        return
+    with atomic_path(directory / "plotly.min.js") as temporary:
+        temporary.write_text(get_plotlyjs(), encoding="utf-8")
+    for plot in plots:
+        _write("figure.html.j2", directory / f"{plot.name}.html", plot=plot, title=plot.name)
+
+
+def _plots(sections: Iterable[Section]) -> Iterable[Plot]:
+    return (block for section in sections for block in section.blocks if isinstance(block, Plot))
+
+
+def _plotly() -> Markup:
+    return Markup(get_plotlyjs().replace("</script", "<\\/script"))
+
+
+def _write(template: str, path: Path, **context: object) -> Path:
+    environment = Environment(
+        loader=PackageLoader("jackettwin.report"),
+        autoescape=select_autoescape(("html", "j2")),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    text = environment.get_template(template).render(**context)
+    with atomic_path(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path

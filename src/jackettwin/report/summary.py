@@ -1,0 +1,108 @@
+"""The first sentences of the report: what this twin is, what was found, what to trust."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, known, listed, percent, words
+from jackettwin.structure import check
+from jackettwin.twin import TwinResult
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import Update
+
+
+def shown_update(result: TwinResult) -> Update:
+    """Return the update whose shapes are drawn: the first law without a locked damper."""
+    return next((u for u in result.updates if not u.best.locked_damper), result.updates[0])
+
+
+def headline(result: TwinResult) -> tuple[str, ...]:
+    """Return three to five plain sentences."""
+    sentences = [_what(result), _found(result), *_fit(result), *_excess(result)]
+    return tuple(sentences)
+
+
+def _what(result: TwinResult) -> str:
+    structure = result.assembly.structure
+    tonnes = check(result.assembly).mass_kg / 1e3
+    base = (
+        f"This is a digital twin of {structure.name}: {count(len(structure.members), 'member')}, "
+        f"{tonnes:.0f} t, gravity stiffness {'on' if result.assembly.gravity else 'off'}."
+    )
+    if result.record is None:
+        return f"{base} It was updated to modes known from elsewhere, not to a record."
+    r, n = result.record, len(result.identifications)
+    when = f" from {r.start_utc:%Y-%m-%d %H:%M} UTC" if r.start_utc is not None else ""
+    more = f" and {count(n - 1, 'further record')}" if n > 1 else ""
+    length = f"{r.duration_s:.0f} s at {r.sample_rate_hz:g} Hz"
+    return f"{base} It was updated from record {r.name}{more}: {length}{when}."
+
+
+def _found(result: TwinResult) -> str:
+    first = [m for m in result.measured if known(m.frequency_hz)]
+    each = listed(
+        [f"{words(m.label)} at {frequency(m.frequency_hz)} Hz{_with_damping(m)}" for m in first[:2]]
+    )
+    rest = f", and {count(len(first) - 2, 'higher mode')}" if len(first) > 2 else ""
+    if result.record is None:
+        return f"{count(len(first), 'mode').capitalize()} given: {each}{rest}."
+    lost = (
+        f"; {count(len(result.unpaired), 'identified mode')} found no counterpart" if result.unpaired else ""
+    )
+    return f"{count(len(first), 'measured mode').capitalize()} paired with the model: {each}{rest}{lost}."
+
+
+def _with_damping(m: MeasuredMode) -> str:
+    return f" (ζ {percent(m.damping_ratio)} %)" if known(m.damping_ratio) else ""
+
+
+def _fit(result: TwinResult) -> list[str]:
+    if not result.updates:
+        return []
+    texts = [f"{u.law} {_worst(result.measured, u)}" for u in result.updates]
+    fit = f"Largest misfit of what was fitted, frequency / damping: {'; '.join(texts)}."
+    locked = [u.law for u in result.updates if u.best.locked_damper]
+    found = sum(len(u.solutions) for u in result.updates)
+    count_locked = sum(s.locked_damper for u in result.updates for s in u.solutions)
+    search = f"The search ended in {count(found, 'distinct solution')}"
+    if locked:
+        return [
+            fit,
+            f"{search}; do not use {listed(locked)}: every solution locks its damper, "
+            "so the undamped structure is wrong.",
+        ]
+    if count_locked:
+        return [fit, f"{search}; {count_locked} with a locked damper, which are listed but not used."]
+    return [fit, f"{search}, none with a locked damper."]
+
+
+def _worst(measured: tuple[MeasuredMode, ...], u: Update) -> str:
+    f = [
+        abs(a / m.frequency_hz - 1.0)
+        for m, a in zip(measured, u.modes.frequency_hz, strict=True)
+        if m.fits_frequency and m.frequency_hz and np.isfinite(a)
+    ]
+    z = [
+        abs(a / m.damping_ratio - 1.0)
+        for m, a in zip(measured, u.modes.damping_ratio, strict=True)
+        if m.fits_damping and m.damping_ratio and np.isfinite(a)
+    ]
+    parts = [fixed(100.0 * max(values), n) + " %" if values else UNKNOWN for values, n in ((f, 2), (z, 1))]
+    return " / ".join(parts)
+
+
+def _excess(result: TwinResult) -> list[str]:
+    if not result.updates:
+        return []
+    rows = result.excess[result.updates.index(shown_update(result))] if any(result.excess) else ()
+    open_ = [row for row in rows if not row.explained and row.measured > row.model]
+    if not open_:
+        return []
+    texts = [
+        f"{words(r.label)} measures ζ {percent(r.measured)} % where the model has {percent(r.model)} %"
+        for r in open_
+    ]
+    return [
+        f"{listed(texts).capitalize()}: no support at the feet explains this, another source must "
+        "(the rotor, the water)."
+    ]

@@ -1,0 +1,110 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import ModalEstimate, identify
+from jackettwin.records import Channel, Record, assess
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.sensors import Sensor
+from jackettwin.structure import Rayleigh, assemble, read_structure
+from jackettwin.twin import Observation, TwinResult
+from jackettwin.twin.result import DampingExcess, MeasuredMode
+from jackettwin.updating import Residuals, Target, family, numbered_modes, support_model, update
+
+PLACES = (("top", 144.0), ("mid", 77.0))
+
+
+@pytest.fixture(scope="session")
+def targets_only() -> TwinResult:
+    """Table 6.1 on the reference jacket: no record, nothing identified."""
+    assembly = assemble(read_structure("jacket15"))
+    numbered = numbered_modes(assembly, 8)
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    targets = (Target(1, 0.1819, damping_ratio=0.0127), Target(2, 0.1838), Target(4, 0.7362))
+    steel = Rayleigh.minimum(0.01, 0.1832)
+    model = support_model(assembly, family=family("kelvin-voigt"), rayleigh=steel)
+    fitted = update(model, Residuals(targets, relative=True), starts=4)
+    measured = tuple(
+        MeasuredMode(
+            t.mode, labels[t.mode - 1], t.frequency_hz, None, t.damping_ratio, None, None, None, True,
+            t.damping_ratio is not None,
+        )
+        for t in targets
+    )  # fmt: skip
+    return TwinResult(
+        name="from_targets",
+        assembly=assembly,
+        sensors=(),
+        numbered=numbered,
+        labels=labels,
+        observations=(),
+        measured=measured,
+        unpaired=(),
+        updates=(fitted,),
+        excess=((),),
+        assumptions=("The steel has 1 %.",),
+        warnings=(),
+    )
+
+
+@pytest.fixture(scope="session")
+def record() -> Record:
+    """Four channels of noise through two lightly damped modes."""
+    rng = np.random.default_rng(1)
+    rate, n = 10.0, 6000
+    data = 0.02 * rng.standard_normal((4, n))
+    for row, f in ((0, 0.18), (1, 0.21)):
+        pole = np.exp((-0.01 + 1j) * 2 * np.pi * f / rate)
+        q = np.zeros(n, dtype=complex)
+        drive = rng.standard_normal(n)
+        for k in range(1, n):
+            q[k] = pole * q[k - 1] + drive[k]
+        data[row::2] += np.outer([1.0, 0.5], q.real)
+    directions = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
+    channels = tuple(
+        Channel(f"acc_{name}_{axis}", height_m=height, direction=direction)
+        for name, height in PLACES
+        for axis, direction in directions.items()
+    )
+    return Record(data, rate, channels, name="noise <&> modes")
+
+
+@pytest.fixture(scope="session")
+def observation(record: Record) -> Observation:
+    return Observation(record, assess(record), identify(record))
+
+
+def _certain(mode: ModalEstimate) -> ModalEstimate:
+    return replace(mode, frequency_std_hz=0.0012, damping_ratio_std=0.0033)
+
+
+@pytest.fixture(scope="session")
+def complete(targets_only: TwinResult, record: Record, observation: Observation) -> TwinResult:
+    """A record with uncertainty on every mode, an unpaired mode, unexplained damping."""
+    modes = tuple(map(_certain, observation.identification.modes))
+    found = replace(observation.identification, modes=modes)
+    measured = tuple(
+        replace(
+            m,
+            frequency_std_hz=0.0012,
+            damping_ratio=0.0234,
+            damping_ratio_std=0.0033,
+            mac=0.97,
+            estimate=mode,
+        )
+        for m, mode in zip(targets_only.measured, found.modes[:2], strict=False)
+    )
+    excess = (DampingExcess("side_side_1", 0.0456, 0.004, 0.0123, False),)
+    return replace(
+        targets_only,
+        name="from_record",
+        sensors=tuple(Sensor(c.name, c.direction, height_m=c.height_m) for c in record.channels),
+        observations=(replace(observation, identification=found),),
+        measured=(*measured, *targets_only.measured[len(measured) :]),
+        unpaired=found.modes[2:],
+        excess=(excess,),
+        warnings=("Beware <script>alert(1)</script>.",),
+    )

@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.report import Plot, Section, Text, build_gallery, build_report
+from jackettwin.report.build import mode_names, report_sections
+from jackettwin.report.numbers import frequency, percent
+from jackettwin.twin import TwinResult
+
+
+class _Page(HTMLParser):
+    """Collects addresses, visible text and the figures' JSON."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.text: list[str] = []
+        self.figures: list[str] = []
+        self.scripts = 0
+        self._inside = ""
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.addresses += [value or "" for name, value in attrs if name in ("src", "href")]
+        self._inside = tag
+        if tag == "script":
+            self.scripts += 1
+            if ("type", "application/json") in attrs:
+                self._inside = "json"
+                self.figures.append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = ""
+
+    def handle_data(self, data: str) -> None:
+        if self._inside == "json":
+            self.figures[-1] += data
+        elif self._inside not in ("script", "style"):
+            self.text.append(data)
+
+
+@pytest.fixture(scope="module")
+def report(complete: TwinResult, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_report(complete, tmp_path_factory.mktemp("report"))
+
+
+def test_report_is_one_small_file_that_needs_no_network(report: Path) -> None:
+    html = report.read_text(encoding="utf-8")
+    page = _Page(html)
+    assert all(address.startswith("#") for address in page.addresses)
+    assert html.count("plotly.js v") == 1  # the library's banner: inlined once
+    assert "@import" not in html.split("</style>")[0]
+    assert report.stat().st_size < 8e6
+
+
+def test_every_figure_is_valid_json_and_a_file_of_its_own(report: Path, complete: TwinResult) -> None:
+    page = _Page(report.read_text(encoding="utf-8"))
+    plots = [b for s in report_sections(complete) for b in s.blocks if isinstance(b, Plot)]
+    assert len(page.figures) == len(plots)
+    assert len({plot.name for plot in plots}) == len(plots)
+    for text in page.figures:
+        assert json.loads(text)["data"]
+    files = {path.name for path in (report.parent / "figures").iterdir()}
+    assert files == {f"{plot.name}.html" for plot in plots} | {"plotly.min.js"}
+    one = _Page((report.parent / "figures" / f"{plots[0].name}.html").read_text(encoding="utf-8"))
+    assert one.addresses == ["plotly.min.js"]
+
+
+def test_nothing_temporary_is_left(report: Path) -> None:
+    names = [path.name for path in report.parent.rglob("*") if path.is_file()]
+    assert not [name for name in names if name.startswith(".") or name.endswith(".tmp")]
+
+
+def test_page_shows_the_numbers_of_the_result(report: Path, complete: TwinResult) -> None:
+    text = " ".join(_Page(report.read_text(encoding="utf-8")).text)
+    update = complete.updates[0]
+    for m, f, zeta in zip(
+        complete.measured, update.modes.frequency_hz, update.modes.damping_ratio, strict=True
+    ):
+        assert frequency(m.frequency_hz, m.frequency_std_hz) in text
+        assert percent(m.damping_ratio, m.damping_ratio_std) in text
+        assert frequency(float(f)) in text
+        assert percent(float(zeta)) in text
+    for undamped in update.modes.undamped_hz:
+        assert frequency(float(undamped)) in text
+    excess = complete.excess[0][0]
+    assert percent(excess.measured) in text and percent(excess.model) in text
+
+
+def test_names_are_escaped(report: Path) -> None:
+    html = report.read_text(encoding="utf-8")
+    assert "<script>alert" not in html
+    assert "noise &lt;&amp;&gt; modes" in html
+
+
+def test_identified_modes_are_named_after_what_they_were_paired_with(complete: TwinResult) -> None:
+    found = complete.identifications[0]
+    names = mode_names(complete, found)
+    assert names[:2] == [m.label for m in complete.measured[:2]]
+    assert names[2:] == [""] * (len(found.modes) - 2)
+
+
+def test_targets_alone_make_a_report(targets_only: TwinResult, tmp_path: Path) -> None:
+    page = _Page(build_report(targets_only, tmp_path).read_text(encoding="utf-8"))
+    titles = [section.title for section in report_sections(targets_only)]
+    assert "Record" not in titles and "Identification" not in titles
+    assert "Solutions" in titles
+    assert any("known from elsewhere" in text for text in page.text)
+
+
+def test_a_mode_that_was_lost_shows_as_not_known(complete: TwinResult, tmp_path: Path) -> None:
+    update = complete.updates[0]
+    poles, undamped = update.modes.poles.copy(), update.modes.undamped_hz.copy()
+    shapes = update.modes.shapes.copy()
+    poles[1], undamped[1], shapes[:, 1] = np.nan, np.nan, np.nan
+    modes = replace(update.modes, poles=poles, undamped_hz=undamped, shapes=shapes)
+    result = replace(complete, updates=(replace(update, modes=modes),))
+    page = _Page(build_report(result, tmp_path).read_text(encoding="utf-8"))
+    assert not re.search(r"\bnan\b", " ".join(page.text), flags=re.IGNORECASE)
+    for text in page.figures:
+        assert "NaN" not in text
+
+
+def test_gallery_takes_any_sections(tmp_path: Path) -> None:
+    path = build_gallery([Section("Only words", (Text(("Nothing to draw.",)),))], tmp_path, "A gallery")
+    text = " ".join(_Page(path.read_text(encoding="utf-8")).text)
+    assert "A gallery" in text and "Nothing to draw." in text
+    assert not (tmp_path / "figures").exists()
