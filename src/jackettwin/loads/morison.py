@@ -1,0 +1,227 @@
+r"""Morison's equation on every member: thesis (5.1), with relative velocity (2.2).
+
+Per unit length, everything normal to the member (subscript n):
+
+.. math:: f = ½ρ C_D D |v_n| v_n + ρ C_M \tfrac{π}{4}D^2 \dot u_n − ρ (C_M − 1) \tfrac{π}{4}D^2 \ddot x_n,
+          \qquad v = u − \dot x
+
+Loads are integrated at Gauss points by the elements' own shape functions, so that forces, motions of the
+members, added mass and linear drag damping all go through one sparse matrix N.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from jackettwin.errors import InputError
+from jackettwin.loads.current import Current
+from jackettwin.loads.waves import Waves
+from jackettwin.structure import Assembly, beam
+
+FloatArray = npt.NDArray[np.float64]
+
+SEA_WATER_KG_M3 = 1025.0
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """Drag and inertia coefficients, marine growth and water density.
+
+    ``growth`` holds (top z, bottom z, thickness) [m] bands, z up from still water; growth adds to the
+    hydrodynamic diameter.
+    """
+
+    drag: float = 1.0
+    inertia: float = 2.0
+    growth: tuple[tuple[float, float, float], ...] = ()
+    density_kg_m3: float = SEA_WATER_KG_M3
+
+    def __post_init__(self) -> None:
+        for field in ("drag", "inertia", "density_kg_m3"):
+            value = getattr(self, field)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InputError("out of range", field=field, value=value, allowed="≥ 0")
+
+    def thickness(self, z: FloatArray) -> FloatArray:
+        """Return the growth's thickness [m] at ``z``."""
+        t = np.zeros_like(z)
+        for top, bottom, thick in self.growth:
+            t = np.where((z <= top) & (z >= bottom), thick, t)
+        return t
+
+
+@dataclass(frozen=True)
+class MorisonPoints:
+    """Gauss points along the members that can be wet.
+
+    Attributes
+    ----------
+    points : (n, 3) z up from still water [m]
+    weight : (n,) member length each stands for [m]
+    half_height : (n,) half the vertical extent of that length [m]: how sharply it gets wet
+    diameter : (n,) hydrodynamic [m]
+    normal : (n, 3, 3) projector onto the plane normal to the member
+    N : (assembly.n_dof, 3n) sparse; nodal loads from point forces, and its transpose point motion from DOFs
+    """
+
+    points: FloatArray
+    weight: FloatArray
+    half_height: FloatArray
+    diameter: FloatArray
+    normal: FloatArray
+    N: sp.csr_array
+    coefficients: Coefficients
+
+    def motion(self, x: FloatArray) -> FloatArray:
+        """Return the motion of the points (..., n, 3) from that of the DOFs (..., n_dof)."""
+        moved = (self.N.T @ np.atleast_2d(x).T).T
+        return np.asarray(moved).reshape(*x.shape[:-1], -1, 3)
+
+
+def morison_points(
+    assembly: Assembly,
+    *,
+    highest_z: float,
+    coefficients: Coefficients | None = None,
+    spacing: float = 2.0,
+    exclude_parts: tuple[str, ...] = ("piles",),
+) -> MorisonPoints:
+    """Return the Gauss points of all members below ``highest_z`` [m above still water].
+
+    Each element is cut into pieces no longer than ``spacing`` [m], each with two Gauss points.
+    """
+    coefficients = Coefficients() if coefficients is None else coefficients
+    mesh, structure = assembly.mesh, assembly.structure
+    sea = np.array([0.0, 0.0, structure.sea_level_z_m])
+    parts = [structure.members[i].part for i in mesh.member]
+    outer = np.sqrt(0.5 * (mesh.properties.A / np.pi + 4.0 * mesh.properties.I / mesh.properties.A) * 4.0)
+    rows, columns, values = [], [], []
+    kept: list[tuple[FloatArray, ...]] = []
+    dofs = mesh.element_dofs()
+    for e, (a, b) in enumerate(zip(mesh.coordinates[mesh.start], mesh.coordinates[mesh.end], strict=True)):
+        a, b = a - sea, b - sea
+        if parts[e] in exclude_parts or min(a[2], b[2]) > highest_z:
+            continue
+        L, R = float(mesh.properties.L[e]), mesh.axes[e]
+        xi, w = _gauss(L, spacing)
+        shapes = np.array([R.T @ beam.translation_shape(float(at), L) @ np.kron(np.eye(4), R) for at in xi])
+        first = 3 * sum(piece[0].size for piece in kept)
+        rows.append(np.broadcast_to(dofs[e], (3 * xi.size, 12)).ravel())
+        columns.append(np.repeat(first + np.arange(3 * xi.size), 12))
+        values.append(shapes.reshape(-1, 12).ravel())
+        half = np.full(xi.size, 0.25 * abs(b[2] - a[2]) / (xi.size / 2))
+        kept.append((w, a + xi[:, None] * (b - a), half, np.full(xi.size, outer[e]), _normal(R[0], xi.size)))
+    if not kept:
+        raise InputError("no member reaches into the water", field="sea_level_z_m", value=float(sea[2]))
+    weight, points, half, D, normal = (np.concatenate(column) for column in zip(*kept, strict=True))
+    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    full = sp.coo_array(entries, shape=(mesh.n_dof, 3 * weight.size)).tocsr()
+    N = sp.csr_array(assembly.expand.T @ full)
+    D = D + 2.0 * coefficients.thickness(points[:, 2])
+    return MorisonPoints(points, weight, half, D, normal, N, coefficients)
+
+
+def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray]:
+    """Return places x/L and lengths [m] of two Gauss points a piece."""
+    n = int(np.ceil(L / spacing))
+    x, _ = np.polynomial.legendre.leggauss(2)
+    xi = ((np.arange(n)[:, None] + 0.5 + 0.5 * x) / n).ravel()
+    return xi, np.full(xi.size, 0.5 * L / n)
+
+
+def _normal(axis: FloatArray, n: int) -> FloatArray:
+    return np.broadcast_to(np.eye(3) - np.outer(axis, axis), (n, 3, 3))
+
+
+def wetness(grid: MorisonPoints, eta: FloatArray) -> FloatArray:
+    """Return the wet share (0 to 1) of each point's length under surface ``eta`` (..., n) [m]."""
+    depth = eta - grid.points[:, 2]
+    half = np.maximum(grid.half_height, 1e-9)
+    return np.asarray(np.clip(0.5 + 0.5 * depth / half, 0.0, 1.0))
+
+
+def point_forces(
+    grid: MorisonPoints,
+    u: FloatArray,
+    du: FloatArray,
+    *,
+    velocity: FloatArray | None = None,
+    wet: FloatArray | float = 1.0,
+) -> FloatArray:
+    """Return Morison forces at the points (..., n, 3) [N].
+
+    Parameters
+    ----------
+    u, du : (..., n, 3) water velocity [m/s] and acceleration [m/s²]
+    velocity : (..., n, 3), optional
+        Velocity of the member itself: relative drag, thesis (2.2). The force on its acceleration is the
+        added mass, which belongs to the mass matrix (``added_mass``).
+    wet : (..., n)
+        Wet share of each point.
+    """
+    c = grid.coefficients
+    v = u if velocity is None else u - velocity
+    vn = np.einsum("nij,...nj->...ni", grid.normal, v)
+    an = np.einsum("nij,...nj->...ni", grid.normal, du)
+    drag = 0.5 * c.drag * grid.diameter[:, None] * np.linalg.norm(vn, axis=-1, keepdims=True) * vn
+    inertia = c.inertia * 0.25 * np.pi * grid.diameter[:, None] ** 2 * an
+    length = np.broadcast_to(grid.weight * wet, vn.shape[:-1])
+    return np.asarray(c.density_kg_m3 * length[..., None] * (drag + inertia))
+
+
+def nodal_loads(grid: MorisonPoints, forces: FloatArray) -> FloatArray:
+    """Return loads on the assembly's DOFs (..., n_dof) from forces at the points (..., n, 3)."""
+    flat = forces.reshape(-1, grid.points.size)
+    return np.asarray((grid.N @ flat.T).T).reshape(*forces.shape[:-2], -1)
+
+
+def wave_loads(
+    grid: MorisonPoints,
+    waves: Waves,
+    t: FloatArray,
+    *,
+    current: Current | None = None,
+    velocity: FloatArray | None = None,
+) -> FloatArray:
+    """Return loads on the assembly's DOFs (n_times, n_dof) [N] of waves and current.
+
+    Linear theory without stretching wets the members up to still water, the other theories up to the
+    surface.
+    """
+    t = np.atleast_1d(np.asarray(t, dtype=np.float64))
+    u, du = waves.motion(grid.points, t)
+    if current is not None:
+        u = u + current.velocity(grid.points[:, 2])
+    forces = point_forces(grid, u, du, velocity=velocity, wet=wetness(grid, waves.surface(grid.points, t)))
+    return nodal_loads(grid, forces)
+
+
+def added_mass(grid: MorisonPoints, *, eta: float = 0.0) -> sp.csr_array:
+    """Return the hydrodynamic added mass ρ(C_M − 1)πD²/4 of the wet length, (n_dof, n_dof)."""
+    c = grid.coefficients
+    per_length = c.density_kg_m3 * (c.inertia - 1.0) * 0.25 * np.pi * grid.diameter**2
+    return _spread(grid, per_length * wetness(grid, np.full(grid.weight.size, eta)))
+
+
+def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
+    """Return the linearised relative drag, (n_dof, n_dof): Borgman's (1967) ½ρ C_D D √(8/π) σ per length.
+
+    Parameters
+    ----------
+    sigma : (n,) standard deviation of the water's normal velocity at the points [m/s]
+    """
+    c = grid.coefficients
+    wet = wetness(grid, np.zeros(grid.weight.size))
+    return _spread(grid, 0.5 * c.density_kg_m3 * c.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet)
+
+
+def _spread(grid: MorisonPoints, per_length: FloatArray) -> sp.csr_array:
+    """Return N P Nᵀ with P = per-length property × length × normal projector, block diagonal."""
+    blocks = (per_length * grid.weight)[:, None, None] * grid.normal
+    n = grid.weight.size
+    P = sp.bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(3 * n, 3 * n))
+    return sp.csr_array(grid.N @ P @ grid.N.T)
