@@ -149,7 +149,7 @@ def test_three_branches_without_loss_are_a_spring() -> None:
 
 @pytest.mark.parametrize("alpha", [0.0, 0.06, 0.5, 0.95])
 def test_prony_fit_follows_the_springpot(alpha: float) -> None:
-    """Four branches a decade: 2·exp(−π²/h) = 7e-8; the lumped tails leave (1e-2)² a decade or two inside."""
+    """Four branches a decade: 2·exp(−π²/h) = 7e-8 by theory; lumped tails leave (f/1e3)² at the top."""
     law = Springpot(2e9, alpha, 1.15)
     fit = prony_fit(law, 1e-3, 1e3)
     s = 2j * np.pi * np.geomspace(0.05, 10.0, 40)
