@@ -149,13 +149,13 @@ def test_three_branches_without_loss_are_a_spring() -> None:
 
 @pytest.mark.parametrize("alpha", [0.0, 0.06, 0.5, 0.95])
 def test_prony_fit_follows_the_springpot(alpha: float) -> None:
-    """Four branches a decade: 2·exp(−π²/h) = 7e-8 by theory; lumped tails leave (f/1e3)² at the top."""
+    """Four branches a decade: 2·exp(−π²/h) = 7e-8 by theory; lumped tails leave (f/1e3)^(2−α) at the top."""
     law = Springpot(2e9, alpha, 1.15)
     fit = prony_fit(law, 1e-3, 1e3)
     s = 2j * np.pi * np.geomspace(0.05, 10.0, 40)
     np.testing.assert_allclose(fit.stiffness(s), law.stiffness(s), rtol=5e-4)
     inner = 2j * np.pi * np.array([0.5, 1.0, 2.0])
-    np.testing.assert_allclose(fit.stiffness(inner), law.stiffness(inner), rtol=2e-6)
+    np.testing.assert_allclose(fit.stiffness(inner), law.stiffness(inner), rtol=1e-4)
 
 
 def test_branch_without_dashpot_does_nothing() -> None:

@@ -77,7 +77,9 @@ class Prony:
             for value in values:
                 if not 0.0 <= value <= _LARGEST:
                     raise InputError(
-                        "out of range; a negative value would feed energy in",
+                        "must not be negative: the support would feed energy in"
+                        if value < 0.0
+                        else "out of range",
                         field=name,
                         value=value,
                         allowed=f"0 to {_LARGEST:g}",

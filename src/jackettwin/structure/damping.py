@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +33,7 @@ class Rayleigh:
             raise InputError(
                 "damping ratio out of range", field="ratio", value=damping_ratio, allowed="0 ≤ ratio < 1"
             )
-        if not frequency_hz > 0.0:
+        if not 0.0 < frequency_hz < inf:
             raise InputError(
                 "frequency must be positive", field="frequency_hz", value=frequency_hz, allowed="> 0"
             )

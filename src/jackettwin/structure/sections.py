@@ -22,8 +22,8 @@ class TubeProperties(NamedTuple):
 def tube_properties(D: FloatArray, t: FloatArray, nu: FloatArray | float = 0.3) -> TubeProperties:
     """Return the section properties of tubes with outer diameter ``D`` and wall ``t`` [m], any shape.
 
-    κ is the shear coefficient of a hollow circle of Hutchinson 2001 (J. Appl. Mech. 68:87), which SubDyn
-    uses too: ``κ = 6(1+ν)²(1+m²)² / ((1+m²)²(7+14ν+8ν²) + 4m²(5+10ν+4ν²))``, m the ratio of the radii.
+    κ is the shear coefficient of a hollow circle that SubDyn uses (Steinboeck, Saxinger & Kugi 2013):
+    ``κ = 6(1+ν)²(1+m²)² / ((1+m²)²(7+14ν+8ν²) + 4m²(5+10ν+4ν²))``, m the ratio of the radii.
 
     >>> round(float(tube_properties(np.array(2.0), np.array(1.0)).A), 6)  # a solid circle of radius 1
     3.141593

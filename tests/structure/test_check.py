@@ -1,0 +1,76 @@
+"""The model check."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.response.conftest import DECK, monopile_structure
+
+from jackettwin.errors import InputError
+from jackettwin.structure import Section, assemble, check, read_structure
+from jackettwin.structure.check import rigid_body_motion
+from jackettwin.structure.model import STEEL, Material, PointMass
+
+
+def test_reference_jacket() -> None:
+    """Total mass 3578 t (four digits); nothing to complain about; gravity changes no count."""
+    for gravity in (False, True):
+        found = check(assemble(read_structure("jacket15"), gravity=gravity))
+        assert found.mass_kg == pytest.approx(3578e3, rel=2e-4)
+        assert found.rigid_body_modes == 6
+        assert found.warnings == ()
+
+
+def test_deck_has_the_centre_of_gravity_that_subdyn_prints() -> None:
+    """OpenFAST v5.0.0: mass 1977742 kg, CM (0, −1.850090E-04, −6.946016E+00) m."""
+    found = check(assemble(read_structure(DECK)))
+    assert found.mass_kg == pytest.approx(1977742.0, rel=1e-6)
+    np.testing.assert_allclose(found.center_of_mass_m, [0.0, -1.850090e-4, -6.946016], rtol=1e-4, atol=1e-6)
+
+
+def test_centre_of_gravity_in_closed_form() -> None:
+    structure = monopile_structure()
+    found = check(assemble(structure))
+    pile = np.pi * (7.0 - 0.07) * 0.07 * 7850.0 * 120.0
+    total = pile + 5e5
+    assert found.mass_kg == pytest.approx(total, rel=1e-12)
+    expected = (-3.0 * 5e5 / total, 0.0, (60.0 * pile + 122.0 * 5e5) / total)
+    np.testing.assert_allclose(found.center_of_mass_m, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_rigid_motion_stores_no_energy_with_rigid_links_too() -> None:
+    for structure in (read_structure("jacket15"), read_structure(DECK), monopile_structure()):
+        assembly = assemble(structure)
+        motion = rigid_body_motion(assembly)
+        force = assembly.stiffness @ motion
+        # rounding of K times metres of lever arm
+        assert np.abs(force).max() < 1e-9 * np.abs(assembly.stiffness).max() * np.abs(motion).max()
+
+
+@pytest.mark.parametrize(
+    ("section", "material", "message"),
+    [
+        (Section(1.0, 0.2), STEEL, r"diameter over wall thickness outside 10 to 300: m0, m1.*and 1 more"),
+        (Section(7.0, 0.01), STEEL, "diameter over wall thickness"),
+        (Section(50.0, 0.5), STEEL, "shorter than half the diameter"),
+        (Section(7.0, 0.07), Material(210e9, 81e9, 0.0), "without mass"),
+        (Section(7.0, 0.07), Material(210e9, 210e9, 7850.0), "Poisson's ratio outside 0 to 0.5"),
+    ],
+)
+def test_absurd_sections_are_named(section: Section, material: Material, message: str) -> None:
+    import re
+
+    base = monopile_structure()
+    members = tuple(
+        replace(m, section_start=section, section_end=section, material=material) for m in base.members
+    )
+    warnings = check(assemble(replace(base, members=members))).warnings
+    assert len(warnings) == 1 and re.match(message, warnings[0])
+
+
+def test_a_structure_without_mass_is_refused() -> None:
+    base = monopile_structure()
+    members = tuple(replace(m, material=Material(210e9, 81e9, 0.0)) for m in base.members)
+    weightless = replace(base, members=members, masses=(PointMass("n6", 0.0),))
+    with pytest.raises(InputError, match="the structure has no mass"):
+        check(assemble(weightless))

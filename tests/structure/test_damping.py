@@ -1,0 +1,59 @@
+"""Rayleigh and modal damping: thesis (4.1)–(4.2), corrected."""
+
+import numpy as np
+import pytest
+import scipy.linalg as la
+
+from jackettwin.errors import InputError
+from jackettwin.structure.damping import Rayleigh, modal_damping
+
+
+def test_minimum_is_at_the_frequency_asked_for() -> None:
+    """ζ(ω) = ζ1/2·(ω1/ω + ω/ω1): equal shares of mass and stiffness at ω1, more everywhere else."""
+    r = Rayleigh.minimum(0.01, 0.183)
+    omega = 2 * np.pi * 0.183
+    assert (r.alpha, r.beta) == pytest.approx((0.01 * omega, 0.01 / omega))
+    f = np.array([0.05, 0.1, 0.183, 0.5, 0.75])
+    np.testing.assert_allclose(r.ratio(f), 0.005 * (0.183 / f + f / 0.183), rtol=1e-12)
+    assert r.ratio(0.183) == pytest.approx(0.01, rel=1e-12)
+
+
+def test_two_points() -> None:
+    r = Rayleigh.two_points((0.01, 0.02), (0.18, 0.75))
+    np.testing.assert_allclose(r.ratio(np.array([0.18, 0.75])), [0.01, 0.02], rtol=1e-12)
+
+
+def test_none_is_none() -> None:
+    assert Rayleigh().ratio(0.2) == 0.0
+    assert Rayleigh.minimum(0.0, 0.2) == Rayleigh()
+
+
+@pytest.mark.parametrize(
+    ("ratio", "f", "message"),
+    [
+        (-0.01, 0.2, "ratio: damping ratio out of range .got -0.01."),
+        (1.0, 0.2, "0 ≤ ratio < 1"),
+        (np.nan, 0.2, "damping ratio out of range"),
+        (0.01, 0.0, "frequency_hz: frequency must be positive"),
+        (0.01, np.nan, "frequency_hz: frequency must be positive"),
+        (0.01, np.inf, "frequency_hz: frequency must be positive"),
+    ],
+)
+def test_bad_damping_is_refused(ratio: float, f: float, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Rayleigh.minimum(ratio, f)
+
+
+def test_modal_damping_gives_each_mode_its_own_ratio(rng) -> None:
+    root = rng.standard_normal((5, 5))
+    M = root @ root.T + np.eye(5)
+    K = np.diag([1.0, 4.0, 9.0, 16.0, 30.0])
+    w2, phi = la.eigh(K, M)
+    omega, zeta = np.sqrt(w2), np.array([0.01, 0.02, 0.0, 0.05, 0.3])
+    C = modal_damping(M, phi, omega, zeta)
+    np.testing.assert_allclose(C, C.T, atol=1e-12)
+    A = np.block([[np.zeros((5, 5)), np.eye(5)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    values = np.linalg.eigvals(A)
+    values = values[values.imag > 0][np.argsort(np.abs(values[values.imag > 0]))]
+    np.testing.assert_allclose(-values.real / np.abs(values), zeta, atol=1e-12)
+    np.testing.assert_allclose(np.abs(values), omega, rtol=1e-12)
