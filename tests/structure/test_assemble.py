@@ -15,7 +15,7 @@ from jackettwin.structure import Assembly, Section, Structure, assemble, read_st
 from jackettwin.structure.model import STEEL, Material, Member, PointMass, Reaction, RigidLink
 
 TUBE = Section(1.0, 0.05)
-STIFF = Material(1e16, 1e16, 0.0)
+STIFF = Material(1e14, 1e14, 0.0)
 
 
 def frequencies(assembly: Assembly, support: Support, n: int = 6) -> np.ndarray:
@@ -37,7 +37,7 @@ def portal(*, link: bool, arm: tuple[float, float, float]) -> Structure:
         "portal",
         nodes,
         tuple(members),
-        masses=(PointMass("tip", 2e4), PointMass("side", 1e4, (0.1 * arm[0], 0.2 * arm[1], 0.3))),
+        masses=(PointMass("tip", 2e4), PointMass("side", 1e4, (0.1, 0.2, 0.3))),
         rigid_links=(RigidLink("top", "side"),) if link else (),
         reactions=(Reaction("foot"),),
     )
