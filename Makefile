@@ -46,6 +46,9 @@ layers: $(VENV)/.dev
 unit: $(VENV)/.dev
 	$(BIN)/pytest -n 2
 
+bench: $(VENV)/.dev ## speed, on this machine
+	@for file in benchmarks/bench_*.py; do echo "$$file"; $(BIN)/python $$file || exit 1; done
+
 lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(PIP) install pip-tools
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, PointMass, Reaction, Section, Structure, Vector
 
 
@@ -69,9 +69,13 @@ def jacket(
     InputError
         If fewer than three legs or no bay are asked for, or a part has no height.
     """
-    _require(lattice.legs >= 3, "legs", lattice.legs, "≥ 3")
-    _require(lattice.bays >= 1, "bays", lattice.bays, "≥ 1")
-    _require(tower.elements >= 1, "tower.elements", tower.elements, "≥ 1")
+    _require(3 <= lattice.legs <= 24, "lattice.legs", lattice.legs, "3 to 24")
+    _require(1 <= lattice.bays <= 100, "lattice.bays", lattice.bays, "1 to 100")
+    for field in ("base_width_m", "top_width_m", "height_m"):
+        value = getattr(lattice, field)
+        _require(0.0 < value <= 1e3, f"lattice.{field}", value, "> 0, at most 1000 m")
+    _require(1 <= tower.elements <= 1000, "tower.elements", tower.elements, "1 to 1000")
+    _require(0.0 < tower.height_m <= 1e3, "tower.height_m", tower.height_m, "> 0, at most 1000 m")
     _require(
         transition_piece.top_z_m > lattice.height_m,
         "transition_piece.top_z_m",
@@ -97,7 +101,9 @@ def jacket(
 
 def _require(condition: bool, field: str, value: object, allowed: str) -> None:
     if not condition:
-        raise InputError("out of range", field=field, value=value, allowed=allowed)
+        raise InputError(
+            "out of range", field=field, value=value, allowed=allowed, remedy="check the number and its unit"
+        )
 
 
 def _leg_node(leg: int, level: int) -> str:
@@ -122,7 +128,8 @@ def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Membe
             nodes[_leg_node(leg, level)] = (float(radius * np.cos(angle)), float(radius * np.sin(angle)), z)
     walls = np.linspace(lattice.leg_thickness_bottom_m, lattice.leg_thickness_top_m, lattice.bays)
     for bay in range(lattice.bays):
-        leg_section = Section(lattice.leg_diameter_m, float(walls[bay]))
+        with located(field="lattice.leg"):
+            leg_section = Section(lattice.leg_diameter_m, float(walls[bay]))
         for leg in range(n):
             ends = _leg_node(leg, bay), _leg_node(leg, bay + 1)
             members.append(

@@ -1,0 +1,63 @@
+"""Speed of the core: assembly and modes of the reference jacket at three mesh sizes.
+
+Bar: sparse assembly within 50 ms at 5,000 degrees of freedom.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import partial
+from statistics import median
+from time import perf_counter
+
+from jackettwin.response.locus import oscillating_poles
+from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.reduced import craig_bampton
+from jackettwin.response.system import build_system
+from jackettwin.soil import on_translations, pinned
+from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.structure import Rayleigh, assemble, read_structure
+
+LAWS = {
+    "kelvin-voigt": kelvin_voigt(2.5e9, 7.6e8),
+    "zener": zener(2.62e9, 8.65e8, 9.99e9),
+    "maxwell-3": maxwell_3(2.5e9, 0.2, 0.183),
+    "springpot": Springpot(2.5e9, 0.1, 1.15),
+}
+
+
+def milliseconds(work: Callable[[], object], repeats: int = 5) -> float:
+    """Median wall time."""
+    times = []
+    for _ in range(repeats):
+        start = perf_counter()
+        work()
+        times.append(1e3 * (perf_counter() - start))
+    return median(times)
+
+
+def main() -> None:
+    structure, rayleigh = read_structure("jacket15"), Rayleigh.minimum(0.01, 0.1832)
+    for subdivide in (1, 4, 8):
+        assembly = assemble(structure, subdivide=subdivide)
+        work: Callable[[], object] = partial(assemble, structure, subdivide=subdivide)
+        report(f"assemble, {assembly.n_dof} DOFs", milliseconds(work))
+        free = build_system(assembly, pinned(structure))
+        report("  ten undamped modes", milliseconds(partial(undamped_modes, free, 10)))
+        for name, law in LAWS.items():
+            system = build_system(assembly, on_translations(structure, law), rayleigh=rayleigh)
+            work = partial(damped_modes, system, below_hz=0.8)
+            report(f"  damped modes below 0.8 Hz, {name}", milliseconds(work, 3))
+        system = build_system(assembly, on_translations(structure, LAWS["zener"]), rayleigh=rayleigh)
+        report("  reduced basis, 20 modes", milliseconds(partial(craig_bampton, system, n_modes=20)))
+    reduced = craig_bampton(system, n_modes=20).pencil
+    report("one evaluation on the reduced basis", milliseconds(partial(oscillating_poles, reduced), 50))
+
+
+def report(what: str, time_ms: float) -> None:
+    sys.stdout.write(f"{what:52s} {time_ms:9.2f} ms\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,37 @@
+"""YAML as engineers write it."""
+
+from pathlib import Path
+
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.files import read_yaml
+
+
+def read(folder: Path, text: str) -> dict:
+    (folder / "f.yaml").write_text(text)
+    return read_yaml(folder / "f.yaml")
+
+
+def test_numbers_with_exponents_are_numbers(tmp_path: Path) -> None:
+    data = read(tmp_path, "a: 2.5e9\nb: 1E3\nc: 3\nd: -1.5e-3\ne: 1_000.5\nf: 2024-01-02x\ng: .5\n")
+    assert data == {"a": 2.5e9, "b": 1e3, "c": 3, "d": -1.5e-3, "e": 1000.5, "f": "2024-01-02x", "g": 0.5}
+    assert isinstance(data["c"], int)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: 1\na: 2\n", "line 2, column 1: key 'a' is given twice"),
+        ("x: {b: 1, b: 2}\n", "key 'b' is given twice"),
+        ("a: [1, 2\n", "line"),
+        ("- 1\n", "must be a mapping"),
+        ("", "must be a mapping"),
+        ("a: !!python/object:os.system {}\n", "could not determine a constructor"),
+        ("? [1, 2]\n: 3\n", "key is not a word"),
+        ("a: " + "[" * 3000 + "]" * 3000, "nested too deeply|line"),
+    ],
+)
+def test_what_is_no_mapping_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        read(tmp_path, text)
