@@ -35,7 +35,7 @@ class Home(Schema):
         ({"area": 1}, "area: unknown key .got 'area'.*did you mean 'area_m2'"),
         ({"area_m2": 1, "pets": [{"type": "cow"}]}, "pets.0: .*'cat', 'dog'"),
         ({"area_m2": 1, "pets": [{"type": "cat", "live": 3}]}, "pets.0.cat.live: .*did you mean 'lives'"),
-        ({"area_m2": 1, "pets": [{"type": "dog", "lives": 3}]}, "pets.0.dog.lives: unknown key .*allowed: type, barks"),
+        ({"area_m2": 1, "pets": [{"type": "dog", "lives": 3}]}, "pets.0.dog.lives: .*allowed: type, barks"),
         ({"area_m2": 1, "rooms": {"attic": {"type": "cat", "lifes": 1}}}, "rooms.attic.lifes: .*'lives'"),
     ],
 )  # fmt: skip
