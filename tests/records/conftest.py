@@ -66,6 +66,10 @@ def record(rng: np.random.Generator) -> Record:
         channels,
         start_utc=datetime(2025, 1, 1, 13, tzinfo=UTC),
         conditions={"mean_wind_speed_m_s": 12.0, "yaw_deg": 30.0, "state": "parked"},
-        metadata={"source": "a test", "turbine": {"row": 3}},
+        metadata={
+            "source": "a test",
+            "turbine": {"row": 3},
+            "channel_metadata": {"acc_top_x": {"sensor": "MEMS 7"}},
+        },
         name="r",
     )

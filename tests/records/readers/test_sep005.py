@@ -19,6 +19,7 @@ def test_round_trip_keeps_data_channels_rate_and_start(record: Record) -> None:
     assert np.array_equal(back.data, record.data, equal_nan=True)
     assert back.channels == record.channels
     assert (back.sample_rate_hz, back.start_utc, back.name) == (12.5, record.start_utc, "r")
+    assert back.metadata == {"channel_metadata": {"acc_top_x": {"sensor": "MEMS 7"}}}
 
 
 def test_signals_meet_the_rules_of_the_standard(record: Record) -> None:

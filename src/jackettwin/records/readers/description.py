@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
+CHANNEL_METADATA = "channel_metadata"
+"""Key of a record's metadata under which further keys of its channels are kept."""
+
 
 class ChannelEntry(Schema):
     """What is known of one channel; what is not said may be known from the data file."""
@@ -95,12 +98,16 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
     _refuse_near_misses(entries, "", file)
     for name, entry in (entries.channels or {}).items():
         _refuse_near_misses(entry, f"channels.{name}.", file)
+    further = {
+        name: entry.model_extra for name, entry in (entries.channels or {}).items() if entry.model_extra
+    }
+    metadata = dict(entries.model_extra or {})
     return Description(
         sample_rate_hz=entries.sample_rate_hz,
         start_utc=parse_time(entries.start_utc, file=file) if entries.start_utc else None,
         channels=entries.channels,
         conditions=entries.conditions,
-        metadata=dict(entries.model_extra or {}),
+        metadata={**metadata, CHANNEL_METADATA: further} if further else metadata,
     )
 
 
@@ -128,12 +135,15 @@ def parse_time(text: str, *, file: Path | str | None = None) -> datetime:
 
 def describe(record: Record) -> dict[str, Any]:
     """Return the description of a record as plain JSON data; NaN becomes null."""
+    metadata = dict(record.metadata)
+    further = metadata.pop(CHANNEL_METADATA, {})
     head = {
         "sample_rate_hz": record.sample_rate_hz,
         "start_utc": record.start_utc.isoformat().replace("+00:00", "Z") if record.start_utc else None,
     }
     channels = {
         c.name: {
+            **further.get(c.name, {}),
             "quantity": c.quantity,
             "unit": c.unit,
             "height_m": c.height_m,
@@ -143,7 +153,7 @@ def describe(record: Record) -> dict[str, Any]:
         for c in record.channels
     }
     body = {"channels": channels, "conditions": dict(record.conditions)}
-    plain: dict[str, Any] = _plain({**record.metadata, **head, **body})
+    plain: dict[str, Any] = _plain({**metadata, **head, **body})
     return plain
 
 

@@ -1,7 +1,8 @@
 """SEP005 dictionaries, the exchange format of the SDyPy community for measured signals.
 
 One dictionary a channel with ``name``, ``data``, ``unit_str`` and ``fs`` or ``time``; an optional
-ISO 8601 ``start_timestamp``. Our own keys (``quantity``, ``height_m``, ``node``, ``direction``) ride along.
+ISO 8601 ``start_timestamp``. Our own keys (``quantity``, ``height_m``, ``node``, ``direction``) ride along,
+and so does everything else a dictionary holds.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.files import validate
-from jackettwin.records.readers.description import ChannelEntry, parse_time
+from jackettwin.records.readers.description import CHANNEL_METADATA, ChannelEntry, parse_time
 from jackettwin.records.readers.table import Table, seconds, to_record
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 REQUIRED = ("name", "data", "unit_str")
 OWN_KEYS = ("quantity", "height_m", "node", "direction")
+KNOWN = {*REQUIRED, *OWN_KEYS, "fs", "time", "start_timestamp"}
 
 
 def from_sep005(signals: Sequence[Mapping[str, Any]], *, name: str = "record") -> Record:
@@ -59,7 +61,9 @@ def to_sep005(record: Record) -> list[dict[str, Any]]:
         own: dict[str, Any] = {"quantity": channel.quantity, "direction": list(channel.direction)}
         own |= {} if channel.height_m is None else {"height_m": channel.height_m}
         own |= {} if channel.node is None else {"node": channel.node}
-        signals.append({"name": channel.name, "data": row.copy(), "unit_str": channel.unit, **shared, **own})
+        further = record.metadata.get(CHANNEL_METADATA, {}).get(channel.name, {})
+        signal = {"name": channel.name, "data": row.copy(), "unit_str": channel.unit, **shared, **own}
+        signals.append({**further, **signal})
     return signals
 
 
@@ -82,6 +86,7 @@ def _table(signals: Sequence[Mapping[str, Any]]) -> Table:
     if times_s is not None and len(times_s) != len(rows[0]):
         raise InputError("time and data differ in length", field="signals.0.time", value=len(times_s))
     entries = {str(s["name"]): _entry(s, i) for i, s in enumerate(signals)}
+    further = {str(s["name"]): extra for s in signals if (extra := {k: s[k] for k in s if k not in KNOWN})}
     return Table(
         names=tuple(str(signal["name"]) for signal in signals),
         data=np.vstack(rows),
@@ -89,6 +94,7 @@ def _table(signals: Sequence[Mapping[str, Any]]) -> Table:
         sample_rate_hz=_rate(signals[0]["fs"]) if "fs" in signals[0] else None,
         times_s=times_s,
         start_utc=parse_time(str(start)) if start else None,
+        metadata={CHANNEL_METADATA: further} if further else {},
     )
 
 
