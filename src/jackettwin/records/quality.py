@@ -79,7 +79,7 @@ class Quality:
         In the record's order.
     findings : tuple of Finding
     suspect : (n_channels, n_samples) bool array
-        Samples that ``repair`` declares missing: spikes, clipped and frozen ones.
+        Samples that ``repair`` declares missing: spikes, frozen and unreadable ones.
     """
 
     score: float
@@ -159,7 +159,7 @@ def _judge(
         swapped_sign=bool(sign),
     )
     findings = list(_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
-    suspect = (none if outliers else spikes) | clipped | stuck
+    suspect = (none if outliers else spikes) | stuck
     return replace(quality, score=_score(quality, sign)), suspect, findings
 
 
@@ -192,8 +192,10 @@ def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
     """Yield what the sensor's range, its reading and its zero did."""
     name = q.name
     if q.clipped_share > 0.0:
-        text = f"{q.clipped_share:.2%} of the samples are at the range's end; declared missing"
-        yield Finding("clipped", text, name, True)
+        # Kept: the covariances of a clipped Gaussian signal keep their shape (Bussgang 1952), those of
+        # one with gaps at its peaks do not.
+        text = f"{q.clipped_share:.2%} of the samples are at the range's end; kept, amplitudes are too small"
+        yield Finding("clipped", text, name)
     if q.stuck_share > 0.0:
         text = f"reading is frozen for {q.stuck_share:.2%} of the time; declared missing"
         yield Finding("stuck", text, name, True)
