@@ -70,6 +70,20 @@ def test_iso_stamps_give_rate_start_and_gap(tmp_path: Path) -> None:
     assert record.metadata["clock"]["missing"] == 2
 
 
+@pytest.mark.parametrize("day", ["2025-02-01T", "2025/02/01 ", "01.02.2025 "])
+def test_dates_of_loggers_are_read(day: str, tmp_path: Path) -> None:
+    rows = [f"{day}13:00:00,{250 + 50 * k};{k},5" for k in range(5)]
+    record = read_text("\n".join(["Zeit;acc_x [g]", *rows]), tmp_path)
+    assert record.start_utc is not None and record.start_utc.isoformat() == "2025-02-01T13:00:00.250000+00:00"
+    assert record.sample_rate_hz == 20.0
+    np.testing.assert_allclose(record.data[0] / 9.80665, np.arange(5) + 0.5, rtol=1e-15)
+
+
+def test_ambiguous_dates_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"time: times are not understood.*01/02/2025.*2025-01-01T13"):
+        read_text("time,acc_x [g]\n01/02/2025 13:00:00,1\n01/02/2025 13:00:01,2\n", tmp_path)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "inf", "-inf", "+inf"}
 RATE_KEYS = ("sample_rate_hz", "sample_rate", "sampling_rate", "sampling_frequency", "fs")
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
+# Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
+_DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
+_DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 
 
@@ -140,7 +143,7 @@ def _is_value(cell: str, delimiter: str) -> bool:
         number = float(_with_point(cell, delimiter))
         return number == number and cell.lower() not in MISSING
     except ValueError:
-        return bool(re.match(r"^\d{4}-\d\d-\d\d", cell))
+        return bool(_DATE.match(cell))
 
 
 def _names_and_units(row: list[str]) -> tuple[list[str], dict[str, str]]:
@@ -165,7 +168,7 @@ def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int)
         return np.array(cells, dtype=np.float64)
     except ValueError:
         pass
-    if cells and re.match(r"^\s*\d{4}-\d\d-\d\d", cells[0]):
+    if cells and _DATE.match(cells[0]):
         return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
     known = [cell for cell in cells if cell.strip().lower() not in MISSING]
     if known and not any(_is_value(cell.strip(), delimiter) for cell in known):
@@ -195,6 +198,7 @@ def _number(cell: str, delimiter: str, name: str, line: int) -> float:
 
 def _stamp(cell: str, line: int) -> np.datetime64:
     try:
-        return np.datetime64(parse_time(cell).replace(tzinfo=None), "ns")
+        iso = _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
+        return np.datetime64(parse_time(iso).replace(tzinfo=None), "ns")
     except InputError as error:
         raise error.at(field=f"line {line}") from None

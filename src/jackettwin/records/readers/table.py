@@ -89,10 +89,19 @@ def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> i
     dated = [i for i, column in enumerate(columns) if column.dtype.kind == "M"]
     if dated:
         return dated[0]
-    if not names or columns[0].dtype.kind != "f":
+    if not names:
         return None
-    counts_rows = np.array_equal(columns[0], np.arange(len(columns[0])))
-    return 0 if names[0].strip().lower() in TIME_NAMES or (not names[0] and not counts_rows) else None
+    numeric, called_time = columns[0].dtype.kind == "f", names[0].strip().lower() in TIME_NAMES
+    if called_time and not numeric:
+        raise InputError(
+            "times are not understood",
+            field=names[0],
+            value=str(columns[0][0]) if len(columns[0]) else None,
+            allowed="seconds, or 2025-01-01T13:00:00Z",
+            remedy="write times in seconds or as ISO 8601",
+        )
+    counts_rows = numeric and np.array_equal(columns[0], np.arange(len(columns[0])))
+    return 0 if called_time or (numeric and not names[0] and not counts_rows) else None
 
 
 def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
