@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.identification.clustering import Cluster, clusters
-from jackettwin.identification.covariances import covariances
+from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import (
     Identification,
     ModalEstimate,
@@ -22,7 +22,12 @@ from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.identification.ssi_cov import order_poles, ssi_cov
-from jackettwin.identification.stabilisation import stabilisation
+from jackettwin.identification.ssi_uncertainty import (
+    block_deviations,
+    order_poles_with_uncertainty,
+    propagation,
+)
+from jackettwin.identification.stabilisation import admissible, stabilisation
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate, detrend
 
@@ -30,7 +35,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 FloatArray = npt.NDArray[np.float64]
-Progress = "Callable[[str], None] | None"
 
 EDGE_BELOW_PEAK = 0.65
 """Lower edge of the band as a share of the lowest clear peak."""
@@ -43,6 +47,8 @@ WINDOW_CYCLES = 1.0
 frequencies a few per cent apart, short enough that the covariances are still determined."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
+FEWEST_BLOCKS = 5
+"""Fewer blocks give no standard deviation worth printing."""
 DEAD = 1e-9
 """A channel is dead when it moves less than this share of its largest value."""
 
@@ -94,24 +100,10 @@ def identify(
     scale = np.sqrt(np.nanmean(reduced.data**2, axis=1))
     y = reduced.data / scale[:, None]
     say("poles")
-    lagged = covariances(y, 2 * resolved.block_rows)
-    subspace = ssi_cov(
-        lagged,
-        block_rows=resolved.block_rows,
-        max_order=resolved.orders[-1],
-        weighting=settings.weighting,
-        state_matrix=settings.state_matrix,
-    )
-    poles = stabilisation(
-        order_poles(subspace, resolved.orders),
-        settings,
-        sample_rate_hz=resolved.sample_rate_hz,
-        band_hz=(resolved.lowest_frequency_hz, resolved.highest_frequency_hz),
-        scale=scale,
-    )
+    poles = _poles(y, scale, resolved, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, n_orders=len(resolved.orders), scale=scale)
-    modes, rejected, poles = _select(poles, found, settings)
+    modes, rejected, poles = _select(poles, found, settings, record.duration_s)
     return Identification(
         records=(record.name,),
         channels=usable.channels,
@@ -123,6 +115,31 @@ def identify(
         duration_s=record.duration_s,
         warnings=warnings,
     )
+
+
+def _poles(
+    y: FloatArray, scale: FloatArray, resolved: ResolvedSettings, settings: IdentificationSettings
+) -> Stabilisation:
+    """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
+    band = (resolved.lowest_frequency_hz, resolved.highest_frequency_hz)
+    n_lags = 2 * resolved.block_rows
+    subspace = ssi_cov(
+        covariances(y, n_lags),
+        block_rows=resolved.block_rows,
+        max_order=resolved.orders[-1],
+        weighting=settings.weighting,
+        state_matrix=settings.state_matrix,
+    )
+    if settings.blocks >= FEWEST_BLOCKS and (settings.weighting, settings.state_matrix) == ("br", "shift"):
+        blocks = block_covariances(y, n_lags, settings.blocks)
+        poles = order_poles_with_uncertainty(
+            propagation(subspace, block_deviations(blocks, resolved.block_rows)),
+            resolved.orders,
+            keep=lambda mu: admissible(mu, settings, resolved.sample_rate_hz, band),
+        )
+    else:
+        poles = order_poles(subspace, resolved.orders)
+    return stabilisation(poles, settings, sample_rate_hz=resolved.sample_rate_hz, band_hz=band, scale=scale)
 
 
 def _usable(record: Record) -> tuple[Record, tuple[str, ...]]:
@@ -211,7 +228,7 @@ def _check_duration(record: Record, low: float, window_s: float) -> None:
 
 
 def _select(
-    poles: Stabilisation, found: list[Cluster], settings: IdentificationSettings
+    poles: Stabilisation, found: list[Cluster], settings: IdentificationSettings, duration_s: float
 ) -> tuple[tuple[ModalEstimate, ...], tuple[Rejected, ...], Stabilisation]:
     """Apply the hard criteria to the clusters; label the poles of those that pass."""
     modes: list[ModalEstimate] = []
@@ -225,10 +242,44 @@ def _select(
             rejected.append(Rejected(f, zeta, reason))
             continue
         label[cluster.poles] = len(modes)
-        modes.append(
-            ModalEstimate(f, zeta, shape, float(mpc(shape)), float(mpd_rad(shape)), cluster.order_share)
-        )
+        bare = ModalEstimate(f, zeta, shape, float(mpc(shape)), float(mpd_rad(shape)), cluster.order_share)
+        modes.append(_with_uncertainty(bare, poles, cluster, duration_s))
     return tuple(modes), tuple(rejected), replace(poles, cluster=label)
+
+
+def _with_uncertainty(
+    mode: ModalEstimate, poles: Stabilisation, cluster: Cluster, duration_s: float
+) -> ModalEstimate:
+    """Add the uncertainty of the representative pole and the scatter over the model orders.
+
+    Never below the long-data limits of Au 2014, ζ: 1/√(2πζfT), f: √(ζ/(2πfT)): blocks shorter than the
+    memory of a mode underestimate its scatter.
+    """
+    f, zeta = mode.frequency_hz, mode.damping_ratio
+    cycles = 2.0 * np.pi * f * duration_s
+    limit = 1.0 / np.sqrt(zeta * cycles)
+    mode = replace(mode, damping_ratio_cov_limit=float(limit))
+    if poles.log_covariance is None or poles.mode_shape_std is None:
+        return mode
+    both = np.log([poles.frequency_hz[cluster.core], poles.damping_ratio[cluster.core]])
+    covariance = poles.log_covariance[cluster.representative] + np.cov(both, bias=True)
+    lift = np.sqrt(np.maximum(np.array([zeta / cycles, limit**2]) / np.diag(covariance), 1.0))
+    covariance = covariance * np.outer(lift, lift)
+    std_f, std_zeta = np.sqrt(np.diag(covariance))
+    return replace(
+        mode,
+        log_covariance=covariance,
+        frequency_std_hz=float(f * std_f),
+        damping_ratio_std=float(zeta * std_zeta),
+        frequency_interval_95=_interval(f, std_f),
+        damping_ratio_interval_95=_interval(zeta, std_zeta),
+        mode_shape_std=poles.mode_shape_std[cluster.representative],
+    )
+
+
+def _interval(centre: float, log_std: float) -> tuple[float, float]:
+    factor = float(np.exp(1.96 * log_std))
+    return centre / factor, centre * factor
 
 
 def _reason(
@@ -238,7 +289,9 @@ def _reason(
     if cluster.order_share < settings.min_order_share:
         return f"in {cluster.order_share:.0%} of the model orders, {settings.min_order_share:.0%} needed"
     if cluster.damping_cov > settings.max_damping_cov:
-        return f"damping varies by {cluster.damping_cov:.0%} over the orders"
+        return (
+            f"damping uncertain by {cluster.damping_cov:.0%}, at most {settings.max_damping_cov:.0%} allowed"
+        )
     if collinearity < settings.min_mpc:
         return f"modal phase collinearity {collinearity:.2f} below {settings.min_mpc:g}"
     if deviation > settings.max_mpd_rad:

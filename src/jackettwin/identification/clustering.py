@@ -26,9 +26,12 @@ class Cluster:
     poles: IntArray
     """Positions in the stabilisation table."""
     representative: int
-    """The pole nearest to the median of frequency and damping."""
+    """The pole nearest to the median of frequency and damping of the core."""
+    core: IntArray
+    """The half of the poles whose damping is known best; all of them where that is not known."""
     order_share: float
     damping_cov: float
+    """Standard deviation of ln ζ: of the representative pole and over the core together."""
 
 
 def clusters(poles: Stabilisation, *, distance: float, n_orders: int, scale: FloatArray) -> list[Cluster]:
@@ -67,16 +70,32 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
 
 
 def _cluster(poles: Stabilisation, members: IntArray, n_orders: int) -> Cluster:
-    log_f, log_zeta = np.log(poles.frequency_hz[members]), np.log(poles.damping_ratio[members])
-    spread_f, spread_zeta = max(float(np.std(log_f)), 1e-9), max(float(np.std(log_zeta)), 1e-9)
-    away = np.hypot((log_f - np.median(log_f)) / spread_f, (log_zeta - np.median(log_zeta)) / spread_zeta)
-    order = np.lexsort((away, poles.order[members]))
-    _, first = np.unique(poles.order[members][order], return_index=True)
-    kept = order[first]
-    zeta = poles.damping_ratio[members[kept]]
+    kept = _one_an_order(poles, members)
+    core = kept
+    own = np.zeros(len(poles.order))
+    if poles.log_covariance is not None:
+        own = poles.log_covariance[:, 1, 1]
+        core = kept[np.argsort(own[kept], kind="stable")[: (len(kept) + 1) // 2]]
+    representative = int(core[np.argmin(_away(poles, core))])
+    scatter = float(np.var(np.log(poles.damping_ratio[core])))
     return Cluster(
-        poles=members[kept],
-        representative=int(members[kept[np.argmin(away[kept])]]),
+        poles=kept,
+        representative=representative,
+        core=core,
         order_share=len(kept) / n_orders,
-        damping_cov=float(np.std(zeta) / np.mean(zeta)),
+        damping_cov=float(np.sqrt(own[representative] + scatter)),
     )
+
+
+def _one_an_order(poles: Stabilisation, members: IntArray) -> IntArray:
+    """Keep of every model order the pole nearest to the middle of the group."""
+    order = np.lexsort((_away(poles, members), poles.order[members]))
+    _, first = np.unique(poles.order[members][order], return_index=True)
+    return np.asarray(members[order[first]])
+
+
+def _away(poles: Stabilisation, members: IntArray) -> FloatArray:
+    """Return the distance of each pole from the median of ln f and ln ζ, in standard deviations."""
+    values = np.log([poles.frequency_hz[members], poles.damping_ratio[members]])
+    spread = np.maximum(values.std(axis=1, keepdims=True), 1e-9)
+    return np.asarray(np.linalg.norm((values - np.median(values, axis=1, keepdims=True)) / spread, axis=0))

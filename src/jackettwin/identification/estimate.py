@@ -31,7 +31,9 @@ class ModalEstimate:
         In the units of the channels, 1 at the largest entry.
     frequency_std_hz, damping_ratio_std : float or None
     frequency_interval_95, damping_ratio_interval_95 : (low, high) or None
-        Calibrated on the logarithms of frequency and damping.
+        On the logarithms of frequency and damping.
+    damping_ratio_cov_limit : float
+        Coefficient of variation no method can beat on this record: 1/√(2πζfT) (Au 2014).
     log_covariance : (2, 2) or None
         Covariance of (ln f, ln ζ).
     mode_shape_std : (n_channels,) or None
@@ -60,6 +62,7 @@ class ModalEstimate:
     damping_ratio_interval_95: tuple[float, float] | None = None
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
+    damping_ratio_cov_limit: float | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,9 @@ class Stabilisation:
         Soft criteria towards the previous order, thesis eqs. (6.23)–(6.25).
     cluster : (n_poles,) int
         Position of the mode in ``Identification.modes``; −1 for none.
-    frequency_std_hz, damping_ratio_std : (n_poles,) or None
+    log_covariance : (n_poles, 2, 2) or None
+        Covariance of (ln f, ln ζ).
+    mode_shape_std : (n_poles, n_channels) or None
     """
 
     order: IntArray
@@ -95,8 +100,22 @@ class Stabilisation:
     stable_damping: BoolArray
     stable_shape: BoolArray
     cluster: IntArray
-    frequency_std_hz: FloatArray | None = None
-    damping_ratio_std: FloatArray | None = None
+    log_covariance: FloatArray | None = None
+    mode_shape_std: FloatArray | None = None
+
+    @property
+    def frequency_std_hz(self) -> FloatArray | None:
+        """Standard deviation of every frequency [Hz], (n_poles,)."""
+        if self.log_covariance is None:
+            return None
+        return np.asarray(self.frequency_hz * np.sqrt(self.log_covariance[:, 0, 0]))
+
+    @property
+    def damping_ratio_std(self) -> FloatArray | None:
+        """Standard deviation of every damping ratio, (n_poles,)."""
+        if self.log_covariance is None:
+            return None
+        return np.asarray(self.damping_ratio * np.sqrt(self.log_covariance[:, 1, 1]))
 
     @property
     def stable(self) -> BoolArray:

@@ -32,9 +32,10 @@ _RANGES: dict[str, tuple[float, float]] = {
     "max_damping_cov": (0.0, np.inf),
     "cluster_distance": (0.0, 2.0),
     "min_order_share": (0.0, 1.0),
+    "blocks": (0, 1000),
 }
 _MAY_BE_ZERO = {"min_mpc", "min_order_share"}
-_WHOLE = {"block_rows", "max_order", "order_step"}
+_WHOLE = {"block_rows", "max_order", "order_step", "blocks"}
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,13 @@ class IdentificationSettings:
         Hard criteria on the complexity of a mode's shape. Off by default (0, π): SSI returns complex
         shapes for close pairs of perfectly real modes.
     max_damping_cov : float
-        Hard criterion: largest coefficient of variation of the damping ratio over the model orders.
+        Hard criterion: largest standard deviation of ln ζ. A pole that fits noise has far more.
     cluster_distance : float
         Poles nearer than this, |Δλ|/|λ| + 1 − MAC on average, belong to one mode.
     min_order_share : float
         A mode must appear in this share of the model orders (0 to 1).
+    blocks : int
+        Blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 leaves it out.
     """
 
     lowest_frequency_hz: float | None = None
@@ -91,9 +94,10 @@ class IdentificationSettings:
     max_damping_ratio: float = 0.15
     min_mpc: float = 0.0
     max_mpd_rad: float = float(np.pi)
-    max_damping_cov: float = 0.6
+    max_damping_cov: float = 1.0
     cluster_distance: float = 0.1
     min_order_share: float = 0.4
+    blocks: int = 30
 
     def __post_init__(self) -> None:
         for item in fields(self):

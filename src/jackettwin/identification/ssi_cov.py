@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.identification.mac import normalised
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -34,12 +36,20 @@ class Subspace:
     n_channels : int
     upper, right : (n_max, n_max)
         Upper triangle and right side of the equation for the state matrix; order n uses the leading blocks.
+    basis : (n_rows − n_channels, n_max) or None
+        Orthonormal basis of the observability matrix without its last block row (shift structure only).
+    left, singular_values, right_vectors : (n_rows, n_rows), (n_singular,), (n_columns, n_columns)
+        Full factorisation of the weighted Hankel matrix.
     """
 
     observability: FloatArray
     n_channels: int
     upper: FloatArray
     right: FloatArray
+    basis: FloatArray | None
+    left: FloatArray
+    singular_values: FloatArray
+    right_vectors: FloatArray
 
     def state_matrix(self, order: int) -> FloatArray:
         """Return A of the given order, (order, order)."""
@@ -62,7 +72,11 @@ class OrderPoles:
     eigenvalues: ComplexArray
     """Of the discrete state matrix, (n_poles,)."""
     shapes: ComplexArray
-    """(n_poles, n_channels)."""
+    """(n_poles, n_channels), 1 at the largest entry."""
+    eigenvalue_deviations: ComplexArray | None = None
+    """(n_blocks, n_poles): square root of the covariance, Σ over blocks of the products."""
+    shape_deviations: ComplexArray | None = None
+    """(n_blocks, n_poles, n_channels)."""
 
 
 def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1) -> FloatArray:
@@ -107,18 +121,33 @@ def ssi_cov(
     """
     n_channels = covariances.shape[1]
     h = hankel(covariances, block_rows)
+    if weighting == "br" and state_matrix == "shift":
+        return balanced_subspace(h, n_channels, max_order)
     w1_inverse, w2_inverse = _weights(covariances, block_rows, weighting)
-    weighted = _divide(h, w1_inverse, w2_inverse)
-    u, s, vt = linalg.svd(weighted, check_finite=False)
+    u, s, vt = linalg.svd(_divide(h, w1_inverse, w2_inverse), check_finite=False)
     n = min(max_order, len(s) - n_channels)
     u1, root = u[:, :n], np.sqrt(s[:n])
-    observability = u1 * root if w1_inverse is None else w1_inverse @ (u1 * root)
-    if state_matrix == "one-lag":
-        shifted = _divide(hankel(covariances, block_rows, 2), w1_inverse, w2_inverse)
-        right = np.asarray((u1.T @ shifted @ vt[:n].T) / np.outer(root, root))
-        return Subspace(observability, n_channels, np.eye(n), right)
+    observability = np.asarray(u1 * root if w1_inverse is None else w1_inverse @ (u1 * root))
+    if state_matrix == "shift":
+        return _shift(observability, n_channels, u, s, vt)
+    shifted = _divide(hankel(covariances, block_rows, 2), w1_inverse, w2_inverse)
+    right = np.asarray((u1.T @ shifted @ vt[:n].T) / np.outer(root, root))
+    return Subspace(observability, n_channels, np.eye(n), right, None, u, s, vt.T)
+
+
+def balanced_subspace(h: FloatArray, n_channels: int, max_order: int) -> Subspace:
+    """Factorise a Hankel matrix with unit weights and take A from the shift structure."""
+    u, s, vt = linalg.svd(h, check_finite=False)
+    n = min(max_order, len(s) - n_channels)
+    return _shift(np.asarray(u[:, :n] * np.sqrt(s[:n])), n_channels, u, s, vt)
+
+
+def _shift(
+    observability: FloatArray, n_channels: int, u: FloatArray, s: FloatArray, vt: FloatArray
+) -> Subspace:
     q, r = linalg.qr(observability[:-n_channels], mode="economic", check_finite=False)
-    return Subspace(observability, n_channels, np.asarray(r), np.asarray(q.T @ observability[n_channels:]))
+    right = np.asarray(q.T @ observability[n_channels:])
+    return Subspace(observability, n_channels, np.asarray(r), right, np.asarray(q), u, s, vt.T)
 
 
 def order_poles(subspace: Subspace, orders: Sequence[int]) -> list[OrderPoles]:
@@ -128,7 +157,7 @@ def order_poles(subspace: Subspace, orders: Sequence[int]) -> list[OrderPoles]:
         eigenvalues, vectors = linalg.eig(subspace.state_matrix(order), check_finite=False)
         keep = eigenvalues.imag > 0.0
         shapes = (subspace.output_matrix(order) @ vectors[:, keep]).T
-        out.append(OrderPoles(order, eigenvalues[keep], shapes))
+        out.append(OrderPoles(order, eigenvalues[keep], normalised(shapes)))
     return out
 
 

@@ -9,11 +9,10 @@ import numpy.typing as npt
 
 from jackettwin.identification.estimate import Stabilisation
 from jackettwin.identification.mac import mac, normalised
-from jackettwin.identification.ssi_cov import frequency_and_damping
+from jackettwin.identification.ssi_cov import OrderPoles, frequency_and_damping
 
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
-    from jackettwin.identification.ssi_cov import OrderPoles
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -35,7 +34,8 @@ def stabilisation(
     scale : (n_channels,)
         Standard deviations by which the channels were divided: shapes come back in channel units.
     """
-    table = [_order_table(p, settings, sample_rate_hz, band_hz) for p in poles]
+    poles = [_inside(p, settings, sample_rate_hz, band_hz) for p in poles]
+    table = [(*frequency_and_damping(p.eigenvalues, sample_rate_hz), p.shapes) for p in poles]
     n_channels = len(scale)
     flags = [np.zeros((len(table[0][0]), 3), dtype=bool)] if table else []
     flags += [_stable(now, before, settings) for before, now in zip(table, table[1:], strict=False)]
@@ -52,19 +52,87 @@ def stabilisation(
         stable_damping=stable[:, 1],
         stable_shape=stable[:, 2],
         cluster=np.full(len(flat_order), -1, dtype=np.int64),
+        log_covariance=_log_covariances(poles, sample_rate_hz),
+        mode_shape_std=_shape_stds(poles, scale),
     )
 
 
-def _order_table(
+def admissible(
+    eigenvalues: ComplexArray,
+    settings: IdentificationSettings,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+) -> BoolArray:
+    """Return which poles lie inside the band and below the hard limit on damping, and are stable."""
+    f, zeta = frequency_and_damping(eigenvalues, sample_rate_hz)
+    inside = (f > band_hz[0]) & (f < band_hz[1])
+    return np.asarray(inside & (zeta > 0.0) & (zeta < settings.max_damping_ratio))
+
+
+def log_deviations(
+    eigenvalues: ComplexArray, deviations: ComplexArray, sample_rate_hz: float
+) -> tuple[FloatArray, FloatArray]:
+    r"""Return the deviations of ln f and ln ζ that follow from those of discrete eigenvalues.
+
+    .. math:: \delta\ln f = \mathrm{Re}(\bar\lambda\,\delta\lambda)/|\lambda|^2, \quad
+              \delta\ln\zeta = -\mathrm{Re}\,\delta\lambda/(\zeta|\lambda|) - \delta\ln f
+
+    Parameters
+    ----------
+    eigenvalues : (n_poles,)
+    deviations : (n_blocks, n_poles)
+    """
+    lam = np.log(eigenvalues) * sample_rate_hz
+    delta = deviations / eigenvalues * sample_rate_hz
+    log_f = np.asarray((lam.conj() * delta).real / np.abs(lam) ** 2)
+    return log_f, np.asarray(delta.real / lam.real - log_f)
+
+
+def _inside(
     poles: OrderPoles,
     settings: IdentificationSettings,
     sample_rate_hz: float,
     band_hz: tuple[float, float],
-) -> tuple[FloatArray, FloatArray, ComplexArray]:
-    f, zeta = frequency_and_damping(poles.eigenvalues, sample_rate_hz)
-    keep = (zeta > 0.0) & (zeta < settings.max_damping_ratio) & (f > band_hz[0]) & (f < band_hz[1])
-    keep &= np.abs(poles.shapes).max(axis=1, initial=0.0) > 0.0
-    return f[keep], zeta[keep], poles.shapes[keep]
+) -> OrderPoles:
+    keep = admissible(poles.eigenvalues, settings, sample_rate_hz, band_hz)
+    deviations, shapes = poles.eigenvalue_deviations, poles.shape_deviations
+    return OrderPoles(
+        poles.order,
+        poles.eigenvalues[keep],
+        poles.shapes[keep],
+        None if deviations is None else deviations[:, keep],
+        None if shapes is None else shapes[:, keep],
+    )
+
+
+def _log_covariances(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArray | None:
+    """Return the covariance of (ln f, ln ζ) of every pole, (n_poles, 2, 2)."""
+    out = []
+    for p in poles:
+        if p.eigenvalue_deviations is None:
+            if len(p.eigenvalues):
+                return None
+            continue
+        both = np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
+        out.append(np.einsum("ibp,jbp->pij", both, both))
+    return np.concatenate(out) if out else None
+
+
+def _shape_stds(poles: list[OrderPoles], scale: FloatArray) -> FloatArray | None:
+    """Return the standard deviation of every entry of the shapes in channel units, (n_poles, n_channels)."""
+    out = []
+    for p in poles:
+        if p.shape_deviations is None:
+            if len(p.eigenvalues):
+                return None
+            continue
+        raw, delta = p.shapes * scale, p.shape_deviations * scale
+        largest = np.argmax(np.abs(raw), axis=1)[:, None]
+        top = np.take_along_axis(raw, largest, axis=1)
+        at_top = np.take_along_axis(delta, largest[None], axis=2)
+        relative = (delta - raw / top * at_top) / top
+        out.append(np.sqrt(np.sum(np.abs(relative) ** 2, axis=0)))
+    return np.concatenate(out) if out else None
 
 
 def _stable(
