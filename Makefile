@@ -49,6 +49,9 @@ unit: $(VENV)/.dev
 bench: $(VENV)/.dev ## speed, on this machine
 	@for file in benchmarks/bench_*.py; do echo "$$file"; $(BIN)/python $$file || exit 1; done
 
+qualify: $(VENV)/.dev ## statistics at full size, to docs/verification (takes hours)
+	@for file in qualify/*.py; do echo "$$file"; $(BIN)/python $$file || exit 1; done
+
 lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(PIP) install pip-tools
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml

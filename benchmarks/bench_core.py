@@ -11,9 +11,8 @@ from functools import partial
 from statistics import median
 from time import perf_counter
 
-from jackettwin.response.locus import oscillating_poles
+from jackettwin.response.condensed import condense
 from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.reduced import craig_bampton
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, pinned
 from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
@@ -50,9 +49,7 @@ def main() -> None:
             work = partial(damped_modes, system, below_hz=0.8)
             report(f"  damped modes below 0.8 Hz, {name}", milliseconds(work, 3))
         system = build_system(assembly, on_translations(structure, LAWS["zener"]), rayleigh=rayleigh)
-        report("  reduced basis, 20 modes", milliseconds(partial(craig_bampton, system, n_modes=20)))
-    reduced = craig_bampton(system, n_modes=20).pencil
-    report("one evaluation on the reduced basis", milliseconds(partial(oscillating_poles, reduced), 50))
+        report("  condensed to the feet", milliseconds(partial(condense, system, below_hz=0.95)))
 
 
 def report(what: str, time_ms: float) -> None:

@@ -8,51 +8,31 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.follow import follow
-from jackettwin.response.modal import UndampedModes
-from jackettwin.response.reduced import Reduced, pinned_reference
-from jackettwin.response.state import state_matrix
-from jackettwin.response.system import Pencil
+from jackettwin.response.condensed import Condensed
+from jackettwin.response.numbered import Points, numbered_poles
+from jackettwin.soil.coefficients import law_rows
 from jackettwin.soil.viscoelastic import Law
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
-
-
-def oscillating_poles(pencil: Pencil) -> tuple[ComplexArray, ComplexArray]:
-    """Return λ with Im λ > 0 by |λ| and the shapes (n, n_poles) of a dense pencil of finite laws."""
-    values, vectors = np.linalg.eig(state_matrix(pencil))
-    keep = np.flatnonzero(values.imag > 1e-9 * np.abs(values))
-    keep = keep[np.argsort(np.abs(values[keep]))]
-    return values[keep], vectors[: pencil.n, keep]
-
-
-def followed_poles(pencil: Pencil, reference: UndampedModes) -> ComplexArray:
-    """Return the pole of each reference mode (NaN where a mode has no successor)."""
-    values, shapes = oscillating_poles(pencil)
-    successor = follow(pencil.M, reference.omega, reference.shapes, shapes)
-    return np.where(successor >= 0, values[successor], np.nan)
 
 
 def root_locus(
-    reduced: Reduced, law_of: Callable[[float], Law], values: Sequence[float], *, n_modes: int
+    condensed: Condensed, law_of: Callable[[float], Law], values: Sequence[float], *, n_modes: int
 ) -> ComplexArray:
-    """Return the poles (n_values, n_modes) of the modes numbered on held supports.
+    """Return the poles (n_values, n_modes) of the modes numbered on held supports (NaN: no successor).
 
     Parameters
     ----------
-    reduced : Reduced
+    condensed : Condensed
         Its every group takes the law ``law_of(value)``.
     values : sequence of float
         The parameter that is swept.
     """
-    reference = pinned_reference(reduced, n_modes)
-    poles = np.empty((len(values), n_modes), dtype=np.complex128)
-    for row, value in enumerate(values):
-        laws = [law_of(value)] * len(reduced.pencil.groups)
-        poles[row] = followed_poles(reduced.pencil.with_laws(laws), reference)
-    return poles
+    rows = law_rows([law_of(value) for value in values])
+    n_groups = len(condensed.pencil.groups)
+    points = Points.fixed(np.repeat(rows[:, None], n_groups, axis=1), condensed.pencil.rayleigh)
+    return numbered_poles(condensed, points, tuple(range(1, n_modes + 1))).poles
 
 
 def frequency_hz(poles: ComplexArray) -> FloatArray:

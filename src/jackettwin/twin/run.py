@@ -89,7 +89,12 @@ def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residua
     }
     try:
         model = support_model(
-            assembly, family=chosen, rayleigh=config.rayleigh, tie=config.tie, bounds=bounds
+            assembly,
+            family=chosen,
+            rayleigh=config.rayleigh,
+            tie=config.tie,
+            bounds=bounds,
+            highest_mode=max(residuals.modes),
         )
     except InputError as error:
         raise error.at(file=config.path, field="update" if bounds else None) from None

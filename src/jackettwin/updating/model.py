@@ -7,25 +7,25 @@ from math import pi
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg as la
 
 from jackettwin.errors import InputError
+from jackettwin.response.condensed import Condensed, condense
 from jackettwin.response.follow import follow
-from jackettwin.response.locus import oscillating_poles
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
-from jackettwin.response.reduced import Reduced, craig_bampton, pinned_reference
+from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
 from jackettwin.soil.support import Spring, Support, pinned
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
-from jackettwin.updating.families import Family, Parameter, law_slopes
+from jackettwin.updating.families import Family, Parameter
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 TIES = ("all", "horizontal-vertical", "per-leg")
-_FIXED_INTERFACE_MODES = 14
+_ROOM = 1.2
+"""The band ends this much above the highest mode on pinned supports, which supports can only lower."""
 _SIDES = {"_horizontal": np.diag([1.0, 1.0, 0, 0, 0, 0]), "_vertical": np.diag([0, 0, 1.0, 0, 0, 0])}
 
 
@@ -35,12 +35,15 @@ class Prediction:
 
     Attributes
     ----------
-    poles : (n_modes,) λ
+    poles : (n_modes,) λ, NaN where a mode has no successor
     slopes : (n_modes, n_parameters) dλ/d ln θ
+    numbered : NumberedModes
+        The same as one set, to start neighbours from.
     """
 
     poles: ComplexArray
     slopes: ComplexArray
+    numbered: NumberedModes
 
 
 @dataclass(frozen=True)
@@ -54,10 +57,12 @@ class SupportModel:
     family : Family
     parameters : tuple of Parameter
         One set of the family's for each tie group.
-    reduced : Reduced
-        Craig–Bampton model with the support DOFs kept; its groups are the tie groups.
+    condensed : Condensed
+        The structure on its support DOFs; its groups are the tie groups.
     reference_hz : float
         Where storage stiffness and loss factor are stated: the first pinned frequency.
+    highest_mode : int
+        The last numbered mode inside the condensed model's band.
     """
 
     assembly: Assembly
@@ -65,46 +70,64 @@ class SupportModel:
     family: Family
     parameters: tuple[Parameter, ...]
     suffixes: tuple[str, ...]
-    reduced: Reduced
+    condensed: Condensed
     reference_hz: float
+    highest_mode: int
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
         per_group = np.reshape(theta, (len(self.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
 
-    def predict(self, theta: FloatArray, modes: tuple[int, ...]) -> Prediction:
-        r"""Return the poles of numbered modes and their gradients from the reduced model.
+    def points(self, theta: FloatArray) -> Points:
+        """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
+        n_sets, n_groups, p = len(theta), len(self.suffixes), len(self.family.parameters)
+        pairs = [self.family.row(v, self.reference_hz) for v in np.reshape(theta, (-1, p))]
+        rows = np.array([row for row, _ in pairs]).reshape(n_sets, n_groups, -1)
+        jacobian = np.zeros((*rows.shape, theta.shape[1]))
+        own = np.array([slopes for _, slopes in pairs]).reshape(*rows.shape, p)
+        for g in range(n_groups):
+            jacobian[:, g, :, g * p : (g + 1) * p] = own[:, g]
+        ab = np.tile([self.rayleigh.alpha, self.rayleigh.beta], (n_sets, 1))
+        return Points(rows, ab, jacobian, np.zeros((n_sets, 2, theta.shape[1])))
 
-        .. math:: dλ/dθ = -\frac{x^T (∂D/∂θ\, S) x}{x^T F'(λ) x}, F symmetric (Adhikari 2001).
+    def predict_many(
+        self, theta: FloatArray, modes: tuple[int, ...], *, near: NumberedModes | None = None
+    ) -> NumberedModes:
+        """Return numbered modes at many parameter vectors (n_sets, n_parameters).
+
+        Raises
+        ------
+        InputError
+            If a mode lies outside the band the model was condensed for.
         """
-        laws = self.laws(theta)
-        pencil = self.reduced.pencil.with_laws(laws)
-        values, shapes = oscillating_poles(pencil)
-        reference = pinned_reference(self.reduced, max(modes) + 2)
-        successor = follow(pencil.M, reference.omega, reference.shapes, shapes)[[m - 1 for m in modes]]
-        poles = np.where(successor >= 0, values[successor], np.nan)
-        slopes = np.full((len(modes), theta.size), np.nan, dtype=np.complex128)
-        width = len(self.family.parameters)
-        for row, (column, pole) in enumerate(zip(successor, poles, strict=True)):
-            if column < 0:
-                continue
-            x = shapes[:, column]
-            scale = x @ pencil.dF(complex(pole)) @ x
-            for g, group in enumerate(pencil.groups):
-                here = slice(g * width, (g + 1) * width)
-                inside = x[group.dofs] @ group.S[np.ix_(group.dofs, group.dofs)] @ x[group.dofs]
-                d = law_slopes(lambda v: self.family.build(v, self.reference_hz), theta[here], complex(pole))
-                slopes[row, here] = -d * inside / scale
-        return Prediction(poles, slopes)
+        if max(modes) > self.highest_mode:
+            raise InputError(
+                "mode outside the model's band",
+                field="mode",
+                value=max(modes),
+                allowed=f"1 to {self.highest_mode}",
+                remedy="build the support model with a higher highest_mode",
+            )
+        return numbered_poles(self.condensed, self.points(theta), modes, near=near)
+
+    def predict(
+        self, theta: FloatArray, modes: tuple[int, ...], *, near: Prediction | None = None
+    ) -> Prediction:
+        """Return the poles of numbered modes and their gradients at one parameter vector.
+
+        Parameters
+        ----------
+        near : Prediction, optional
+            Of the same modes at a neighbouring vector: ten times faster if it is close.
+        """
+        found = self.predict_many(theta[None], modes, near=None if near is None else near.numbered)
+        return Prediction(found.poles[0], found.slopes[0], found)
 
     def undamped_hz(self, theta: FloatArray, modes: tuple[int, ...]) -> FloatArray:
-        """Return the undamped frequencies of numbered modes from the reduced model (NaN if not followed)."""
-        pencil = self.reduced.pencil.with_laws(self.laws(theta))
-        w, x = la.eigh(pencil.static_stiffness(), pencil.M)
-        reference = pinned_reference(self.reduced, max(modes) + 2)
-        successor = follow(pencil.M, reference.omega, reference.shapes, x)[[m - 1 for m in modes]]
-        return np.where(successor >= 0, np.sqrt(np.maximum(w[successor], 0.0)) / (2.0 * pi), np.nan)
+        """Return the undamped frequencies of numbered modes (NaN if not followed)."""
+        found = numbered_poles(self.condensed, self.points(theta[None]).undamped(), modes)
+        return np.asarray(np.abs(found.poles[0]) / (2.0 * pi))
 
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
@@ -170,6 +193,7 @@ def support_model(
     rayleigh: Rayleigh,
     tie: str = "all",
     bounds: dict[str, tuple[float, float]] | None = None,
+    highest_mode: int = 8,
 ) -> SupportModel:
     """Return the model with one law on the three translations of every reaction node.
 
@@ -179,6 +203,8 @@ def support_model(
         Which translations share parameters.
     bounds : dict, optional
         Narrower or wider bounds by parameter name (with or without the tie's suffix).
+    highest_mode : int
+        The last numbered mode that will be asked for.
 
     Raises
     ------
@@ -201,9 +227,11 @@ def support_model(
     system = build_system(
         assembly, Support(springs=_springs(assembly, suffixes, stand_ins)), rayleigh=rayleigh
     )
-    reference_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
-    reduced = craig_bampton(system, n_modes=_FIXED_INTERFACE_MODES)
-    return SupportModel(assembly, rayleigh, family, parameters, suffixes, reduced, reference_hz)
+    pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
+    condensed = condense(system, below_hz=_ROOM * float(pinned_hz[-1]))
+    return SupportModel(
+        assembly, rayleigh, family, parameters, suffixes, condensed, float(pinned_hz[0]), highest_mode
+    )
 
 
 def _suffixes(assembly: Assembly, tie: str) -> tuple[str, ...]:

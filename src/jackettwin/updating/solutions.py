@@ -12,7 +12,7 @@ from scipy.optimize import least_squares, minimize
 from scipy.stats import qmc
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.updating.model import SupportModel
+from jackettwin.updating.model import Prediction, SupportModel
 from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
@@ -99,7 +99,7 @@ def search(
 
 def cost(model: SupportModel, residuals: Residuals, theta: FloatArray) -> float:
     """Return the cost (8.4) at a parameter vector."""
-    r, _ = _evaluate(model, residuals, np.log(theta))
+    r, _ = _Evaluator(model, residuals)(np.log(theta))
     return float(r @ r)
 
 
@@ -113,24 +113,34 @@ def _scatter(low: FloatArray, high: FloatArray, n: int, seed: int) -> FloatArray
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 
 
-def _evaluate(model: SupportModel, residuals: Residuals, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    prediction = model.predict(np.exp(z), residuals.modes)
-    if np.isnan(prediction.poles).any():
-        return np.full(residuals.count, _LOST), np.zeros((residuals.count, z.size))
-    return residuals.evaluate(prediction.poles, prediction.slopes)
+class _Evaluator:
+    """Residuals and Jacobian along one search path: each prediction starts from the one before."""
+
+    def __init__(self, model: SupportModel, residuals: Residuals) -> None:
+        self.model, self.residuals = model, residuals
+        self.last: Prediction | None = None
+        self.at: FloatArray | None = None
+        self.values: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
+
+    def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals and Jacobian; the last answer is remembered."""
+        if self.at is None or not np.array_equal(z, self.at):
+            self.values, self.at = self._evaluate(z), z.copy()
+        return self.values
+
+    def _evaluate(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        prediction = self.model.predict(np.exp(z), self.residuals.modes, near=self.last)
+        if np.isnan(prediction.poles).any():
+            self.last = None
+            return np.full(self.residuals.count, _LOST), np.zeros((self.residuals.count, z.size))
+        self.last = prediction
+        return self.residuals.evaluate(prediction.poles, prediction.slopes)
 
 
 def _least_squares(
     model: SupportModel, residuals: Residuals, start: FloatArray, low: FloatArray, high: FloatArray
 ) -> tuple[FloatArray, float]:
-    cache: dict[bytes, tuple[FloatArray, FloatArray]] = {}
-
-    def evaluate(z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        key = z.tobytes()
-        if key not in cache:
-            cache.clear()
-            cache[key] = _evaluate(model, residuals, z)
-        return cache[key]
+    evaluate = _Evaluator(model, residuals)
 
     def values(z: FloatArray) -> FloatArray:
         return evaluate(z)[0]
@@ -155,8 +165,10 @@ def _least_squares(
 def _nelder_mead(
     model: SupportModel, residuals: Residuals, start: FloatArray, low: FloatArray, high: FloatArray
 ) -> tuple[FloatArray, float]:
+    evaluate = _Evaluator(model, residuals)
+
     def total(z: FloatArray) -> float:
-        r, _ = _evaluate(model, residuals, z)
+        r, _ = evaluate(z)
         return float(r @ r)
 
     fit = minimize(

@@ -1,0 +1,245 @@
+"""Compiled loops over many poles, contour points and points of the real axis.
+
+The arrays are those of :mod:`jackettwin.response.condensed_matrix`.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.response.condensed_matrix import compiled, factor, fill, law_derivatives, solve, times
+
+_MAX_STEPS = 30
+_MAX_DEPTH = 24
+
+
+@compiled
+def _normalise(x):
+    size = 0.0
+    for i in range(x.size):
+        size += x[i].real ** 2 + x[i].imag ** 2
+    x *= 1.0 / np.sqrt(size)
+
+
+@compiled
+def _bounded(step, s):
+    """Return the step, no longer than a third of |s|."""
+    size, most = abs(step), 0.3 * abs(s)
+    return step * (most / size) if size > most else step
+
+
+@compiled
+def refine(model, rows, rayleigh, which, values, vectors, tolerance):
+    """Refine starts in place by inverse iteration with the Rayleigh functional (cubic: F is symmetric).
+
+    ``which`` (n_starts,) is the parameter set of each start. Returns (n_starts,) booleans: converged.
+    """
+    n = vectors.shape[1]
+    n_pairs = model[0].shape[1]
+    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    u, y, pivot = np.empty(n, np.complex128), np.empty(n, np.complex128), np.empty(n, np.int64)
+    done = np.zeros(values.size, np.bool_)
+    for m in range(values.size):
+        laws, a, b = rows[which[m]], rayleigh[which[m], 0], rayleigh[which[m], 1]
+        x, s = vectors[m], values[m]
+        _normalise(x)
+        # the start's shape knows its pole better than its value does
+        fill(model, laws, a, b, s, F, dF, s0, s1)
+        step = times(F, x, y) / times(dF, x, y)
+        if np.isfinite(abs(step)):
+            s -= _bounded(step, s)
+        for _ in range(_MAX_STEPS):
+            fill(model, laws, a, b, s, F, dF, s0, s1)
+            times(dF, x, y)
+            if factor(F, pivot) == 0.0:
+                done[m] = True
+                break
+            u[:] = y
+            solve(F, pivot, u)
+            top = 0.0j
+            for i in range(n):
+                top += u[i] * y[i]
+            step = top / times(dF, u, y)
+            _normalise(u)
+            x[:] = u
+            if not np.isfinite(abs(step)):
+                break
+            step = _bounded(step, s)
+            s -= step
+            if abs(step) <= tolerance * abs(s):
+                done[m] = True
+                break
+        values[m] = s
+    return done
+
+
+@compiled
+def _forces(model, s, mu, s0, s1, x, forces):
+    """Fill the forces S_g x of every group, then (∂F/∂a) x and (∂F/∂b) x."""
+    P, w2 = model[3], model[4]
+    group, row, column, weight = model[5], model[6], model[7], model[8]
+    nb, nr = P.shape
+    a, b = forces.shape[0] - 2, forces.shape[0] - 1
+    forces[:] = 0.0
+    for e in range(group.size):
+        forces[group[e], row[e]] += weight[e] * x[column[e]]
+    p = 0
+    for i in range(nb):
+        for j in range(i, nb):
+            da, db = s * s1[p], s * (s0[p] - mu * s1[p])
+            forces[a, i] += da * x[j]
+            forces[b, i] += db * x[j]
+            if i != j:
+                forces[a, j] += da * x[i]
+                forces[b, j] += db * x[i]
+            p += 1
+    for j in range(nr):
+        forces[a, nb + j] += s * x[nb + j]
+        forces[b, nb + j] += s * w2[j] * x[nb + j]
+        for i in range(nb):
+            forces[a, i] += s * P[i, j] * x[nb + j]
+            forces[a, nb + j] += s * P[i, j] * x[i]
+
+
+@compiled
+def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
+    """Fill −(∂F/∂z) x for every parameter z from the forces of the groups, of a and of b."""
+    n_groups, width, n_z = jacobian.shape
+    n = forces.shape[1]
+    loads[:] = 0.0
+    for g in range(n_groups + 2):
+        if g < n_groups:
+            law_derivatives(rows[g], s, law)
+        for z in range(n_z):
+            c = 0.0j
+            if g < n_groups:
+                for w in range(width):
+                    c += law[w] * jacobian[g, w, z]
+            else:
+                c += rayleigh_jacobian[g - n_groups, z]
+            if c != 0.0:
+                for i in range(n):
+                    loads[z, i] -= c * forces[g, i]
+
+
+@compiled
+def slopes(model, rows, rayleigh, which, values, vectors, jacobian, rayleigh_jacobian, dvalues, dvectors):
+    """Fill dλ/dz and dx/dz (without a component along x) for every mode and parameter z.
+
+    ``jacobian`` (n_sets, n_groups, width, n_z) and ``rayleigh_jacobian`` (n_sets, 2, n_z) say how the law
+    rows and (a, b) depend on z. An empty ``dvectors`` asks for the eigenvalues alone.
+    """
+    n = vectors.shape[1]
+    n_pairs = model[0].shape[1]
+    n_groups, width, n_z = jacobian.shape[1], jacobian.shape[2], jacobian.shape[3]
+    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    law = np.empty(width, np.complex128)
+    forces, loads = np.empty((n_groups + 2, n), np.complex128), np.zeros((n_z, n + 1), np.complex128)
+    bordered, pivot = np.zeros((n + 1, n + 1), np.complex128), np.empty(n + 1, np.int64)
+    y = np.empty(n, np.complex128)
+    for m in range(values.size):
+        k, s, x = which[m], values[m], vectors[m]
+        mu = fill(model, rows[k], rayleigh[k, 0], rayleigh[k, 1], s, F, dF, s0, s1)
+        _forces(model, s, mu, s0, s1, x, forces)
+        _loads(rows[k], s, jacobian[k], rayleigh_jacobian[k], forces, law, loads)
+        scale = times(dF, x, y)
+        for z in range(n_z):
+            total = 0.0j
+            for i in range(n):
+                total += x[i] * loads[z, i]
+            dvalues[m, z] = total / scale
+        if dvectors.size == 0:
+            continue
+        # [F, F'x; xᴴ, 0] [dx; dλ] = [−(∂F/∂z)x; 0]
+        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = F, y, np.conj(x)
+        bordered[n, n] = 0.0
+        factor(bordered, pivot)
+        for z in range(n_z):
+            solve(bordered, pivot, loads[z])
+            dvectors[m, z] = loads[z, :n]
+
+
+@compiled
+def _phase(model, rows, a, b, s, F, dF, s0, s1, pivot):
+    fill(model, rows, a, b, s, F, dF, s0, s1)
+    return factor(F, pivot)
+
+
+@compiled
+def _point(kind, u, radius, small):
+    """Return a point of the path at u in [0, 1]: the great arc, the upper side of the cut, the small arc.
+
+    The great arc's points crowd towards the negative real axis, where multiple poles of the supports lie.
+    """
+    if kind == 0:
+        return radius * np.exp(1j * np.pi * (1.0 - (1.0 - u) ** 2))
+    if kind == 1:
+        return complex(-radius * (small / radius) ** u, 0.0)
+    return small * np.exp(1j * np.pi * (1.0 - u))
+
+
+@compiled
+def winding(model, rows, a, b, radius, cut, n_points):
+    """Return the change of arg det F along the upper half circle in units of π, NaN if it runs over a pole.
+
+    With a branch cut the path returns along the upper side of the cut and around the origin.
+    """
+    n = model[3].shape[0] + model[3].shape[1]
+    n_pairs = model[0].shape[1]
+    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    pivot = np.empty(n, np.int64)
+    stop, phase = np.empty(_MAX_DEPTH + 2), np.empty(_MAX_DEPTH + 2, np.complex128)
+    small = 1e-6 * radius
+    total = 0.0
+    for kind in range(3 if cut else 1):
+        n_here = n_points if kind < 2 else 4
+        u0 = 0.0
+        here = _phase(model, rows, a, b, _point(kind, 0.0, radius, small), F, dF, s0, s1, pivot)
+        for i in range(n_here):
+            depth = 0
+            stop[0] = (i + 1) / n_here
+            phase[0] = _phase(model, rows, a, b, _point(kind, stop[0], radius, small), F, dF, s0, s1, pivot)
+            while depth >= 0:
+                turn = np.angle(phase[depth] * np.conj(here))
+                if abs(turn) <= 0.7:
+                    total += turn
+                    here, u0 = phase[depth], stop[depth]
+                    depth -= 1
+                    continue
+                if depth > _MAX_DEPTH:
+                    return np.nan
+                stop[depth + 1] = 0.5 * (u0 + stop[depth])
+                s = _point(kind, stop[depth + 1], radius, small)
+                phase[depth + 1] = _phase(model, rows, a, b, s, F, dF, s0, s1, pivot)
+                depth += 1
+    return total / np.pi
+
+
+@compiled
+def inertia(model, rows, a, b, points):
+    """Return the number of negative eigenvalues of the real symmetric F at each point of the real axis."""
+    n = model[3].shape[0] + model[3].shape[1]
+    n_pairs = model[0].shape[1]
+    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    A = np.empty((n, n))
+    count = np.zeros(points.size, np.int64)
+    for m in range(points.size):
+        fill(model, rows, a, b, complex(points[m], 0.0), F, dF, s0, s1)
+        for i in range(n):
+            for j in range(n):
+                A[i, j] = F[i, j].real
+        for k in range(n):
+            if A[k, k] < 0.0:
+                count[m] += 1
+            for i in range(k + 1, n):
+                f = A[i, k] / A[k, k] if A[k, k] != 0.0 else 0.0
+                for j in range(i, n):
+                    A[i, j] -= f * A[k, j]
+                    A[j, i] = A[i, j]
+    return count
