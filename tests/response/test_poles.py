@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from tests.response.conftest import monopile_structure, on_law
 
-from jackettwin.response.modal import DampedModes, damped_modes
+from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Pencil, System, build_system
-from jackettwin.soil.support import Spring, on_translations
+from jackettwin.soil.support import Spring, Support, on_translations
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.structure.model import PointMass
@@ -159,7 +159,7 @@ def test_nearly_equal_poles_do_not_fall_on_one_another() -> None:
     assembly = assemble(structure)
     for split in (1e-9, 1e-7, 1e-5, 1e-4):
         matrix = np.diag([1.0, 1.0 + split, 1.0, 400.0, 400.0 * (1.0 + split), 400.0])
-        support = type(on_law(structure, LAWS["zener"]))(springs=(Spring("n0", matrix, LAWS["zener"]),))
+        support = Support(springs=(Spring("n0", matrix, LAWS["zener"]),))
         found = damped_modes(build_system(assembly, support, rayleigh=RAYLEIGH), below_hz=0.5)
         assert found.eigenvalues.size == 2
         assert np.linalg.matrix_rank(found.shapes, tol=1e-3) == 2
@@ -173,6 +173,16 @@ def test_free_floating_and_dashpot_only_structures_give_resting_poles() -> None:
     assembly = assemble(structure)
     drifting = damped_modes(build_system(assembly, on_law(structure, kelvin_voigt(0.0, 1e6))), below_hz=0.05)
     assert np.sum(np.abs(drifting.real_poles) < 1e-6) >= 6
+
+
+def test_a_structure_without_supports_floats_and_bends(monopile) -> None:
+    """Six rigid motions are twelve poles at rest; the first bending pair is the undamped one."""
+    system = build_system(monopile, Support())
+    modes = damped_modes(system, below_hz=3.0)
+    assert modes.real_poles.size == 12
+    assert np.abs(modes.real_poles).max() < 1e-6
+    bending = undamped_modes(system, 8).frequency_hz[6:]
+    np.testing.assert_allclose(modes.frequency_hz[:2], bending, rtol=1e-6)
 
 
 @pytest.mark.parametrize("c", [1e-3, 1.0, 1e6, 1e9, 1e12, 1e15])

@@ -31,6 +31,8 @@ _SMALL = 300
 """State vectors shorter than this are solved densely: Arnoldi needs room."""
 REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
+_AT_ZERO = 5e-6
+"""A pole smaller than this share of the disc's radius is a structure at rest, not an oscillation."""
 _AT_REST = 1e-10
 """A pole that a Newton step moves less than this (relative) is found."""
 _ROUNDING = 1e-7
@@ -80,6 +82,9 @@ def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexA
     theta, Y = np.linalg.eig(Q.T @ np.column_stack([inverse.matvec(q) for q in Q.T]))
     keep = _inside(theta, sigma, radius)
     values = (sigma + 1.0 / theta[keep]).astype(np.complex128)
+    # a structure at rest has double poles at zero, which rounding splits into slow pairs
+    resting = np.abs(values) <= _AT_ZERO * radius
+    values[resting] = values[resting].real
     upper = values.imag >= -_CLUSTER * np.abs(values)
     return values[upper], Q[: pencil.n] @ Y[:, keep][:, upper]
 
