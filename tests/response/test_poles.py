@@ -180,7 +180,7 @@ def test_a_structure_without_supports_floats_and_bends(monopile) -> None:
     system = build_system(monopile, Support())
     modes = damped_modes(system, below_hz=3.0)
     assert modes.real_poles.size == 12
-    assert np.abs(modes.real_poles).max() < 1e-6
+    assert np.abs(modes.real_poles).max() < 1e-5  # a double root is known to √ε
     bending = undamped_modes(system, 8).frequency_hz[6:]
     np.testing.assert_allclose(modes.frequency_hz[:2], bending, rtol=1e-6)
 
