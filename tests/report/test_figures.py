@@ -1,7 +1,6 @@
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
+from collections.abc import Callable
 
 import numpy as np
 import plotly.graph_objects as go
@@ -10,13 +9,11 @@ import pytest
 from jackettwin.records import Record
 from jackettwin.report import Plot
 from jackettwin.report.build import report_sections
+from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.figures_record import envelope, time_series
-from jackettwin.report.figures_structure import Shape, mode_shapes_3d, structure_3d
+from jackettwin.report.figures_structure import structure_3d
 from jackettwin.report.style import direction_colour, law_look, mode_look
 from jackettwin.twin import TwinResult
-
-CATEGORIES = {"mode", "member"}
-"""Axes that name things have no unit."""
 
 
 @pytest.fixture(scope="module")
@@ -24,28 +21,9 @@ def plots(complete: TwinResult) -> list[Plot]:
     return [b for s in report_sections(complete) for b in s.blocks if isinstance(b, Plot)]
 
 
-def _axes(figure: go.Figure) -> Iterator[tuple[str, dict]]:
-    layout = figure.to_dict()["layout"]
-    for key, value in layout.items():
-        if re.fullmatch(r"[xy]axis\d*", key):
-            yield key, value
-        elif re.fullmatch(r"scene\d*", key):
-            yield from ((f"{key}.{axis}", value[axis]) for axis in ("xaxis", "yaxis", "zaxis"))
-
-
-def assert_units(figure: go.Figure) -> None:
-    axes = list(_axes(figure))
-    assert axes
-    for name, axis in axes:
-        if axis.get("visible") is False or axis.get("showticklabels") is False:
-            continue
-        title = axis.get("title", {}).get("text", "")
-        if axis.get("type") == "category" and name.startswith("y"):
-            continue
-        assert title in CATEGORIES or re.search(r"\S \[.+\]$", title), (name, title)
-
-
-def test_every_axis_has_quantity_and_unit(plots: list[Plot]) -> None:
+def test_every_axis_has_quantity_and_unit(
+    plots: list[Plot], assert_units: Callable[[go.Figure], None]
+) -> None:
     assert len(plots) >= 14
     for plot in plots:
         assert_units(plot.figure)

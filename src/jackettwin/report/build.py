@@ -16,7 +16,7 @@ from jackettwin.report import (
     tables,
 )
 from jackettwin.report import figures_updating as compare
-from jackettwin.report.figures_structure import Shape
+from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.numbers import fixed, frequency, percent, words
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_figures, write_page
 from jackettwin.report.summary import headline, shown_update
@@ -215,11 +215,7 @@ def _mode_shapes(result: TwinResult) -> list[Block]:
         f"Mode shapes of the full model updated with {u.law}. Coloured: damped, moving; dotted: undamped at "
         "its largest; pale: at rest. Arrows: the measured shape at the sensors, scaled to the model's."
     )
-    return [
-        Plot(
-            "mode_shapes", caption, figures_structure.mode_shapes_3d(result.assembly, shapes, result.sensors)
-        )
-    ]
+    return [Plot("mode_shapes", caption, mode_shapes_3d(result.assembly, shapes, result.sensors))]
 
 
 def _shapes(result: TwinResult, u: Update) -> list[Shape]:
@@ -231,7 +227,7 @@ def _shapes(result: TwinResult, u: Update) -> list[Shape]:
     shapes = []
     for i, m in enumerate(result.measured):
         f, zeta = float(u.modes.frequency_hz[i]), float(u.modes.damping_ratio[i])
-        text = f"<b>{words(m.label)}</b><br>{frequency(f)} Hz, ζ {percent(zeta)} %"
+        text = f"<b>{words(m.label)}</b><br>{frequency(f)} Hz<br>ζ {percent(zeta)} %"
         seen = m.estimate.mode_shape[rows] if m.estimate is not None and rows and min(rows) >= 0 else None
         shapes.append(Shape(text, m.label, u.modes.shapes[:, i], undamped[:, i], seen))
     return shapes

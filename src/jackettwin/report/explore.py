@@ -12,7 +12,10 @@ from jackettwin.updating import Residuals, SupportModel, Update, numbered_modes
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
+_STRIDE, _REFINEMENTS = 0.06, 3
+"""A root locus is refined where a pole moves by more than this share of its path; so many times."""
 _LOSSY = 1
 """Position of the parameter that damps in every family: c, loss_factor, alpha."""
 
@@ -34,7 +37,7 @@ def surface(update: Update, *, n: int = 36) -> tuple[FloatArray, FloatArray, Flo
 
 
 def locus(
-    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], labels: tuple[str, ...], *, n: int = 81
+    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], labels: tuple[str, ...], *, n: int = 41
 ) -> Locus:
     """Return how the poles move as the damping parameter of every support goes from bound to bound.
 
@@ -42,15 +45,30 @@ def locus(
     """
     width = len(model.family.parameters)
     p = model.parameters[_LOSSY]
+
+    def poles_at(values: FloatArray) -> ComplexArray:
+        moved = np.tile(np.reshape(theta, (-1, width)), (values.size, 1, 1))
+        moved[:, :, _LOSSY] = values[:, None]
+        return np.array([model.predict(each.ravel(), modes).poles for each in moved])
+
     values = np.geomspace(p.low, p.high, n)
-    poles = []
-    for value in values:
-        moved = np.reshape(theta, (-1, width)).copy()
-        moved[:, _LOSSY] = value
-        poles.append(model.predict(moved.ravel(), modes).poles)
+    poles = poles_at(values)
+    for _ in range(_REFINEMENTS):
+        wide = np.flatnonzero(_strides(poles) > _STRIDE)
+        between = np.sqrt(values[wide] * values[wide + 1])
+        order = np.argsort(np.concatenate([values, between]), kind="stable")
+        poles = np.concatenate([poles, poles_at(between).reshape(-1, len(modes))])[order]
+        values = np.concatenate([values, between])[order]
     here = model.predict(theta, modes).poles
     name = model.family.parameters[_LOSSY].name
-    return Locus(model.family.name, name, p.unit, labels, values, np.array(poles), here)
+    return Locus(model.family.name, name, p.unit, labels, values, poles, here)
+
+
+def _strides(poles: ComplexArray) -> FloatArray:
+    """Return the longest step of any mode between neighbours, as a share of its path's extent."""
+    extent = np.nanmax(np.abs(poles - poles[0]), axis=0)
+    steps = np.abs(np.diff(poles, axis=0)) / np.where(extent > 0.0, extent, 1.0)
+    return np.asarray(np.nan_to_num(steps).max(axis=1))
 
 
 def undamped_shapes(update: Update) -> FloatArray:

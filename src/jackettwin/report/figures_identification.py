@@ -18,6 +18,10 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 
+_FEWEST_LINES = 20
+"""Spectral lines below which a spectrum is too coarse to draw behind poles."""
+
+
 class _PoleClass(NamedTuple):
     """How poles of one kind are drawn."""
 
@@ -198,6 +202,8 @@ def _asymmetric(value: float, low_high: tuple[float, ...], scale: float) -> dict
 def _background(figure: go.Figure, spectrum: Spectrum, low: float, high: float) -> None:
     f = spectrum.frequencies_hz
     keep = (f >= max(low, float(f[1]))) & (f <= high)
+    if keep.sum() < _FEWEST_LINES:
+        return
     figure.add_scatter(
         x=f[keep],
         y=spectrum.singular_values[0][keep],

@@ -77,7 +77,7 @@ def sensitivity(curves: Sequence[Curve]) -> go.Figure:
             "<br>cost %{y:.4g}<extra></extra>",
         )
         seen.add(curve.parameter)
-    figure.update_xaxes(title_text=style.title("change of the parameter", "%"))
+    figure.update_xaxes(title_text=style.title("change", "%"))
     figure.update_yaxes(title_text=style.title("cost", "-"), exponentformat="power")
     return style.finish(
         figure,

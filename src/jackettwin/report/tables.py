@@ -207,8 +207,10 @@ def parameter_table(updates: Sequence[Update]) -> Table:
 
 
 def solutions_table(result: TwinResult, u: Update) -> Table:
-    """Return every distinct solution of a law."""
-    columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in result.measured))
+    """Return every distinct solution of a law, with the modes that took part in the fit."""
+    fitted = [m for m in result.measured if m.fits_frequency or m.fits_damping]
+    chosen = [m in fitted for m in result.measured]
+    columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in fitted))
     rows, marked = [], set()
     for i, s in enumerate(u.solutions):
         if s.locked_damper:
@@ -216,15 +218,16 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["reported"] * (s is u.best)
         notes += ["locked damper"] * s.locked_damper
         values = [
-            f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' (bound)' if p.name in s.at_bound else ''}"
+            f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
             for p, v in zip(u.model.parameters, s.theta, strict=True)
         ]
-        modes = zip(s.frequency_hz, s.undamped_hz, s.damping_ratio, strict=True)
+        modes = zip(s.frequency_hz[chosen], s.undamped_hz[chosen], s.damping_ratio[chosen], strict=True)
         cells = [f"{frequency(float(f))}\n{frequency(float(f0))}\n{percent(float(z))}" for f, f0, z in modes]
         head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
         rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))
     caption = (
-        f"{u.law}: every distinct solution of the search, cheapest first, and how many starts ended there."
+        f"{u.law}: every distinct solution of the search, cheapest first, and how many starts ended there; "
+        "* on a bound."
     )
     return Table(caption, columns, tuple(rows), 2, frozenset(marked))
 

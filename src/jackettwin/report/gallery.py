@@ -1,0 +1,361 @@
+"""The thesis's figures, drawn from our own computations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import as_file, files
+
+import numpy as np
+import numpy.typing as npt
+import plotly.graph_objects as go
+
+from jackettwin.identification import Identification, identify, mac
+from jackettwin.records import Record, read_record
+from jackettwin.report import (
+    explore,
+    figures_identification,
+    figures_landscape,
+    figures_record,
+    figures_theory,
+    schematics,
+)
+from jackettwin.report.figures_elevation import elevation
+from jackettwin.report.figures_modes import Shape, mode_shapes_3d
+from jackettwin.report.figures_structure import structure_3d
+from jackettwin.report.numbers import frequency, scientific, words
+from jackettwin.report.page import Plot, Section
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.system import build_system
+from jackettwin.response.time import free_decay
+from jackettwin.soil import on_translations
+from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, zener
+from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
+from jackettwin.updating import SupportModel, family, numbered_modes, support_model
+from jackettwin.updating.landscape import cost_surface
+from jackettwin.updating.steel import only_parts
+from jackettwin.verify import supports
+
+FloatArray = npt.NDArray[np.float64]
+
+RECORD = "pile_U12_s301"
+"""The shipped record behind the figures of identification: OpenFAST, 12 m/s."""
+STEPS = 5
+"""How often ``thesis_figures`` announces what it does."""
+_KV_1 = (2.5e9, 7.6e8)
+_KV_2 = (1.1e8, supports.NEARLY_LOCKED)
+_ZENER_1, _ZENER_2 = (4.4e9, 3.76e9, 6.14e12), (2.62e9, 8.65e8, 9.99e9)
+"""Parameters of Tables 8.1, 8.3, 8.4 and 8.7."""
+
+
+@dataclass(frozen=True)
+class _Jacket:
+    """The reference structure on pinned feet."""
+
+    assembly: Assembly
+    steel: Rayleigh
+    pinned: UndampedModes
+    labels: tuple[str, ...]
+
+
+def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[Section]:
+    """Return the gallery's sections: every listed figure of the thesis, from the same code as the report."""
+    assembly = assemble(read_structure("jacket15"))
+    pinned = numbered_modes(assembly, 8)
+    labels = mode_labels(mode_kinds(assembly, pinned.shapes))
+    jacket = _Jacket(assembly, Rayleigh.minimum(0.01, float(pinned.frequency_hz[0])), pinned, labels)
+    with as_file(files("jackettwin.data") / "records") as directory:
+        record = read_record(directory / f"{RECORD}.parquet")
+    step("figures of chapters 3 and 4")
+    sections = [
+        Section("Chapter 3: theory of structures", tuple(_chapter_3(jacket))),
+        Section("Chapter 4: viscoelastic laws", tuple(_chapter_4())),
+    ]
+    step("figures of chapter 5")
+    sections.append(Section("Chapter 5: the jacket", tuple(_chapter_5(jacket, record))))
+    step("figures of chapter 6")
+    found = identify(record)
+    names = _paired_names(jacket, found)
+    sections.append(Section("Chapter 6: identification", tuple(_chapter_6(found, names))))
+    step("figures of chapters 7 and 8")
+    sections.append(Section("Chapter 7: viscoelastic supports", (_figure_7_1(jacket),)))
+    sections.append(Section("Chapter 8: updating", tuple(_chapter_8(jacket))))
+    step("figures of chapter 11")
+    sections.append(Section("Chapter 11: appendix", tuple(_chapter_11(record, found, names))))
+    return sections
+
+
+def _chapter_3(jacket: _Jacket) -> list[Plot]:
+    regimes = (("underdamped", 0.1), ("critically damped", 1.0), ("overdamped", 2.0))
+    return [
+        Plot(
+            "figure_3_1",
+            "Figure 3.1: a mass on a Kelvin–Voigt element.",
+            schematics.draw([("", schematics.sdof(schematics.kelvin_voigt_element()))], height=300),
+        ),
+        Plot(
+            "figure_3_2",
+            "Figure 3.2: free vibration in the three regimes of damping.",
+            figures_theory.damping_regimes(regimes),
+        ),
+        Plot(
+            "figure_3_3",
+            "Figure 3.3: the structure in the plane; the rotor–nacelle assembly is the larger node.",
+            elevation([("", jacket.assembly)]),
+        ),
+    ]
+
+
+def _chapter_4() -> list[Plot]:
+    laws = {
+        "Maxwell": (schematics.maxwell_element(("E", "η")), maxwell(1.0, 1.0)),
+        "Kelvin–Voigt": (schematics.kelvin_voigt_element(("E", "η")), kelvin_voigt(1.0, 1.0)),
+        "Zener": (schematics.zener_element(("E₁", "E₂", "η")), zener(0.5, 0.5, 0.5)),
+    }
+    caption = (
+        "Figure 4.2: models, relaxation under a unit step of strain, creep under a unit step of stress. "
+        "Kelvin–Voigt also gives an impulse at t = 0, not drawn."
+    )
+    return [
+        Plot(
+            "figure_4_1",
+            "Figure 4.1: harmonic loading of an elastic spring and of a Zener element.",
+            figures_theory.stress_strain(Prony(k0=1.0), zener(0.5, 0.3, 1.0), 0.5),
+        ),
+        Plot("figure_4_2", caption, figures_theory.creep_and_relaxation(laws)),
+        Plot(
+            "figure_4_3",
+            "Figure 4.3: a mass on a Zener element.",
+            schematics.draw([("", schematics.sdof(schematics.zener_element()))], height=300),
+        ),
+    ]
+
+
+def _chapter_5(jacket: _Jacket, record: Record) -> list[Plot]:
+    structure = jacket.assembly.structure
+    staged = [
+        ("(a) jacket", assemble(only_parts(structure, ("jacket",)))),
+        ("(b) with transition piece", assemble(only_parts(structure, ("jacket", "transition_piece")))),
+        ("(c) full", jacket.assembly),
+    ]
+    shapes = [_pinned_shape(jacket, mode) for mode in range(1, 6)]
+    smeared = "Marine growth and water in flooded members (figure 5.7) are smeared into the jacket's density."
+    return [
+        Plot(
+            "figure_5_1",
+            "Figure 5.1: the parts of the structure.",
+            elevation([("", jacket.assembly)], notes=True),
+        ),
+        Plot(
+            "figure_5_2",
+            "Figure 5.2: springs and dashpots along a pile.",
+            schematics.draw([("", schematics.pile_springs())], height=520),
+        ),
+        Plot(
+            "figure_5_3",
+            "Figure 5.3: modes 1, 2 and 4 on pinned feet.",
+            mode_shapes_3d(jacket.assembly, [shapes[i] for i in (0, 1, 3)]),
+        ),
+        _figure_5_4(jacket),
+        Plot(
+            "figure_5_5",
+            f"Figure 5.5: acceleration of the tower top, record {record.name}.",
+            _pair(record, "top"),
+        ),
+        Plot(
+            "figure_5_6", "Figures 5.6, 5.8 and 5.10: the three stages of the refinement.", elevation(staged)
+        ),
+        Plot(
+            "figure_5_9_density",
+            f"Figures 5.7 and 5.9 (a): density by member. {smeared}",
+            structure_3d(jacket.assembly, colour="density"),
+        ),
+        Plot(
+            "figure_5_9_modulus",
+            "Figure 5.9 (b): modulus of elasticity by member.",
+            structure_3d(jacket.assembly, colour="Young's modulus"),
+        ),
+        Plot(
+            "figure_5_11",
+            "Figures 5.11 and 5.12: the first five modes on pinned feet.",
+            mode_shapes_3d(jacket.assembly, shapes),
+        ),
+    ]
+
+
+def _pinned_shape(jacket: _Jacket, mode: int) -> Shape:
+    label = jacket.labels[mode - 1]
+    text = (
+        f"<b>mode {mode}</b>, {words(label)}<br>{frequency(float(jacket.pinned.frequency_hz[mode - 1]))} Hz"
+    )
+    return Shape(text, label, jacket.pinned.shapes[:, mode - 1].astype(np.complex128))
+
+
+def _figure_5_4(jacket: _Jacket) -> Plot:
+    """Release the tower top from a pull along x on the Kelvin–Voigt feet of point 1."""
+    model = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=jacket.steel)
+    pencil = model.reduced.pencil.with_laws(model.laws(np.array(_KV_1)))
+    top = jacket.assembly.dofs(jacket.assembly.structure.top_node)[0]
+    row = model.reduced.basis[top]
+    pulled = np.linalg.solve(pencil.static_stiffness(), 1e6 * row)
+    step_s, n = 0.1, 3000
+    motion = free_decay(pencil, pulled, step_s=step_s, n_steps=n) @ row
+    pole = model.predict(np.array(_KV_1), (2,)).poles[0]
+    figure = figures_theory.free_decay(
+        np.linspace(0.0, step_s * n, n + 1),
+        motion,
+        frequency_hz=abs(pole) / (2.0 * np.pi),
+        damping_ratio=-pole.real / abs(pole),
+    )
+    caption = (
+        "Figure 5.4: free decay of the tower top after a pull of 1 MN along x, on Kelvin–Voigt feet "
+        f"(k {scientific(_KV_1[0])} N/m, c {scientific(_KV_1[1])} N·s/m)."
+    )
+    return Plot("figure_5_4", caption, figure)
+
+
+def _pair(record: Record, place: str) -> go.Figure:
+    return figures_record.time_series(record, channels=[f"acc_{place}_x", f"acc_{place}_y"])
+
+
+def _chapter_6(found: Identification, names: list[str]) -> list[Plot]:
+    source = f"record {found.records[0]} (OpenFAST)"
+    return [
+        Plot(
+            "figure_6_1",
+            f"Figure 6.1: stabilisation in frequency, {source}.",
+            figures_identification.stabilisation(found, names),
+        ),
+        Plot(
+            "figure_6_2",
+            f"Figure 6.2: damping against frequency, {source}.",
+            figures_identification.damping_against_frequency(found, names),
+        ),
+    ]
+
+
+def _paired_names(jacket: _Jacket, found: Identification) -> list[str]:
+    """Return the label of the pinned mode nearest in shape and within 15 % in frequency."""
+    sensors = tuple(Sensor(c.name, c.direction, node=c.node, height_m=c.height_m) for c in found.channels)
+    H = observation_matrix(jacket.assembly, sensors) @ jacket.pinned.shapes
+    names = [""] * len(found.modes)
+    for j, f in enumerate(jacket.pinned.frequency_hz):
+        near = [i for i, m in enumerate(found.modes) if abs(m.frequency_hz / f - 1.0) < 0.15 and not names[i]]
+        best = max(near, key=lambda i: float(mac(found.modes[i].mode_shape, H[:, j])), default=None)
+        if best is not None and float(mac(found.modes[best].mode_shape, H[:, j])) > 0.5:
+            names[best] = jacket.labels[j]
+    return names
+
+
+def _figure_7_1(jacket: _Jacket) -> Plot:
+    lower = assemble(only_parts(jacket.assembly.structure, ("jacket", "transition_piece")))
+    drawings = [
+        ("(a) Kelvin–Voigt", schematics.on_supports(lower, schematics.kelvin_voigt_element())),
+        ("(b) Zener", schematics.on_supports(lower, schematics.zener_element())),
+    ]
+    caption = "Figure 7.1: the structure on viscoelastic feet; a third element acts across the plane."
+    return Plot("figure_7_1", caption, schematics.draw(drawings, height=760))
+
+
+def _chapter_8(jacket: _Jacket) -> list[Plot]:
+    kv = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=jacket.steel)
+    plots = [_figure_8_1(jacket), *_surfaces(kv)]
+    bare_kv = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=Rayleigh())
+    plots += [
+        _locus(bare_kv, theta, f"figure_8_4_{x}", f"Figure 8.4 ({x})")
+        for x, theta in (("a", _KV_1), ("b", _KV_2))
+    ]
+    zener_model = support_model(jacket.assembly, family=family("zener"), rayleigh=jacket.steel)
+    plots += [
+        _sensitivity(zener_model, theta, name) for name, theta in (("8.5", _ZENER_1), ("8.6", _ZENER_2))
+    ]
+    bare = support_model(jacket.assembly, family=family("zener"), rayleigh=Rayleigh())
+    plots += [
+        _locus(bare, theta, f"figure_8_7_{x}", f"Figure 8.7 ({x})")
+        for x, theta in (("a", _ZENER_1), ("b", _ZENER_2))
+    ]
+    return plots
+
+
+def _figure_8_1(jacket: _Jacket) -> Plot:
+    model = support_model(jacket.assembly, family=family("zener"), rayleigh=Rayleigh())
+    k0, k1 = supports.FIGURE_8_1_K0, supports.FIGURE_8_1_K1
+    c = np.geomspace(1e4, 1e14, 121)
+    f1 = [abs(model.predict(np.array([k0, value, k1]), (1,)).poles[0]) / (2.0 * np.pi) for value in c]
+    limits = tuple(_elastic_f1(jacket.assembly, k) for k in (k0, k0 + k1))
+    figure = figures_landscape.frequency_against_parameter(
+        c, np.array(f1), (limits[0], limits[1]), parameter="c", unit="N·s/m"
+    )
+    caption = f"Figure 8.1: f₁ of the Zener model against c; k₀ {scientific(k0)}, k₁ {scientific(k1)} N/m."
+    return Plot("figure_8_1", caption, figure)
+
+
+def _elastic_f1(assembly: Assembly, k: float) -> float:
+    support = on_translations(assembly.structure, Prony(k0=k))
+    return float(undamped_modes(build_system(assembly, support), 1).frequency_hz[0])
+
+
+def _surfaces(model: SupportModel) -> list[Plot]:
+    residuals = supports.table_6_1()
+    result = supports.fitted(model, residuals)
+    k, c = _KV_1
+    solutions = [
+        (
+            f"solution {i + 1}{', locked damper' if s.locked_damper else ''}",
+            float(s.theta[0]),
+            float(s.theta[1]),
+        )
+        for i, s in enumerate(result.solutions[:4])
+    ]
+    points = [("thesis, point 1", k, c), ("thesis, point 2: damper nearly locked", *_KV_2), *solutions]
+    names, units = ("k", "c"), ("N/m", "N·s/m")
+    x, y, wide = explore.surface(result, n=48)
+    zoom_x, zoom_y = np.geomspace(0.5 * k, 2.0 * k, 36), np.geomspace(0.5 * c, 2.0 * c, 36)
+    close = cost_surface(model, residuals, np.array(_KV_1), (0, 1), zoom_x, zoom_y)
+    near = [p for p in points if 0.5 * k < p[1] < 2.0 * k and 0.5 * c < p[2] < 2.0 * c]
+    return [
+        Plot(
+            "figure_8_2",
+            "Figure 8.2: cost of the Kelvin–Voigt model over its bounds, targets of Table 6.1.",
+            figures_landscape.cost_surface(x, y, wide, names=names, units=units, points=points),
+        ),
+        Plot(
+            "figure_8_3",
+            "Figure 8.3: close-up of point 1.",
+            figures_landscape.cost_surface(zoom_x, zoom_y, close, names=names, units=units, points=near),
+        ),
+    ]
+
+
+def _locus(model: SupportModel, theta: tuple[float, ...], name: str, title: str) -> Plot:
+    path = explore.locus(model, np.array(theta), (1,), ("side_side_1",))
+    values = ", ".join(f"{p.name} {scientific(v)}" for p, v in zip(model.parameters, theta, strict=True))
+    caption = (
+        f"{title}: root locus of mode 1 as c varies, {model.family.name}, {values}; the steel is undamped."
+    )
+    return Plot(name, caption, figures_landscape.root_locus(path))
+
+
+def _sensitivity(model: SupportModel, theta: tuple[float, ...], number: str) -> Plot:
+    curves = explore.sensitivities(model, supports.table_6_1(), np.array(theta))
+    values = ", ".join(f"{p.name} {scientific(v)}" for p, v in zip(model.parameters, theta, strict=True))
+    caption = f"Figure {number}: cost as one parameter moves by ±50 %, Zener at {values}."
+    return Plot(f"figure_{number.replace('.', '_')}", caption, figures_landscape.sensitivity(curves))
+
+
+def _chapter_11(record: Record, found: Identification, names: list[str]) -> list[Plot]:
+    close = figures_identification.stabilisation(found, names, band=(0.15, 0.21))
+    places = (("2", "g77", "77 m"), ("3", "g41", "41 m"), ("4", "tp", "the transition piece"))
+    return [
+        Plot(
+            "figure_11_1", "Figure 11.1: stabilisation in frequency, close-up of the first two modes.", close
+        ),
+        *(
+            Plot(
+                f"figure_11_{number}", f"Figure 11.{number}: accelerations at {where}.", _pair(record, place)
+            )
+            for number, place, where in places
+        ),
+    ]
