@@ -37,23 +37,23 @@ def test_peak_factor_of_the_standard() -> None:
 
 
 def test_random_seas_have_the_variance_and_spectrum_asked_for() -> None:
-    """Sampling error: 24 records of 1800 s at Tp 8 s leave 1 % in Hs, 10 % in a band of 20 lines."""
-    t = np.arange(0.0, 1800.0, 0.5)
+    """Sampling error: 12 records of 1800 s at Tp 8 s."""
+    t = np.arange(0.0, 1800.0, 0.9)  # Nyquist 0.56 Hz, above the cut-off 0.5 Hz
     origin = np.zeros((1, 3))
     periodogram = 0.0
     variances = []
-    for seed in range(24):
+    for seed in range(12):
         sea = irregular_sea(Hs=4.0, Tp=8.0, depth=70.0, duration=1800.0, seed=seed, gamma=3.3)
         eta = sea.elevation(origin, t)[:, 0]
         variances.append(eta.var())
-        periodogram = periodogram + np.abs(np.fft.rfft(eta)) ** 2 * 2.0 * 0.5 / t.size / 24.0
-    standard_error = np.std(variances) / np.sqrt(24) / np.mean(variances)
+        periodogram = periodogram + np.abs(np.fft.rfft(eta)) ** 2 * 2.0 * 0.9 / t.size / 12.0
+    standard_error = np.std(variances) / np.sqrt(12) / np.mean(variances)
     assert abs(np.mean(variances) - 1.0) < 3.5 * standard_error + 0.01
-    f = np.fft.rfftfreq(t.size, 0.5)
+    f = np.fft.rfftfreq(t.size, 0.9)
     band = np.abs(f - 0.125) < 0.02
     expected = jonswap(f[band], Hs=4.0, Tp=8.0, gamma=3.3).mean()
-    # a periodogram's CoV is 1: 24 records × 72 lines give 2.4 %
-    assert periodogram[band].mean() == pytest.approx(expected, rel=4 * 0.024)
+    # a periodogram's CoV is 1: 12 records × 72 lines give 3.4 %
+    assert periodogram[band].mean() == pytest.approx(expected, rel=4 * 0.034)
 
 
 def test_seeds_repeat_and_differ() -> None:

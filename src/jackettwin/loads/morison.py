@@ -85,12 +85,15 @@ class MorisonPoints:
 def morison_points(
     assembly: Assembly,
     *,
-    highest_z: float,
+    highest_z: float = np.inf,
+    lowest_z: float = -np.inf,
     coefficients: Coefficients | None = None,
     spacing: float = 2.0,
     exclude_parts: tuple[str, ...] = ("piles",),
 ) -> MorisonPoints:
-    """Return the Gauss points of all members below ``highest_z`` [m above still water].
+    """Return the Gauss points of the members that reach below ``highest_z`` and above ``lowest_z``.
+
+    Heights [m] from still water.
 
     Each element is cut into pieces no longer than ``spacing`` [m], each with two Gauss points.
     """
@@ -104,7 +107,7 @@ def morison_points(
     dofs = mesh.element_dofs()
     for e, (a, b) in enumerate(zip(mesh.coordinates[mesh.start], mesh.coordinates[mesh.end], strict=True)):
         a, b = a - sea, b - sea
-        if parts[e] in exclude_parts or min(a[2], b[2]) > highest_z:
+        if parts[e] in exclude_parts or min(a[2], b[2]) > highest_z or max(a[2], b[2]) < lowest_z:
             continue
         L, R = float(mesh.properties.L[e]), mesh.axes[e]
         xi, w = _gauss(L, spacing)
@@ -116,7 +119,11 @@ def morison_points(
         half = np.full(xi.size, 0.25 * abs(b[2] - a[2]) / (xi.size / 2))
         kept.append((w, a + xi[:, None] * (b - a), half, np.full(xi.size, outer[e]), _normal(R[0], xi.size)))
     if not kept:
-        raise InputError("no member reaches into the water", field="sea_level_z_m", value=float(sea[2]))
+        raise InputError(
+            "no member reaches into the water or the heights asked for",
+            field="sea_level_z_m",
+            value=float(sea[2]),
+        )
     weight, points, half, D, normal = (np.concatenate(column) for column in zip(*kept, strict=True))
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
     full = sp.coo_array(entries, shape=(mesh.n_dof, 3 * weight.size)).tocsr()
@@ -204,7 +211,8 @@ def added_mass(grid: MorisonPoints, *, eta: float = 0.0) -> sp.csr_array:
     """Return the hydrodynamic added mass ρ(C_M − 1)πD²/4 of the wet length, (n_dof, n_dof)."""
     c = grid.coefficients
     per_length = c.density_kg_m3 * (c.inertia - 1.0) * 0.25 * np.pi * grid.diameter**2
-    return _spread(grid, per_length * wetness(grid, np.full(grid.weight.size, eta)))
+    wet = per_length * wetness(grid, np.full(grid.weight.size, eta))
+    return spread(grid, wet[:, None, None] * grid.normal)
 
 
 def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
@@ -216,12 +224,13 @@ def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
     """
     c = grid.coefficients
     wet = wetness(grid, np.zeros(grid.weight.size))
-    return _spread(grid, 0.5 * c.density_kg_m3 * c.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet)
+    per_length = 0.5 * c.density_kg_m3 * c.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet
+    return spread(grid, per_length[:, None, None] * grid.normal)
 
 
-def _spread(grid: MorisonPoints, per_length: FloatArray) -> sp.csr_array:
-    """Return N P Nᵀ with P = per-length property × length × normal projector, block diagonal."""
-    blocks = (per_length * grid.weight)[:, None, None] * grid.normal
+def spread(grid: MorisonPoints, per_length: FloatArray) -> sp.csr_array:
+    """Return N P Nᵀ on the DOFs from a 3×3 property per metre at each point, ``per_length`` (n, 3, 3)."""
     n = grid.weight.size
+    blocks = per_length * grid.weight[:, None, None]
     P = sp.bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=(3 * n, 3 * n))
     return sp.csr_array(grid.N @ P @ grid.N.T)

@@ -1,0 +1,266 @@
+r"""A rotor as blade elements in the frame of the tower top.
+
+Frame: x downwind along the nacelle, y to the left, z up; origin at the tower top. Positive pitch turns the
+noses into the wind; at 90° the blades are feathered. Quasi-steady aerodynamics: every element sees the wind
+less its own motion (and less the wake's induction, if one is given), and only the flow in its plane counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.loads.blades import Blade
+
+FloatArray = npt.NDArray[np.float64]
+
+AIR_KG_M3 = 1.225
+SHAFTS = ("locked", "free")
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """Blades on a hub: overhang and hub height from the tower top [m], tilt and cone [rad]."""
+
+    blade: Blade
+    n_blades: int
+    hub_radius: float
+    overhang: float
+    hub_height: float
+    tilt: float
+    cone: float
+
+    @property
+    def hub(self) -> FloatArray:
+        """Hub centre (3,) [m]."""
+        return np.array([-self.overhang, 0.0, self.hub_height])
+
+    @property
+    def shaft(self) -> FloatArray:
+        """Unit vector along the shaft, downwind; the rotor turns about it (clockwise seen from upwind)."""
+        return np.array([np.cos(self.tilt), 0.0, -np.sin(self.tilt)])
+
+    @property
+    def radius(self) -> float:
+        """Distance of the tip from the shaft [m]."""
+        z, x = self.hub_radius + self.blade.z[-1], self.blade.prebend[-1]
+        return float(z * np.cos(self.cone) + x * np.sin(self.cone))
+
+
+class Elements(NamedTuple):
+    """Blade elements at azimuth zero, (n_blades, n, 3): arm from the hub, chord and normal directions."""
+
+    arm: FloatArray
+    chordwise: FloatArray
+    normal: FloatArray
+
+
+def elements(rotor: Rotor, pitch: float) -> Elements:
+    """Return the elements of all blades, the first pointing up.
+
+    Prebend turns with the pitch; sections stand normal to the pitch axis.
+    """
+    d = rotor.shaft
+    up = np.array([np.sin(rotor.tilt), 0.0, np.cos(rotor.tilt)])
+    blade = rotor.blade
+    cos_twist, sin_twist = np.cos(blade.twist)[:, None], np.sin(blade.twist)[:, None]
+    parts = []
+    for psi in 2.0 * np.pi * np.arange(rotor.n_blades) / rotor.n_blades:
+        radial = np.cos(psi) * up + np.sin(psi) * np.cross(d, up)
+        z = np.cos(rotor.cone) * radial - np.sin(rotor.cone) * d
+        x0 = np.cos(rotor.cone) * d + np.sin(rotor.cone) * radial
+        y0 = np.cross(z, x0)
+        x, y = np.cos(pitch) * x0 - np.sin(pitch) * y0, np.cos(pitch) * y0 + np.sin(pitch) * x0
+        arm = (rotor.hub_radius + blade.z)[:, None] * z + blade.prebend[:, None] * x
+        parts.append((arm, cos_twist * y + sin_twist * x, cos_twist * x - sin_twist * y))
+    return Elements(*(np.stack(columns) for columns in zip(*parts, strict=True)))
+
+
+def rotation(axis: FloatArray, angle: float) -> FloatArray:
+    """Return the 3×3 rotation by ``angle`` about a unit ``axis``."""
+    S = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * S + (1.0 - np.cos(angle)) * S @ S)
+
+
+def rotor_loads(
+    rotor: Rotor,
+    wind: FloatArray,
+    *,
+    pitch: float,
+    azimuth: float = 0.0,
+    motion: FloatArray | None = None,
+    rotor_speed: float = 0.0,
+    shaft: str = "locked",
+    induced: FloatArray | None = None,
+    density: float = AIR_KG_M3,
+) -> FloatArray:
+    """Return force and moment at the tower top (..., 6) [N, N·m], in the nacelle's frame.
+
+    Parameters
+    ----------
+    wind : (..., 3) or (..., n_blades, n, 3)
+        Wind [m/s] in the nacelle's frame, over the rotor or at every element.
+    pitch, azimuth : float
+        [rad].
+    motion : (..., 6), optional
+        Velocity of the tower top [m/s, rad/s].
+    rotor_speed : float
+        [rad/s].
+    shaft : {"locked", "free"}
+        A free shaft neither turns the rotor with the tower nor passes its torque on.
+    induced : (n, 2), optional
+        Axial and tangential induced velocity at the stations [m/s].
+    """
+    if shaft not in SHAFTS:
+        raise InputError("unknown shaft", field="shaft", value=shaft, allowed=", ".join(SHAFTS))
+    d = rotor.shaft
+    turn = rotation(d, azimuth)
+    arm, chordwise, normal = (part @ turn.T for part in elements(rotor, pitch))
+    relative = (wind if wind.ndim > 2 else wind[..., None, None, :]) - rotor_speed * np.cross(d, arm)
+    if motion is not None:
+        spin = motion[..., 3:]
+        hub = motion[..., :3] + np.cross(spin, rotor.hub)
+        if shaft == "free":
+            spin = spin - (spin @ d)[..., None] * d
+        relative = relative - hub[..., None, None, :] - np.cross(spin[..., None, None, :], arm)
+    if induced is not None:
+        tangent = np.cross(d, arm)
+        tangent = tangent / np.linalg.norm(tangent, axis=-1, keepdims=True)
+        relative = relative - induced[:, :1] * d - induced[:, 1:] * tangent
+    force = _element_forces(rotor.blade, relative, chordwise, normal, density)
+    total = force.sum(axis=(-3, -2))
+    moment = np.cross(arm, force).sum(axis=(-3, -2))
+    if shaft == "free":
+        moment = moment - (moment @ d)[..., None] * d
+    return np.concatenate([total, moment + np.cross(rotor.hub, total)], axis=-1)
+
+
+def _element_forces(
+    blade: Blade, relative: FloatArray, chordwise: FloatArray, normal: FloatArray, density: float
+) -> FloatArray:
+    """Return lift and drag of the elements (..., n_blades, n, 3) [N]."""
+    wc, wn = (relative * chordwise).sum(-1), (relative * normal).sum(-1)
+    cl, cd = blade.coefficients(np.arctan2(wn, wc))
+    speed = np.hypot(wc, wn)
+    scale = 0.5 * density * speed * blade.chord * blade.weight
+    along = scale * (cd * wc - cl * wn)
+    across = scale * (cl * wc + cd * wn)
+    return np.asarray(along[..., None] * chordwise + across[..., None] * normal)
+
+
+class Linearised(NamedTuple):
+    """Mean load (6,) and the matrices it loses with motion: F ≈ load − damping·ẋ − stiffness·x, each 6×6."""
+
+    load: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+
+
+def linearise(
+    rotor: Rotor,
+    wind_speed: float,
+    *,
+    pitch: float,
+    yaw_error: float = 0.0,
+    azimuth: float | None = None,
+    rotor_speed: float = 0.0,
+    shaft: str = "locked",
+    induced: FloatArray | None = None,
+    density: float = AIR_KG_M3,
+) -> Linearised:
+    """Return the rotor about steady uniform wind, at the tower top in the nacelle's frame.
+
+    Parameters
+    ----------
+    yaw_error : float
+        Heading of the wind from the nacelle's x axis [rad].
+    azimuth : float, optional
+        One position of the rotor [rad]; None averages over a blade's share of a turn.
+
+    Notes
+    -----
+    A small rotation of the tower top turns the rotor against the wind and its load with it; that is the
+    stiffness. A uniform wind knows no translation.
+    """
+    wind = wind_speed * np.array([np.cos(yaw_error), np.sin(yaw_error), 0.0])
+    places = 2.0 * np.pi / rotor.n_blades * np.arange(12) / 12 if azimuth is None else np.array([azimuth])
+    h = np.array(
+        [0.05] * 3 + [0.05 / rotor.radius] * 3
+    )  # 0.05 m/s: small against the wind, large against rounding
+    steps = np.concatenate([np.diag(h), -np.diag(h)])
+    load, damping, stiffness = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
+    for psi in places:
+
+        def at(wind: FloatArray, motion: FloatArray, psi: float = float(psi)) -> FloatArray:
+            return rotor_loads(
+                rotor,
+                wind,
+                pitch=pitch,
+                azimuth=psi,
+                motion=motion,
+                rotor_speed=rotor_speed,
+                shaft=shaft,
+                induced=induced,
+                density=density,
+            )
+
+        moved = at(np.broadcast_to(wind, (12, 3)), steps)
+        load += at(wind, np.zeros(6))
+        damping -= (moved[:6] - moved[6:]).T / (2.0 * h)
+        for j in range(3):
+            small = 1e-3
+            for sign in (1.0, -1.0):
+                R = rotation(np.eye(3)[j], sign * small)
+                turned = at(R.T @ wind, np.zeros(6))
+                turned = np.concatenate([R @ turned[:3], R @ turned[3:]])
+                stiffness[:, 3 + j] -= sign * turned / (2.0 * small)
+    return Linearised(load / places.size, damping / places.size, stiffness / places.size)
+
+
+def parked_closed_form(
+    rotor: Rotor,
+    wind_speed: float,
+    *,
+    pitch: float = 0.5 * np.pi,
+    shaft: str = "locked",
+    density: float = AIR_KG_M3,
+) -> FloatArray:
+    """Return the damping matrix (6×6) at the tower top of a feathered rotor in closed form.
+
+    Flow along the feathered chords, blades straight in a vertical plane, azimuth-averaged; per unit length
+    c_dd = ρVcC_d along the flow and c_ll = ½ρVc(C_l′ + C_d) across it. At the hub
+
+    C_xx = B ρV∫cC_d dr, C_yy = C_zz = ¼Bρ V∫c(C_l′ + C_d)dr, C_φφ = ½BρV∫c(C_l′ + C_d)r²dr (locked shaft)
+
+    with B blades.
+    """
+    blade, B = rotor.blade, rotor.n_blades
+    alpha = 0.5 * np.pi - pitch - blade.twist
+    cd = blade.coefficients(alpha)[1]
+    lift = blade.lift_slope(alpha) + cd
+    dr = density * wind_speed * blade.chord * blade.weight
+    r = rotor.hub_radius + blade.z
+    drag, across = B * (dr @ cd), 0.25 * B * (dr @ lift)
+    C = np.diag([drag, across, across, 0.0, 0.0, 0.0])
+    if shaft == "locked":
+        C[3, 3] = 0.5 * B * (dr @ (lift * r**2))
+    x, _, z = rotor.hub
+    # velocity of the hub from that of the tower top
+    T = np.eye(6)
+    T[:3, 3:] = [[0.0, z, 0.0], [-z, 0.0, x], [0.0, -x, 0.0]]
+    return np.asarray(T.T @ C @ T)
+
+
+def added_damping_ratio(damping: FloatArray, shape: FloatArray, *, modal_mass: float, omega: float) -> float:
+    """Return ζ = φᵀCφ/(2Mω): what damping at the tower top adds to a mode with shape φ (6,) there."""
+    return float(shape @ damping @ shape / (2.0 * modal_mass * omega))
+
+
+def in_global_axes(matrix: FloatArray, yaw: float) -> FloatArray:
+    """Return R C Rᵀ: a 6×6 matrix of a nacelle turned by ``yaw`` [rad] about z."""
+    R = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), yaw))
+    return np.asarray(R @ matrix @ R.T)
