@@ -49,7 +49,7 @@ def locus(
     def poles_at(values: FloatArray) -> ComplexArray:
         moved = np.tile(np.reshape(theta, (-1, width)), (values.size, 1, 1))
         moved[:, :, _LOSSY] = values[:, None]
-        return np.array([model.predict(each.ravel(), modes).poles for each in moved])
+        return model.predict_many(moved.reshape(values.size, -1), modes).poles
 
     values = np.geomspace(p.low, p.high, n)
     poles = poles_at(values)

@@ -196,9 +196,9 @@ def _pinned_shape(jacket: _Jacket, mode: int) -> Shape:
 def _figure_5_4(jacket: _Jacket) -> Plot:
     """Release the tower top from a pull along x on the Kelvin–Voigt feet of point 1."""
     model = support_model(jacket.assembly, family=family("kelvin-voigt"), rayleigh=jacket.steel)
-    pencil = model.reduced.pencil.with_laws(model.laws(np.array(_KV_1)))
+    pencil = model.condensed.pencil.with_laws(model.laws(np.array(_KV_1)))
     top = jacket.assembly.dofs(jacket.assembly.structure.top_node)[0]
-    row = model.reduced.basis[top]
+    row = model.condensed.basis[top]
     pulled = np.linalg.solve(pencil.static_stiffness(), 1e6 * row)
     step_s, n = 0.1, 3000
     motion = free_decay(pencil, pulled, step_s=step_s, n_steps=n) @ row
