@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from jackettwin.report import Plot, Section, build_gallery, explore
 from jackettwin.report.gallery import STEPS, thesis_figures
 from jackettwin.twin import TwinResult
+from jackettwin.updating import Parameter
 
 LISTED = (
     [f"3_{i}" for i in (1, 2, 3)]
@@ -73,3 +75,12 @@ def test_root_locus_is_refined_where_poles_move(targets_only: TwinResult) -> Non
     assert abs(path.poles[0, 0]) / (2.0 * np.pi) == pytest.approx(undamped, rel=1e-4)
     steps = np.abs(np.diff(path.poles[:, 0])) / np.abs(path.poles[:, 0] - path.poles[0, 0]).max()
     assert steps.max() < 0.1
+
+
+def test_root_locus_needs_no_refinement_when_nothing_moves(targets_only: TwinResult) -> None:
+    """A soft dashpot on stiff springs: between its bounds the poles all but stand still."""
+    update = targets_only.updates[0]
+    model = replace(update.model, parameters=(update.model.parameters[0], Parameter("c", 1.0, 1.01, "N·s/m")))
+    path = explore.locus(model, update.best.theta, (1,), ("side_side_1",), n=41)
+    assert path.values.size == 41
+    assert np.isfinite(path.poles).all()

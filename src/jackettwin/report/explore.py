@@ -55,6 +55,8 @@ def locus(
     poles = poles_at(values)
     for _ in range(_REFINEMENTS):
         wide = np.flatnonzero(_strides(poles) > _STRIDE)
+        if wide.size == 0:
+            break
         between = np.sqrt(values[wide] * values[wide + 1])
         order = np.argsort(np.concatenate([values, between]), kind="stable")
         poles = np.concatenate([poles, poles_at(between).reshape(-1, len(modes))])[order]
