@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.state import state_matrix
-from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
+from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C, law_stiffness
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 from jackettwin.structure.damping import Rayleigh
 
@@ -183,10 +183,9 @@ def _finite_law(row: FloatArray, model: Condensed, *, exact: bool) -> Prony:
 def _one_branch(row: FloatArray, radius: float) -> Prony:
     """Return spring, dashpot and one branch with its corner in mid band, least squares on D(iω)."""
     omega = radius * np.array([0.1, 0.2, 0.4, 0.8])
-    s, tau = 1j * omega, 2.0 / radius
-    D = row[K0] + row[C] * s + row[K_ALPHA] * (s / row[OMEGA0]) ** row[ALPHA]
-    for k, t in zip(row[BRANCHES::2], row[BRANCHES + 1 :: 2], strict=True):
-        D = D + k * t * s / (1.0 + t * s)
+    s = np.asarray(1j * omega, dtype=np.complex128)
+    tau = 2.0 / radius
+    D = law_stiffness(row[None], s[None])[0]
     A = np.stack([np.ones_like(s), s / radius, tau * s / (1.0 + tau * s)], axis=1) / np.abs(D)[:, None]
     D = D / np.abs(D)
     fit = np.linalg.lstsq(np.vstack([A.real, A.imag]), np.concatenate([D.real, D.imag]))[0]

@@ -14,6 +14,7 @@ from jackettwin.errors import InputError
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 K0, C, K_ALPHA, ALPHA, OMEGA0, BRANCHES = range(6)
 """Places in a row; branches k_1, τ_1, k_2, … follow from BRANCHES on."""
@@ -60,3 +61,19 @@ def static_rows(rows: FloatArray) -> FloatArray:
     springs[..., OMEGA0] = 1.0
     springs[..., K0] = rows[..., K0] + rows[..., K_ALPHA] * np.cos(0.5 * np.pi * rows[..., ALPHA])
     return springs
+
+
+def law_stiffness(rows: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Return D(s) of each row at its own points.
+
+    Parameters
+    ----------
+    rows : (n_laws, width)
+    s : (n_laws, n_points)
+    """
+    k0, c, k_alpha, alpha, omega0 = (rows[:, j, None] for j in range(BRANCHES))
+    D = k0 + c * s + k_alpha * (s / omega0) ** alpha
+    for j in range(BRANCHES, rows.shape[1], 2):
+        k, tau = rows[:, j, None], rows[:, j + 1, None]
+        D = D + k * (tau * s / (1.0 + tau * s))
+    return np.asarray(D)

@@ -14,10 +14,12 @@ from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
+from jackettwin.soil.coefficients import OMEGA0
 from jackettwin.soil.support import Spring, Support, pinned
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
+from jackettwin.updating.extras import Extras
 from jackettwin.updating.families import Family, Parameter
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,6 +65,8 @@ class SupportModel:
         Where storage stiffness and loss factor are stated: the first pinned frequency.
     highest_mode : int
         The last numbered mode inside the condensed model's band.
+    extras : Extras
+        Free parameters beside those of the law: they follow them in ``parameters``.
     """
 
     assembly: Assembly
@@ -73,23 +77,36 @@ class SupportModel:
     condensed: Condensed
     reference_hz: float
     highest_mode: int
+    extras: Extras = Extras()
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
-        per_group = np.reshape(theta, (len(self.suffixes), -1))
+        per_group = np.reshape(self._split(theta)[0], (len(self.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
+
+    def _split(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the parameters of the laws and the extra ones of one vector or many."""
+        n = len(self.suffixes) * len(self.family.parameters)
+        return theta[..., :n], theta[..., n:]
 
     def points(self, theta: FloatArray) -> Points:
         """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
+        own, extra = self._split(theta)
         n_sets, n_groups, p = len(theta), len(self.suffixes), len(self.family.parameters)
-        pairs = [self.family.row(v, self.reference_hz) for v in np.reshape(theta, (-1, p))]
-        rows = np.array([row for row, _ in pairs]).reshape(n_sets, n_groups, -1)
+        pairs = [self.family.row(v, self.reference_hz) for v in np.reshape(own, (-1, p))]
+        soil = np.array([row for row, _ in pairs]).reshape(n_sets, n_groups, -1)
+        slopes = np.array([slopes for _, slopes in pairs]).reshape(*soil.shape, p)
+        rotor, rotor_slopes = self.extras.rows(extra, soil.shape[2])
+        rows = np.concatenate([soil, rotor], axis=1)
+        rows[..., OMEGA0] = np.where(rows[..., OMEGA0] > 0.0, rows[..., OMEGA0], 1.0)
         jacobian = np.zeros((*rows.shape, theta.shape[1]))
-        own = np.array([slopes for _, slopes in pairs]).reshape(*rows.shape, p)
         for g in range(n_groups):
-            jacobian[:, g, :, g * p : (g + 1) * p] = own[:, g]
-        ab = np.tile([self.rayleigh.alpha, self.rayleigh.beta], (n_sets, 1))
-        return Points(rows, ab, jacobian, np.zeros((n_sets, 2, theta.shape[1])))
+            jacobian[:, g, :, g * p : (g + 1) * p] = slopes[:, g]
+        jacobian[:, n_groups:, :, own.shape[1] :] = rotor_slopes
+        ab, ab_slopes = self.extras.rayleigh_rows(self.rayleigh, extra)
+        by_all = np.zeros((n_sets, 2, theta.shape[1]))
+        by_all[:, :, own.shape[1] :] = ab_slopes
+        return Points(rows, ab, jacobian, by_all)
 
     def predict_many(
         self, theta: FloatArray, modes: tuple[int, ...], *, near: NumberedModes | None = None
@@ -132,7 +149,13 @@ class SupportModel:
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
         springs = _springs(self.assembly, self.suffixes, self.laws(theta))
-        return build_system(self.assembly, Support(springs=springs), rayleigh=self.rayleigh)
+        extra = self._split(theta)[1]
+        return build_system(
+            self.assembly,
+            Support(springs=springs),
+            rayleigh=self.extras.steel(self.rayleigh, extra),
+            dashpots=self.extras.springs(self.assembly.structure.top_node, extra),
+        )
 
     def exact_modes(self, theta: FloatArray, modes: tuple[int, ...]) -> ExactModes:
         """Return numbered modes of the full model, damped and undamped."""
@@ -194,6 +217,7 @@ def support_model(
     tie: str = "all",
     bounds: dict[str, tuple[float, float]] | None = None,
     highest_mode: int = 8,
+    extras: Extras | None = None,
 ) -> SupportModel:
     """Return the model with one law on the three translations of every reaction node.
 
@@ -205,6 +229,8 @@ def support_model(
         Narrower or wider bounds by parameter name (with or without the tie's suffix).
     highest_mode : int
         The last numbered mode that will be asked for.
+    extras : Extras, optional
+        Nacelle dashpots and steel damping to update as well.
 
     Raises
     ------
@@ -215,22 +241,27 @@ def support_model(
         raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
     if not assembly.structure.reactions:
         raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
-    suffixes = _suffixes(assembly, tie)
+    suffixes, extras, bounds = _suffixes(assembly, tie), extras or Extras(), bounds or {}
     parameters = tuple(
-        _bounded(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds or {})
+        _bounded(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds)
         for suffix in suffixes
         for p in family.parameters
-    )
-    _no_unknown_bounds(bounds or {}, family, suffixes)
+    ) + tuple(_bounded(p, p.name, bounds) for p in extras.parameters)
+    _no_unknown_bounds(bounds, family, suffixes, extras)
     # distinct stand-in laws, so that every tie group stays a group of its own
     stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(suffixes))]
     system = build_system(
-        assembly, Support(springs=_springs(assembly, suffixes, stand_ins)), rayleigh=rayleigh
+        assembly,
+        Support(springs=_springs(assembly, suffixes, stand_ins)),
+        rayleigh=rayleigh,
+        dashpots=extras.springs(
+            assembly.structure.top_node, np.array([1e3 + i for i in range(len(extras.dashpots))])
+        ),
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
     condensed = condense(system, below_hz=_ROOM * float(pinned_hz[-1]))
     return SupportModel(
-        assembly, rayleigh, family, parameters, suffixes, condensed, float(pinned_hz[0]), highest_mode
+        assembly, rayleigh, family, parameters, suffixes, condensed, float(pinned_hz[0]), highest_mode, extras
     )
 
 
@@ -257,9 +288,10 @@ def _bounded(p: Parameter, family_name: str, bounds: dict[str, tuple[float, floa
 
 
 def _no_unknown_bounds(
-    bounds: dict[str, tuple[float, float]], family: Family, suffixes: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]], family: Family, suffixes: tuple[str, ...], extras: Extras
 ) -> None:
     known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
+    known |= {p.name for p in extras.parameters}
     for name in bounds:
         if name not in known:
             raise InputError(

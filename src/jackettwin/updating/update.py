@@ -98,9 +98,14 @@ def update(
     )
 
 
-def _log_std(model: SupportModel, residuals: Residuals, theta: FloatArray) -> FloatArray:
-    """Return the standard deviation of ln θ: Gauss–Newton Hessian and a flat prior between the bounds."""
+def log_covariance(model: SupportModel, residuals: Residuals, theta: FloatArray) -> FloatArray:
+    """Return the covariance of ln θ: Gauss–Newton Hessian and a flat prior between the bounds."""
     prediction = model.predict(theta, residuals.modes)
     _, J = residuals.evaluate(prediction.poles, prediction.slopes)
     prior = np.log([p.high / p.low for p in model.parameters]) / np.sqrt(12.0)
-    return np.asarray(np.sqrt(np.diag(np.linalg.inv(J.T @ J + np.diag(prior**-2.0)))))
+    return np.asarray(np.linalg.inv(J.T @ J + np.diag(prior**-2.0)))
+
+
+def _log_std(model: SupportModel, residuals: Residuals, theta: FloatArray) -> FloatArray:
+    """Return the standard deviation of ln θ."""
+    return np.asarray(np.sqrt(np.diag(log_covariance(model, residuals, theta))))

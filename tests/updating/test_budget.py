@@ -1,0 +1,102 @@
+"""Damping from its sources: the first pair of the thesis, and shares that add up."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
+from jackettwin.updating.budget import damping_budget
+from jackettwin.updating.extras import Extras
+from jackettwin.updating.update import log_covariance, update
+
+MODES = (1, 2, 4)
+
+
+@pytest.fixture(scope="module")
+def model(jacket15: Assembly) -> SupportModel:
+    return support_model(
+        jacket15,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.01, 0.1832),
+        extras=Extras(("c_fore_aft", "c_side_side"), rayleigh=True),
+        highest_mode=5,
+    )
+
+
+TRUTH = np.array([3e9, 0.15, 1e4, 1.24e5, 0.0055, 0.183])
+
+
+def test_extra_parameters_follow_those_of_the_law(model: SupportModel) -> None:
+    assert [p.name for p in model.parameters] == [
+        "k", "loss_factor", "c_fore_aft", "c_side_side", "rayleigh_ratio", "rayleigh_frequency_hz",
+    ]  # fmt: skip
+
+
+def test_poles_with_nacelle_dashpots_are_those_of_the_full_model(model: SupportModel) -> None:
+    exact = model.exact_modes(TRUTH, MODES)
+    np.testing.assert_allclose(model.predict(TRUTH, MODES).poles, exact.poles, rtol=1e-8)
+
+
+def test_slopes_by_extra_parameters_are_differences(model: SupportModel) -> None:
+    here = model.predict(TRUTH, MODES)
+    h = 1e-3
+    for j in range(TRUTH.size):
+        step = np.exp(h * (np.arange(TRUTH.size) == j))
+        up, down = (model.predict(TRUTH * factor, MODES, near=here).poles for factor in (step, 1.0 / step))
+        # second order in h
+        np.testing.assert_allclose(here.slopes[:, j], (up - down) / (2 * h), rtol=2e-6, atol=1e-9)
+
+
+def test_the_budget_adds_up_to_the_damping_of_the_full_model(model: SupportModel) -> None:
+    budget = damping_budget(model, TRUTH, MODES)
+    exact = model.exact_modes(TRUTH, MODES)
+    np.testing.assert_allclose(budget.damping_ratio.sum(axis=1), exact.damping_ratio, rtol=1e-8)
+    np.testing.assert_allclose(budget.share.sum(axis=1), 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("source", "without"), [(1, (1, 1e-4)), (2, (3, 1e2))])
+def test_a_source_taken_away_takes_its_share_with_it(
+    model: SupportModel, source: int, without: tuple[int, float]
+) -> None:
+    """To first order in the damping: the budget is what each source adds on its own."""
+    theta = TRUTH.copy()
+    theta[without[0]] = without[1]
+    lost = damping_budget(model, TRUTH, (1,)).damping_ratio[0, source]
+    zeta = [-p.real / abs(p) for t in (TRUTH, theta) for p in model.predict(t, (1,)).poles]
+    assert zeta[0] - zeta[1] == pytest.approx(lost, rel=0.05)
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.0127, 0.059), (0.059, 0.0127)])
+def test_the_first_pair_is_met_in_both_assignments(jacket15: Assembly, first: float, second: float) -> None:
+    """1.27 % and 5.9 % (thesis table 6.1), which no support at the feet can give together."""
+    model = support_model(
+        jacket15,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.183),
+        extras=Extras(("c_fore_aft", "c_side_side")),
+        highest_mode=5,
+    )
+    residuals = Residuals(
+        (
+            Target(1, 0.1819, 0.0008, first, 0.1 * first),
+            Target(2, 0.1838, 0.0008, second, 0.1 * second),
+            Target(4, 0.7362, 0.004),
+        ),
+        relative=False,
+    )
+    fit = update(model, residuals, starts=8)
+    np.testing.assert_allclose(fit.modes.damping_ratio[:2], [first, second], rtol=0.05)
+    np.testing.assert_allclose(fit.modes.frequency_hz, [0.1819, 0.1838, 0.7362], rtol=0.01)
+    cov = log_covariance(model, residuals, fit.best.theta)
+    budget = damping_budget(model, fit.best.theta, (1, 2), log_covariance=cov)
+    assert budget.share_interval_90 is not None
+    strong = int(second > first)
+    assert budget.share[strong, 2] > 0.6
+    low, high = np.moveaxis(budget.share_interval_90, -1, 0)
+    assert (low <= budget.share + 1e-9).all() and (budget.share <= high + 1e-9).all()
+
+
+def test_unknown_dashpot() -> None:
+    with pytest.raises(InputError, match="no such dashpot"):
+        Extras(("c_yaw",))
