@@ -7,18 +7,17 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.modal import damped_modes
 from jackettwin.response.system import build_system
-from jackettwin.soil.impedance import head_impedance, lumped_head, on_pile_heads
+from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil.impedance import head_impedance, lumped_head
 from jackettwin.soil.piles import (
-    CurveOptions,
     Pile,
     dashpots,
     linear_springs,
     linearised,
     pile_curves,
     stations,
-    with_piles,
 )
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
 from jackettwin.soil.pushover import push
@@ -31,7 +30,6 @@ from jackettwin.structure.sections import tube_properties
 PILE = Pile(60.0, Section(2.0, 0.05))
 EI = 2.1e11 * float(tube_properties(np.array(2.0), np.array(0.05)).I)
 BENDING = np.ix_([0, 4], [0, 4])
-DENSE = Sand(40.0, beta=0.56, limit_friction_pa=115e3, bearing_factor=50.0, limit_bearing_pa=12e6)
 
 
 def test_head_in_constant_subgrade() -> None:
@@ -165,30 +163,6 @@ def test_a_pushed_pile_is_in_equilibrium_and_its_secant_springs_agree() -> None:
         push(PILE, curves, np.array([0.0, 0.0, -4e8, 0.0, 0.0, 0.0]))
 
 
-def jacket15_piled(gravity: bool, pile: Pile, springs, law=None, structure=None):
-    structure = read_structure("jacket15") if structure is None else structure
-    piled, support = with_piles(structure, pile, springs, **({"law": law} if law else {}))
-    return build_system(assemble(piled, gravity=gravity), support)
-
-
-def test_jacket15_on_piles_meets_table_5_1() -> None:
-    """Piles 60 m, D 3.2 m, t 100 mm; 10 m of till (200 kPa) over very dense sand; RP 2A t-z.
-
-    Initial stiffness, no P-Δ. Thesis table 5.1: modes 1–2 within 0.5 %, 3 within 5 %, 4–5 within 4 %.
-    """
-    profile = SoilProfile(
-        (Layer(10.0, 10e3, Clay(200e3, 200e3, 0.005, stiff=True)), Layer(50.0, 10e3, DENSE))
-    )
-    pile = Pile(60.0, Section(3.2, 0.1))
-    springs = linearised(pile_curves(pile, profile, CurveOptions(sand_tz="rp2a")))
-    modes = undamped_modes(jacket15_piled(False, pile, springs), 5)
-    error = np.abs(modes.frequency_hz / [0.183, 0.186, 0.595, 0.760, 0.805] - 1.0)
-    assert (error < [0.005, 0.005, 0.05, 0.04, 0.04]).all()
-    # table 6.1 (identified): f1, f2, f4 within 1.5 %, P-Δ off
-    measured = np.abs(modes.frequency_hz[[0, 1, 3]] / [0.1819, 0.1838, 0.7362] - 1.0)
-    assert (measured < 0.015).all()
-
-
 def test_the_pile_asset_of_the_openfast_records() -> None:
     """Records README: soil's share of ζ without wind 0.016 % and 0.33/0.40 %, frequencies of the JSON.
 
@@ -212,14 +186,10 @@ def test_the_pile_asset_of_the_openfast_records() -> None:
             0.0,
         ),
     )
-    pile = Pile(60.0, Section(2.8, 0.06))
-    springs = linear_springs(
-        pile, lateral=lambda z: 4.0e7 * z, axial=lambda z: 1.6e8 + 0.0 * z, tip_n_m=4.0e8
-    )
-    law = dashpots(0.02, 2.0 * np.pi * 0.183)
+    foundation = read_foundation("jacket15_records")
     structure = read_structure("jacket15").with_masses((rna,))
-    system = jacket15_piled(True, pile, springs, law, structure)
-    modes = damped_modes(system, below_hz=0.8)
+    piled, support = foundation.piled(structure)
+    modes = damped_modes(build_system(assemble(piled, gravity=True), support), below_hz=0.8)
     truth = {mode["label"]: mode["frequency_hz"] for mode in meta["true_modes"]}
     wanted = [truth[k] for k in ("side_side_1", "fore_aft_1", "torsion_1", "side_side_2", "fore_aft_2")]
     np.testing.assert_allclose(modes.frequency_hz[:2], wanted[:2], rtol=0.0055)
@@ -227,7 +197,7 @@ def test_the_pile_asset_of_the_openfast_records() -> None:
     np.testing.assert_allclose(modes.damping_ratio[:2], 0.00016, rtol=0.1)  # printed to two digits
     np.testing.assert_allclose(modes.damping_ratio[3:5], [0.0033, 0.0040], rtol=0.15)
     # lumped at the heads it is the same system
-    lumped, support = on_pile_heads(structure, lumped_head(pile, springs, law=law))
+    lumped, support = foundation.lumped(structure)
     again = damped_modes(build_system(assemble(lumped, gravity=True), support), below_hz=0.8)
     np.testing.assert_allclose(again.frequency_hz[:5], modes.frequency_hz[:5], rtol=3e-4)
     np.testing.assert_allclose(again.damping_ratio[:5], modes.damping_ratio[:5], rtol=0.02)

@@ -1,0 +1,220 @@
+"""Pile foundations from YAML: a pile, the ground it stands in, and its damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import resources
+from math import pi
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from jackettwin.errors import InputError
+from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.soil.files import LawSchema
+from jackettwin.soil.impedance import lumped_head, on_pile_heads
+from jackettwin.soil.piles import (
+    CurveOptions,
+    Pile,
+    PileSprings,
+    dashpots,
+    linear_springs,
+    linearised,
+    pile_curves,
+    with_piles,
+)
+from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.scour import Scour
+from jackettwin.soil.support import ELASTIC, Support
+from jackettwin.soil.viscoelastic import Law
+from jackettwin.structure.model import Material, Section, Structure
+
+NotNegative = Annotated[float, Field(ge=0.0)]
+Positive = Annotated[float, Field(gt=0.0)]
+
+
+@dataclass(frozen=True)
+class Foundation:
+    """One pile design for every foot: the pile, its linear springs, and the law of the ground."""
+
+    pile: Pile
+    springs: PileSprings
+    law: Law = ELASTIC
+
+    def piled(self, structure: Structure) -> tuple[Structure, Support]:
+        """Return the structure on its piles, every node of them."""
+        return with_piles(structure, self.pile, self.springs, law=self.law)
+
+    def lumped(self, structure: Structure) -> tuple[Structure, Support]:
+        """Return the structure on pile heads lumped at its feet: as many unknowns as without piles."""
+        return on_pile_heads(structure, lumped_head(self.pile, self.springs, law=self.law))
+
+
+class PileSchema(Schema):
+    """A pile."""
+
+    length_m: Positive
+    outer_diameter_m: Positive
+    thickness_m: Positive
+    youngs_modulus_pa: Positive = 210e9
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
+    density_kg_m3: NotNegative = 7850.0
+    plugged: bool = False
+    element_m: Positive | None = None
+
+    def build(self) -> Pile:
+        """Return the pile."""
+        return Pile(
+            length_m=self.length_m,
+            section=Section(self.outer_diameter_m, self.thickness_m),
+            material=Material.isotropic(
+                youngs_modulus_pa=self.youngs_modulus_pa,
+                poisson_ratio=self.poisson_ratio,
+                density_kg_m3=self.density_kg_m3,
+            ),
+            spacing_m=self.element_m,
+            plugged=self.plugged,
+        )
+
+
+class SandSchema(Schema):
+    """``Sand``."""
+
+    friction_angle_deg: float
+    beta: float = 0.46
+    limit_friction_pa: float = 96e3
+    bearing_factor: float = 40.0
+    limit_bearing_pa: float = 10e6
+    modulus_n_m3: float | None = None
+
+
+class ClaySchema(Schema):
+    """``Clay``; strength at the layer's top and bottom."""
+
+    strength_pa: tuple[float, float]
+    strain_50: float = 0.01
+    J: float = 0.5
+    residual: float = 0.9
+    stiff: bool = False
+
+
+class LayerSchema(Schema):
+    """A layer of sand or clay."""
+
+    thickness_m: Positive
+    effective_weight_n_m3: NotNegative
+    sand: SandSchema | None = None
+    clay: ClaySchema | None = None
+
+    def build(self) -> Layer:
+        """Return the layer."""
+        if (self.sand is None) == (self.clay is None):
+            raise InputError("a layer is either sand or clay", field="sand, clay", remedy="give one of them")
+        if self.clay is not None:
+            top, bottom = self.clay.strength_pa
+            soil: Sand | Clay = Clay(top, bottom, **self.clay.model_dump(exclude={"strength_pa"}))
+        else:
+            assert self.sand is not None
+            soil = Sand(**self.sand.model_dump())
+        return Layer(self.thickness_m, self.effective_weight_n_m3, soil)
+
+
+class LinearSchema(Schema):
+    """Linear ground: k_h = lateral·z, constant k_v, a spring under the tip."""
+
+    lateral_n_m3: NotNegative
+    axial_n_m2: NotNegative
+    tip_n_m: NotNegative = 0.0
+
+
+class ScourSchema(Schema):
+    """``Scour``."""
+
+    general_m: float = 0.0
+    local_m: float = 0.0
+    recovery_diameters: float = 6.0
+
+
+class SoilSchema(Schema):
+    """Layers of soil, or linear ground."""
+
+    layers: list[LayerSchema] | None = Field(default=None, min_length=1)
+    linear: LinearSchema | None = None
+
+
+class CurvesSchema(Schema):
+    """``CurveOptions``."""
+
+    cyclic: bool = False
+    sand_tz: str = "rp2geo"
+    clay_py: str = "table"
+
+
+class DampingSchema(Schema):
+    """Dashpots c = 2ζk/ω1 (thesis eq. (5.4))."""
+
+    ratio: NotNegative
+    frequency_hz: Positive
+
+
+class FoundationSchema(Schema):
+    """A foundation file."""
+
+    pile: PileSchema
+    soil: SoilSchema
+    scour: ScourSchema | None = None
+    curves: CurvesSchema = CurvesSchema()
+    damping: DampingSchema | None = None
+    law: LawSchema | None = None
+
+    def build(self) -> Foundation:
+        """Return the foundation."""
+        if self.damping is not None and self.law is not None:
+            raise InputError("damping is given twice", field="damping, law", remedy="give one of them")
+        law: Law = ELASTIC
+        if self.damping is not None:
+            law = dashpots(self.damping.ratio, 2.0 * pi * self.damping.frequency_hz)
+        elif self.law is not None:
+            law = self.law.build()
+        pile = self.pile.build()
+        return Foundation(pile, self._springs(pile), law)
+
+    def _springs(self, pile: Pile) -> PileSprings:
+        layers, linear = self.soil.layers, self.soil.linear
+        if (layers is None) == (linear is None):
+            raise InputError("the ground is either layers or linear", field="soil", remedy="give one of them")
+        if layers is not None:
+            scour = Scour(**self.scour.model_dump()) if self.scour is not None else Scour()
+            profile = SoilProfile(tuple(layer.build() for layer in layers), scour)
+            return linearised(pile_curves(pile, profile, CurveOptions(**self.curves.model_dump())))
+        assert linear is not None
+        if self.scour is not None:
+            raise InputError(
+                "linear ground knows no scour", field="scour", remedy="describe the ground by layers"
+            )
+        return linear_springs(
+            pile,
+            lateral=lambda z: linear.lateral_n_m3 * z,
+            axial=lambda z: np.full_like(z, linear.axial_n_m2),
+            tip_n_m=linear.tip_n_m,
+        )
+
+
+def read_foundation(name: str | Path) -> Foundation:
+    """Return the foundation of a YAML file, or a shipped one (``jacket15``, ``jacket15_records``).
+
+    Raises
+    ------
+    InputError
+        If the file is missing or says something that cannot be.
+    """
+    path = Path(name)
+    if not path.suffix:
+        path = Path(str(resources.files("jackettwin") / "data" / "foundations" / f"{name}.yaml"))
+    schema = validate(FoundationSchema, read_yaml(path, what="foundation file"), file=path)
+    try:
+        return schema.build()
+    except InputError as error:
+        raise error.at(file=path) from None

@@ -1,0 +1,66 @@
+"""Foundation files: the shipped ones are what they say, bad ones are refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.response.modal import undamped_modes
+from jackettwin.response.system import build_system
+from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil.viscoelastic import loss_factor
+from jackettwin.structure import assemble, read_structure
+
+PILE = "pile: {length_m: 60, outer_diameter_m: 2.8, thickness_m: 0.06}\n"
+SAND = "soil: {layers: [{thickness_m: 60, effective_weight_n_m3: 1e4, sand: {friction_angle_deg: 35}}]}\n"
+
+
+def test_the_shipped_foundation_meets_table_5_1_piled_and_lumped() -> None:
+    foundation = read_foundation("jacket15")
+    for structure, support in (
+        foundation.piled(read_structure("jacket15")),
+        foundation.lumped(read_structure("jacket15")),
+    ):
+        modes = undamped_modes(build_system(assemble(structure), support), 5)
+        error = np.abs(modes.frequency_hz / [0.183, 0.186, 0.595, 0.760, 0.805] - 1.0)
+        assert (error < [0.005, 0.005, 0.05, 0.04, 0.04]).all()
+        # table 6.1 (identified): f1, f2, f4 within 1.5 %, P-Δ off
+        identified = np.abs(modes.frequency_hz[[0, 1, 3]] / [0.1819, 0.1838, 0.7362] - 1.0)
+        assert (identified < 0.015).all()
+
+
+def test_the_records_foundation_has_its_loss_factor() -> None:
+    """η = 2ζ at ω1, thesis eq. (5.3)–(5.4)."""
+    foundation = read_foundation("jacket15_records")
+    assert float(loss_factor(foundation.law, 0.183)) == pytest.approx(0.04)
+    assert foundation.springs.axial.sum() == pytest.approx(1.6e8 * 60.0 + 4.0e8)
+    assert foundation.springs.lateral.sum() == pytest.approx(0.5 * 4.0e7 * 60.0**2)
+
+
+def test_scour_lowers_the_first_frequency(tmp_path: Path) -> None:
+    frequency = []
+    for scour in ("", "scour: {general_m: 4.0}\n"):
+        path = tmp_path / "ground.yaml"
+        path.write_text(PILE + SAND + scour)
+        structure, support = read_foundation(path).lumped(read_structure("jacket15"))
+        frequency.append(undamped_modes(build_system(assemble(structure), support), 1).frequency_hz[0])
+    assert 0.97 < frequency[1] / frequency[0] < 0.999
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (PILE + "soil: {}\n", "either layers or linear"),
+        (PILE.replace("0.06", "2.0") + "soil: {linear: {lateral_n_m3: 1e7, axial_n_m2: 1e8}}\n", "radius"),
+        (PILE + "soil: {linear: {lateral_n_m3: 1e7, axail_n_m2: 1e8}}\n", "axial_n_m2"),
+        (PILE + "soil: {layers: [{thickness_m: 9, effective_weight_n_m3: 1e4}]}\n", "sand or clay"),
+        (PILE + SAND.replace("35", "70"), "friction_angle_deg"),
+    ],
+)
+def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "ground.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=message) as caught:
+        read_foundation(path)
+    assert str(path) in str(caught.value)
