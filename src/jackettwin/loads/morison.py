@@ -23,6 +23,7 @@ from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, beam
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
 
 SEA_WATER_KG_M3 = 1025.0
 
@@ -63,7 +64,9 @@ class MorisonPoints:
     points : (n, 3) z up from still water [m]
     weight : (n,) member length each stands for [m]
     half_height : (n,) half the vertical extent of that length [m]: how sharply it gets wet
-    diameter : (n,) hydrodynamic [m]
+    diameter : (n,) hydrodynamic, growth included [m]
+    tube_diameter, bore : (n,) outer and inner diameter of the steel [m]
+    member : (n,) index into the structure's members
     normal : (n, 3, 3) projector onto the plane normal to the member
     N : (assembly.n_dof, 3n) sparse; nodal loads from point forces, and its transpose point motion from DOFs
     """
@@ -72,6 +75,9 @@ class MorisonPoints:
     weight: FloatArray
     half_height: FloatArray
     diameter: FloatArray
+    tube_diameter: FloatArray
+    bore: FloatArray
+    member: IntArray
     normal: FloatArray
     N: sp.csr_array
     coefficients: Coefficients
@@ -99,37 +105,58 @@ def morison_points(
     """
     coefficients = Coefficients() if coefficients is None else coefficients
     mesh, structure = assembly.mesh, assembly.structure
-    sea = np.array([0.0, 0.0, structure.sea_level_z_m])
-    parts = [structure.members[i].part for i in mesh.member]
-    outer = np.sqrt(0.5 * (mesh.properties.A / np.pi + 4.0 * mesh.properties.I / mesh.properties.A) * 4.0)
-    rows, columns, values = [], [], []
-    kept: list[tuple[FloatArray, ...]] = []
-    dofs = mesh.element_dofs()
-    for e, (a, b) in enumerate(zip(mesh.coordinates[mesh.start], mesh.coordinates[mesh.end], strict=True)):
-        a, b = a - sea, b - sea
-        if parts[e] in exclude_parts or min(a[2], b[2]) > highest_z or max(a[2], b[2]) < lowest_z:
-            continue
-        L, R = float(mesh.properties.L[e]), mesh.axes[e]
-        xi, w = _gauss(L, spacing)
-        shapes = np.array([R.T @ beam.translation_shape(float(at), L) @ np.kron(np.eye(4), R) for at in xi])
-        first = 3 * sum(piece[0].size for piece in kept)
-        rows.append(np.broadcast_to(dofs[e], (3 * xi.size, 12)).ravel())
-        columns.append(np.repeat(first + np.arange(3 * xi.size), 12))
-        values.append(shapes.reshape(-1, 12).ravel())
-        half = np.full(xi.size, 0.25 * abs(b[2] - a[2]) / (xi.size / 2))
-        kept.append((w, a + xi[:, None] * (b - a), half, np.full(xi.size, outer[e]), _normal(R[0], xi.size)))
-    if not kept:
+    ends = mesh.coordinates - [0.0, 0.0, structure.sea_level_z_m]
+    z0, z1 = ends[mesh.start, 2], ends[mesh.end, 2]
+    reaches = (np.minimum(z0, z1) <= highest_z) & (np.maximum(z0, z1) >= lowest_z)
+    wanted = [
+        e for e in np.flatnonzero(reaches) if structure.members[mesh.member[e]].part not in exclude_parts
+    ]
+    if not wanted:
         raise InputError(
             "no member reaches into the water or the heights asked for",
             field="sea_level_z_m",
-            value=float(sea[2]),
+            value=structure.sea_level_z_m,
         )
-    weight, points, half, D, normal = (np.concatenate(column) for column in zip(*kept, strict=True))
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    full = sp.coo_array(entries, shape=(mesh.n_dof, 3 * weight.size)).tocsr()
-    N = sp.csr_array(assembly.expand.T @ full)
-    D = D + 2.0 * coefficients.thickness(points[:, 2])
-    return MorisonPoints(points, weight, half, D, normal, N, coefficients)
+    xi, weight = zip(*(_gauss(float(mesh.properties.L[e]), spacing) for e in wanted), strict=True)
+    element = np.repeat(wanted, [x.size for x in xi])
+    at, length = np.concatenate(xi), np.concatenate(weight)
+    start, end = ends[mesh.start[element]], ends[mesh.end[element]]
+    points = start + at[:, None] * (end - start)
+    outer, bore = _diameters(mesh.properties)
+    axis = mesh.axes[element, 0]
+    return MorisonPoints(
+        points=points,
+        weight=length,
+        half_height=0.5 * length * np.abs(axis[:, 2]),
+        diameter=outer[element] + 2.0 * coefficients.thickness(points[:, 2]),
+        tube_diameter=outer[element],
+        bore=bore[element],
+        member=mesh.member[element],
+        normal=np.eye(3) - axis[:, :, None] * axis[:, None, :],
+        N=_distribution(assembly, element, at),
+        coefficients=coefficients,
+    )
+
+
+def _diameters(p: beam.BeamProperties) -> tuple[FloatArray, FloatArray]:
+    """Return outer and inner diameter from A = π(R² − r²) and 4I/A = R² + r²."""
+    difference, total = p.A / np.pi, 4.0 * p.I / p.A
+    return np.sqrt(2.0 * (total + difference)), np.sqrt(2.0 * np.maximum(total - difference, 0.0))
+
+
+def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.csr_array:
+    """Return N: forces at ``xi`` along elements to loads on the assembly's DOFs."""
+    mesh = assembly.mesh
+    dofs = mesh.element_dofs()[element]
+    L, R = mesh.properties.L[element], mesh.axes[element]
+    local = np.array(
+        [beam.translation_shape(float(x), float(length)) for x, length in zip(xi, L, strict=True)]
+    )
+    ends = np.stack([local[:, :, 3 * k : 3 * k + 3] @ R for k in range(4)], axis=2)
+    shapes = np.einsum("nji,njkl->nikl", R, ends).reshape(-1, 12)
+    rows, columns = np.repeat(dofs, 3, axis=0), np.broadcast_to(np.arange(3 * xi.size)[:, None], shapes.shape)
+    full = sp.coo_array((shapes.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.n_dof, 3 * xi.size))
+    return sp.csr_array(assembly.expand.T @ full.tocsr())
 
 
 def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray]:
@@ -138,10 +165,6 @@ def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray]:
     x, _ = np.polynomial.legendre.leggauss(2)
     xi = ((np.arange(n)[:, None] + 0.5 + 0.5 * x) / n).ravel()
     return xi, np.full(xi.size, 0.5 * L / n)
-
-
-def _normal(axis: FloatArray, n: int) -> FloatArray:
-    return np.broadcast_to(np.eye(3) - np.outer(axis, axis), (n, 3, 3))
 
 
 def wetness(grid: MorisonPoints, eta: FloatArray) -> FloatArray:
