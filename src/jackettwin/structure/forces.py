@@ -1,0 +1,74 @@
+"""Section forces of every element from its ends' displacements, and the stress they make in a tube."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.structure import beam
+from jackettwin.structure.assemble import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class SectionForces(NamedTuple):
+    """Forces at both ends of every element, each (..., n_elements, 2), in the element's local axes.
+
+    Tension positive [N]; shear [N], torsion and bending [N·m] act on the face whose outward normal is local x.
+    """
+
+    axial: FloatArray
+    shear_y: FloatArray
+    shear_z: FloatArray
+    torsion: FloatArray
+    bending_y: FloatArray
+    bending_z: FloatArray
+
+    @property
+    def bending(self) -> FloatArray:
+        """Resultant bending moment [N·m]."""
+        return np.hypot(self.bending_y, self.bending_z)
+
+    @property
+    def shear(self) -> FloatArray:
+        """Resultant shear force [N]."""
+        return np.hypot(self.shear_y, self.shear_z)
+
+
+def section_forces(assembly: Assembly, displacement: FloatArray) -> SectionForces:
+    """Return section forces from displacements of the assembly's DOFs (..., n_dof) [m, rad].
+
+    The forces are those of the elements' stiffness: loads spread along an element (its weight, waves) act at
+    its nodes, so shorter elements sharpen the picture. Geometric stiffness is not included.
+    """
+    mesh = assembly.mesh
+    leading = displacement.shape[:-1]
+    nodal = (assembly.expand @ displacement.reshape(-1, assembly.n_dof).T).T
+    ends = np.asarray(nodal)[:, mesh.element_dofs()].reshape(-1, mesh.start.size, 4, 3)
+    local = np.einsum("eij,tekj->teki", mesh.axes, ends).reshape(-1, mesh.start.size, 12)
+    force = np.einsum("eij,tej->tei", beam.stiffness(mesh.properties), local)
+    force = force.reshape(*leading, mesh.start.size, 2, 6) * np.array([[-1.0], [1.0]])
+    return SectionForces(*np.moveaxis(force, -1, 0))
+
+
+def von_mises_stress(assembly: Assembly, forces: SectionForces) -> FloatArray:
+    """Return the largest von Mises stress [Pa] at both ends of every element, (..., n_elements, 2).
+
+    Thin tubes: σ = |N|/A + M/W on the outer fibre, τ = |T|R/J + 2V/A, both taken at one point, on the safe
+    side: √(σ² + 3τ²).
+    """
+    p = assembly.mesh.properties
+    R = 0.5 * np.sqrt(2.0 * (p.A / np.pi + 4.0 * p.I / p.A))[:, None]
+    A, W, J = p.A[:, None], p.I[:, None] / R, p.J[:, None]
+    sigma = np.abs(forces.axial) / A + forces.bending / W
+    tau = np.abs(forces.torsion) * R / J + 2.0 * forces.shear / A
+    return np.asarray(np.sqrt(sigma**2 + 3.0 * tau**2))
+
+
+def utilisation(
+    stress_pa: FloatArray, *, yield_stress_pa: float = 355e6, partial_factor: float = 1.1
+) -> FloatArray:
+    """Return the share of the design yield stress f_y/γ that is used: no check of buckling or joints."""
+    return np.asarray(stress_pa * partial_factor / yield_stress_pa)

@@ -1,0 +1,73 @@
+"""Section forces against statics of a cantilever and the balance of the reference jacket."""
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as spla
+
+from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.structure.forces import section_forces, utilisation, von_mises_stress
+from jackettwin.structure.model import STEEL, Member, Reaction
+
+L, D, T = 10.0, 1.0, 0.03
+
+
+def static(assembly, load: np.ndarray, held: np.ndarray) -> np.ndarray:
+    free = np.setdiff1d(np.arange(assembly.n_dof), held)
+    u = np.zeros(assembly.n_dof)
+    u[free] = spla.spsolve(assembly.stiffness[free][:, free].tocsc(), load[free])
+    return u
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.6, 0.48, 0.64)])
+def test_cantilever_under_a_tip_load(direction: tuple[float, float, float]) -> None:
+    """N, V, T constant; M = V (L − x), whichever way the cantilever points."""
+    tube = Section(D, T)
+    tip = tuple(float(L * c) for c in direction)
+    structure = Structure(
+        "c",
+        {"a": (0.0, 0.0, 0.0), "b": tip},
+        (Member("m", "a", "b", tube, tube, STEEL),),
+        reactions=(Reaction("a"),),
+    )
+    assembly = assemble(structure, subdivide=4)
+    axis, across, twist = np.array(direction), assembly.mesh.axes[0, 1], 3e5
+    load = np.zeros(assembly.n_dof)
+    load[assembly.dofs("b")] = np.concatenate([2e6 * axis + 1e5 * across, twist * axis])
+    forces = section_forces(assembly, static(assembly, load, assembly.dofs("a")))
+    np.testing.assert_allclose(forces.axial, 2e6, rtol=1e-6)
+    np.testing.assert_allclose(forces.shear, 1e5, rtol=1e-6)
+    np.testing.assert_allclose(forces.torsion, twist, rtol=1e-6)
+    x = np.array([[i, i + 1] for i in range(4)]) * L / 4
+    np.testing.assert_allclose(forces.bending, 1e5 * (L - x), rtol=1e-6, atol=1.0)
+    A, I = (np.pi / 4 * (D**2 - (D - 2 * T) ** 2), np.pi / 64 * (D**4 - (D - 2 * T) ** 4))  # noqa: E741
+    sigma, tau = 2e6 / A + 1e5 * L * D / 2 / I, twist * D / 2 / (2 * I) + 2e5 / A
+    stress = von_mises_stress(assembly, forces)
+    assert stress[0, 0] == pytest.approx(np.sqrt(sigma**2 + 3 * tau**2), rel=1e-6)
+    assert utilisation(stress)[0, 0] == pytest.approx(stress[0, 0] * 1.1 / 355e6)
+
+
+def test_legs_and_braces_of_the_jacket_carry_its_weight() -> None:
+    """Vertical components of the member forces at the feet balance the load above."""
+    structure = read_structure("jacket15")
+    assembly = assemble(structure)
+    load = np.asarray(assembly.mass @ np.tile([0, 0, -9.80665, 0, 0, 0], assembly.n_dof // 6))
+    held = np.concatenate([assembly.dofs(foot)[:3] for foot in structure.reaction_nodes])
+    forces = section_forces(assembly, static(assembly, load, held))
+    mesh = assembly.mesh
+    vertical = 0.0
+    feet = [mesh.node_names.index(foot) for foot in structure.reaction_nodes]
+    for side, nodes in ((0, mesh.start), (1, mesh.end)):
+        at = np.isin(nodes, feet)
+        local = np.stack([forces.axial, forces.shear_y, forces.shear_z], axis=-1)[at, side]
+        vertical += (1 - 2 * side) * np.einsum("ei,eij->ej", local, mesh.axes[at])[:, 2].sum()
+    above = load.reshape(-1, 6)[:, 2].sum() - sum(
+        load[assembly.dofs(foot)][2] for foot in structure.reaction_nodes
+    )
+    assert vertical == pytest.approx(above, rel=1e-6)
+
+
+def test_many_displacements_at_once() -> None:
+    assembly = assemble(read_structure("jacket15"))
+    u = np.random.default_rng(0).standard_normal((2, 3, assembly.n_dof))
+    many, one = section_forces(assembly, u), section_forces(assembly, u[1, 2])
+    np.testing.assert_allclose(many.bending_y[1, 2], one.bending_y, rtol=1e-9)
