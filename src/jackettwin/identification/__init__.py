@@ -8,17 +8,21 @@ from jackettwin.identification.estimate import (
     Spectrum,
     Stabilisation,
 )
+from jackettwin.identification.fusion import FusedIdentification, FusedMode, fuse
 from jackettwin.identification.mac import mac
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.ssi_cov import ssi_cov
 
 __all__ = [
+    "FusedIdentification",
+    "FusedMode",
     "Identification",
     "IdentificationSettings",
     "ModalEstimate",
     "Rejected",
     "Spectrum",
     "Stabilisation",
+    "fuse",
     "identify",
     "mac",
     "ssi_cov",

@@ -1,0 +1,270 @@
+r"""One estimate from many records.
+
+Modes are tracked across records by shape and frequency, then averaged on the logarithms of frequency and
+damping, so that ratios are not biased. Weights hold the uncertainty of each record and the scatter
+between records (random effects; DerSimonian & Laird 1986):
+
+.. math:: \ln\hat\theta = \frac{\sum w_r \ln\theta_r}{\sum w_r}, \quad w_r = \frac{1}{s_r^2 + \tau^2}
+
+The variance s_r² of ln ζ is taken at the *fused* damping: an estimate that happens to be high also claims
+to be sharp, and weights taken from each record's own estimate would pull the mean up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.identification.mac import mac, normalised
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.records import Channel
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+FREQUENCY_SCALE = 0.03
+"""Relative change of frequency that counts as much as shapes at right angles."""
+SAME_MODE = 1.0
+"""Largest distance, frequency and shape together, of one mode in two records."""
+FEWEST_SHARE = 0.3
+"""A fused mode must be found in this share of the records."""
+
+
+@dataclass(frozen=True)
+class FusedMode:
+    """A mode followed through several records.
+
+    Attributes
+    ----------
+    frequency_hz, damping_ratio : float
+    frequency_std_hz, damping_ratio_std : float
+        Of the mean.
+    frequency_interval_95, damping_ratio_interval_95 : (low, high)
+    log_covariance : (2, 2)
+        Of (ln f, ln ζ).
+    mode_shape : (n_channels,) complex
+    scatter_frequency, scatter_damping_ratio : float
+        Between-record standard deviations of ln f and ln ζ beyond what the records' own uncertainty
+        explains: wind, tide and temperature show here.
+    records : tuple of int
+        Positions of the records that hold the mode.
+    members : tuple of ModalEstimate
+        The mode in each of these records.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    frequency_std_hz: float
+    damping_ratio_std: float
+    frequency_interval_95: tuple[float, float]
+    damping_ratio_interval_95: tuple[float, float]
+    log_covariance: FloatArray
+    mode_shape: ComplexArray
+    scatter_frequency: float
+    scatter_damping_ratio: float
+    records: tuple[int, ...]
+    members: tuple[ModalEstimate, ...]
+
+
+@dataclass(frozen=True)
+class FusedIdentification:
+    """Modes of many records, sorted by frequency."""
+
+    records: tuple[str, ...]
+    channels: tuple[Channel, ...]
+    modes: tuple[FusedMode, ...]
+    duration_s: float
+    warnings: tuple[str, ...]
+
+
+def fuse(identifications: Sequence[Identification]) -> FusedIdentification:
+    """Fuse the modes of several records of the same channels.
+
+    Raises
+    ------
+    InputError
+        If there is no record, or records share no channel.
+    """
+    if not identifications:
+        raise InputError("nothing to fuse", field="records", allowed="at least one record")
+    names = _common_channels(identifications)
+    first = identifications[0]
+    rows = [_rows(result, names) for result in identifications]
+    tracks = _tracks(identifications, rows)
+    fewest = max(1, round(FEWEST_SHARE * len(identifications)))
+    kept = [track for track in tracks if len(track) >= fewest]
+    modes = [_fused_mode(identifications, rows, track) for track in kept]
+    warnings = []
+    for result in identifications:
+        gone = len(result.channels) - len(names)
+        if gone:
+            warnings.append(f"{result.records[0]}: {gone} channels are not in every record and were left out")
+    return FusedIdentification(
+        records=tuple(name for result in identifications for name in result.records),
+        channels=tuple(first.channels[i] for i in rows[0]),
+        modes=tuple(sorted(modes, key=lambda mode: mode.frequency_hz)),
+        duration_s=float(sum(result.duration_s for result in identifications)),
+        warnings=tuple(warnings),
+    )
+
+
+def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, float, float]:
+    """Return mean, variance of the mean and between-record variance τ² of independent estimates.
+
+    DerSimonian & Laird 1986; the variance of the mean follows Hartung & Knapp 2001, which keeps its
+    coverage with few records and is never taken below the fixed-effects variance.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> mean, variance, between = random_effects(np.array([1.0, 1.2]), np.array([0.02, 0.02]))
+    >>> round(mean, 6), round(variance, 6), round(between, 6)
+    (1.1, 0.01, 0.0)
+    """
+    n = len(values)
+    weight = 1.0 / variances
+    if n == 1:
+        return float(values[0]), float(variances[0]), 0.0
+    mean = weight @ values / weight.sum()
+    excess = weight @ (values - mean) ** 2 - (n - 1)
+    between = max(0.0, float(excess / (weight.sum() - weight @ weight / weight.sum())))
+    weight = 1.0 / (variances + between)
+    mean = weight @ values / weight.sum()
+    fixed = 1.0 / weight.sum()
+    spread = weight @ (values - mean) ** 2 / (n - 1) * fixed
+    return float(mean), float(max(spread, fixed)), between
+
+
+def _common_channels(identifications: Sequence[Identification]) -> list[str]:
+    sets = [{c.name for c in result.channels} for result in identifications]
+    common = set.intersection(*sets)
+    if not common:
+        raise InputError(
+            "records share no channel",
+            field="records",
+            value=[result.records[0] for result in identifications],
+            remedy="fuse records of the same sensors",
+        )
+    return [c.name for c in identifications[0].channels if c.name in common]
+
+
+def _rows(result: Identification, names: list[str]) -> list[int]:
+    order = [c.name for c in result.channels]
+    return [order.index(name) for name in names]
+
+
+def _tracks(identifications: Sequence[Identification], rows: list[list[int]]) -> list[dict[int, int]]:
+    """Return for every track the mode it takes in each record.
+
+    Records join one after the other, the one with most modes first; within a record, the nearest pair of
+    track and mode is joined first, and none twice, so modes that cross keep their shapes.
+    """
+    tracks: list[dict[int, int]] = []
+    order = sorted(range(len(identifications)), key=lambda r: -len(identifications[r].modes))
+    for r in order:
+        found = identifications[r].modes
+        if not found:
+            continue
+        f = np.log([mode.frequency_hz for mode in found])
+        shapes = np.array([mode.mode_shape[rows[r]] for mode in found])
+        free = set(range(len(found)))
+        apart = np.array([_distance(identifications, rows, track, f, shapes) for track in tracks])
+        if len(tracks):
+            for flat in np.argsort(apart, axis=None):
+                t, m = (int(x) for x in np.unravel_index(flat, apart.shape))
+                if apart[t, m] > SAME_MODE:
+                    break
+                if m in free and r not in tracks[t]:
+                    tracks[t][r] = m
+                    free.remove(m)
+        tracks.extend({r: m} for m in sorted(free))
+    return tracks
+
+
+def _distance(
+    identifications: Sequence[Identification],
+    rows: list[list[int]],
+    track: dict[int, int],
+    f: FloatArray,
+    shapes: ComplexArray,
+) -> FloatArray:
+    """Return the distance of every mode of a record from the members of a track, medians over members."""
+    members = [identifications[r].modes[m] for r, m in track.items()]
+    track_f = np.median(np.log([mode.frequency_hz for mode in members]))
+    track_shapes = np.array([mode.mode_shape[rows[r]] for r, mode in zip(track, members, strict=True)])
+    similarity = np.median(mac(shapes, track_shapes), axis=1)
+    return np.asarray(np.abs(f - track_f) / FREQUENCY_SCALE + 1.0 - similarity)
+
+
+def _fused_mode(
+    identifications: Sequence[Identification], rows: list[list[int]], track: dict[int, int]
+) -> FusedMode:
+    order = sorted(track)
+    members = [identifications[r].modes[track[r]] for r in order]
+    log_f = np.log([mode.frequency_hz for mode in members])
+    log_zeta = np.log([mode.damping_ratio for mode in members])
+    duration = np.array([identifications[r].duration_s for r in order])
+    ln_f, var_f, between_f = random_effects(
+        log_f, _variances(members, duration, 0, float(np.median(log_zeta)))
+    )
+    centre = float(np.median(log_zeta))
+    for _ in range(3):
+        var = _variances(members, duration, 1, centre)
+        centre, var_zeta, between_zeta = random_effects(log_zeta, var)
+    covariance = np.diag([var_f, var_zeta])
+    f, zeta = float(np.exp(ln_f)), float(np.exp(centre))
+    std_f, std_zeta = np.sqrt([var_f, var_zeta])
+    shape = _mean_shape([mode.mode_shape[rows[r]] for r, mode in zip(order, members, strict=True)])
+    return FusedMode(
+        frequency_hz=f,
+        damping_ratio=zeta,
+        frequency_std_hz=float(f * std_f),
+        damping_ratio_std=float(zeta * std_zeta),
+        frequency_interval_95=(f * float(np.exp(-1.96 * std_f)), f * float(np.exp(1.96 * std_f))),
+        damping_ratio_interval_95=(
+            zeta * float(np.exp(-1.96 * std_zeta)),
+            zeta * float(np.exp(1.96 * std_zeta)),
+        ),
+        log_covariance=covariance,
+        mode_shape=shape,
+        scatter_frequency=float(np.sqrt(between_f)),
+        scatter_damping_ratio=float(np.sqrt(between_zeta)),
+        records=tuple(order),
+        members=tuple(members),
+    )
+
+
+def _variances(
+    members: Sequence[ModalEstimate], duration_s: FloatArray, which: int, log_zeta: float
+) -> FloatArray:
+    """Return the variance of ln f (0) or ln ζ (1) of each member, were its damping the common one.
+
+    The information limit at the common damping, inflated by the median ratio of claimed variance to limit.
+    """
+    f = np.array([mode.frequency_hz for mode in members])
+    own_zeta = np.array([mode.damping_ratio for mode in members])
+    cycles = 2.0 * np.pi * f * duration_s
+    zeta = np.exp(log_zeta)
+    limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
+    own_limit = own_zeta / cycles if which == 0 else 1.0 / (own_zeta * cycles)
+    claimed = [
+        mode.log_covariance[which, which] / own
+        for mode, own in zip(members, own_limit, strict=True)
+        if mode.log_covariance is not None
+    ]
+    return np.asarray(limit * (np.median(claimed) if claimed else 1.0))
+
+
+def _mean_shape(shapes: list[ComplexArray]) -> ComplexArray:
+    """Return the principal direction of unit shapes, whatever their phase."""
+    unit = np.array([shape / np.linalg.norm(shape) for shape in shapes])
+    _, vectors = np.linalg.eigh(unit.T @ unit.conj())
+    return normalised(np.asarray(vectors[:, -1]))
