@@ -18,6 +18,7 @@ from jackettwin.identification.estimate import (
     ResolvedSettings,
     Stabilisation,
 )
+from jackettwin.identification.harmonics import is_tone
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
@@ -49,6 +50,10 @@ WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
 FEWEST_BLOCKS = 5
 """Fewer blocks give no standard deviation worth printing."""
+TONE_REACH = 6.0
+"""A tone nearer than this many half bandwidths disturbs a mode …"""
+TONE_WIDENING = 2.0
+"""… whose standard deviations are multiplied by this."""
 DEAD = 1e-9
 """A channel is dead when it moves less than this share of its largest value."""
 
@@ -103,7 +108,8 @@ def identify(
     poles = _poles(y, scale, resolved, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, n_orders=len(resolved.orders), scale=scale)
-    modes, rejected, poles = _select(poles, found, settings, record.duration_s)
+    tones = _tones(poles, found, y / scale[:, None], resolved.sample_rate_hz, settings)
+    modes, rejected, poles = _select(poles, found, tones, settings, record.duration_s)
     return Identification(
         records=(record.name,),
         channels=usable.channels,
@@ -228,7 +234,11 @@ def _check_duration(record: Record, low: float, window_s: float) -> None:
 
 
 def _select(
-    poles: Stabilisation, found: list[Cluster], settings: IdentificationSettings, duration_s: float
+    poles: Stabilisation,
+    found: list[Cluster],
+    tones: dict[int, float],
+    settings: IdentificationSettings,
+    duration_s: float,
 ) -> tuple[tuple[ModalEstimate, ...], tuple[Rejected, ...], Stabilisation]:
     """Apply the hard criteria to the clusters; label the poles of those that pass."""
     modes: list[ModalEstimate] = []
@@ -238,13 +248,53 @@ def _select(
         f, zeta = (float(x[cluster.representative]) for x in (poles.frequency_hz, poles.damping_ratio))
         shape = normalised(aligned(poles.mode_shape[cluster.representative]))
         reason = _reason(cluster, float(mpc(shape)), float(mpd_rad(shape)), settings)
+        if cluster.representative in tones:
+            reason = "steady tone: its envelope does not wander as that of a mode"
         if reason is not None:
             rejected.append(Rejected(f, zeta, reason))
             continue
         label[cluster.poles] = len(modes)
         bare = ModalEstimate(f, zeta, shape, float(mpc(shape)), float(mpd_rad(shape)), cluster.order_share)
-        modes.append(_with_uncertainty(bare, poles, cluster, duration_s))
+        mode = _with_uncertainty(bare, poles, cluster, duration_s)
+        modes.append(_beside_tones(mode, list(tones.values())))
     return tuple(modes), tuple(rejected), replace(poles, cluster=label)
+
+
+def _tones(
+    poles: Stabilisation,
+    found: list[Cluster],
+    y: FloatArray,
+    sample_rate_hz: float,
+    settings: IdentificationSettings,
+) -> dict[int, float]:
+    """Return the frequencies of steady tones among the clusters, by representative pole."""
+    candidates = [c.representative for c in found if c.order_share >= settings.min_order_share]
+    return {
+        k: float(poles.frequency_hz[k])
+        for k in candidates
+        if is_tone(y, sample_rate_hz, float(poles.frequency_hz[k]), poles.mode_shape[k])
+    }
+
+
+def _beside_tones(mode: ModalEstimate, tones_hz: list[float]) -> ModalEstimate:
+    """Flag a mode near a tone, and widen what is said of its damping."""
+    reach = TONE_REACH * mode.damping_ratio * mode.frequency_hz
+    near = [f for f in tones_hz if abs(f - mode.frequency_hz) < reach]
+    if not near:
+        return mode
+    mode = replace(mode, status=f"a steady tone at {near[0]:.4g} Hz is too near to trust the damping")
+    if mode.log_covariance is None:
+        return mode
+    covariance = TONE_WIDENING**2 * mode.log_covariance
+    std_f, std_zeta = np.sqrt(np.diag(covariance))
+    return replace(
+        mode,
+        log_covariance=covariance,
+        frequency_std_hz=float(mode.frequency_hz * std_f),
+        damping_ratio_std=float(mode.damping_ratio * std_zeta),
+        frequency_interval_95=_interval(mode.frequency_hz, std_f),
+        damping_ratio_interval_95=_interval(mode.damping_ratio, std_zeta),
+    )
 
 
 def _with_uncertainty(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
 
 from jackettwin.errors import InputError
 from jackettwin.identification.mac import mac, normalised
@@ -164,8 +165,8 @@ def _rows(result: Identification, names: list[str]) -> list[int]:
 def _tracks(identifications: Sequence[Identification], rows: list[list[int]]) -> list[dict[int, int]]:
     """Return for every track the mode it takes in each record.
 
-    Records join one after the other, the one with most modes first; within a record, the nearest pair of
-    track and mode is joined first, and none twice, so modes that cross keep their shapes.
+    Records join one after the other, the one with most modes first. Within a record, modes go to tracks
+    such that the sum of the distances is least, none twice, so that modes that cross keep their shapes.
     """
     tracks: list[dict[int, int]] = []
     order = sorted(range(len(identifications)), key=lambda r: -len(identifications[r].modes))
@@ -176,15 +177,12 @@ def _tracks(identifications: Sequence[Identification], rows: list[list[int]]) ->
         f = np.log([mode.frequency_hz for mode in found])
         shapes = np.array([mode.mode_shape[rows[r]] for mode in found])
         free = set(range(len(found)))
-        apart = np.array([_distance(identifications, rows, track, f, shapes) for track in tracks])
-        if len(tracks):
-            for flat in np.argsort(apart, axis=None):
-                t, m = (int(x) for x in np.unravel_index(flat, apart.shape))
-                if apart[t, m] > SAME_MODE:
-                    break
-                if m in free and r not in tracks[t]:
-                    tracks[t][r] = m
-                    free.remove(m)
+        if tracks:
+            apart = np.array([_distance(identifications, rows, track, f, shapes) for track in tracks])
+            for t, m in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
+                if apart[t, m] < SAME_MODE:
+                    tracks[t][r] = int(m)
+                    free.remove(int(m))
         tracks.extend({r: m} for m in sorted(free))
     return tracks
 

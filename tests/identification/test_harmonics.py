@@ -1,0 +1,39 @@
+"""Tones are never modes, whatever their frequency, and leave the modes where they are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import identify
+from jackettwin.identification.harmonics import envelope_variance
+from jackettwin.identification.synthetic import simulate
+
+RATE = 10.0
+
+
+def test_envelope_of_a_tone_is_steady_and_of_noise_is_exponential(rng):
+    t = np.arange(60_000) / RATE
+    tone = np.sin(2 * np.pi * 0.5 * t)[None]
+    one = np.ones(1, dtype=complex)
+    assert envelope_variance(tone, RATE, 0.5, one) < 0.05
+    noise = rng.standard_normal((1, 60_000))
+    # squared envelope of a Gaussian process: relative variance 1; 120 independent values
+    assert envelope_variance(noise, RATE, 0.5, one) == pytest.approx(1.0, abs=0.5)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.8, 1.5, 2.0, 3.0, 5.1])
+def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
+    record = simulate(tower, rng, sample_rate_hz=RATE)
+    f_tone = ratio * 0.3
+    t = np.arange(record.data.shape[1]) / RATE
+    wave = np.sqrt(2.0) * np.sin(2 * np.pi * f_tone * t + 0.1 * np.arange(8)[:, None])
+    loud = replace(record, data=record.data + record.data.std(axis=1, keepdims=True) * wave)
+    quiet_modes, loud_modes = identify(record).modes, identify(loud).modes
+    assert all(abs(mode.frequency_hz / f_tone - 1.0) > 0.005 for mode in loud_modes)
+    for mode in quiet_modes[:2]:
+        nearest = min(loud_modes, key=lambda other: abs(other.frequency_hz - mode.frequency_hz))
+        # one standard deviation of a ten-minute record
+        assert abs(np.log(nearest.damping_ratio / mode.damping_ratio)) < np.sqrt(mode.log_covariance[1, 1])
