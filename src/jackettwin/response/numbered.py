@@ -65,6 +65,10 @@ class Points:
         ab = np.tile([rayleigh.alpha, rayleigh.beta], (n_sets, 1))
         return cls(rows, ab, np.zeros((n_sets, n_groups, width, 0)), np.zeros((n_sets, 2, 0)))
 
+    def plain(self) -> Points:
+        """Return the same sets without gradients."""
+        return Points(self.rows, self.rayleigh, self.jacobian[..., :0], self.rayleigh_jacobian[..., :0])
+
     def undamped(self) -> Points:
         """Return the same structures without any damping: the static stiffness of every law."""
         rows = static_rows(self.rows)
@@ -155,8 +159,6 @@ def _continue(
     n_sets, n_modes = poles.shape
     starts = np.ascontiguousarray(np.broadcast_to(near.shapes, shapes.shape))
     values: ComplexArray = np.array(np.broadcast_to(near.poles, poles.shape)).reshape(-1)
-    if np.isnan(values).any() or (near.status == Status.UNCERTIFIED).any():
-        return np.zeros(n_sets, dtype=np.bool_)
     vectors = starts.reshape(-1, model.n).copy()
     which = np.repeat(np.arange(n_sets), n_modes)
     done = (
@@ -171,7 +173,7 @@ def _continue(
     new = np.einsum("kmi,kmi->km", x.conj() @ M, x).real
     trusted = done & (cross >= _KIN * own * new) & (found.imag > REAL * np.abs(found))
     trusted &= np.abs(found) <= model.radius
-    good = np.asarray(trusted.all(axis=1))
+    good: BoolArray = np.logical_and(trusted.all(axis=1), near.status != Status.UNCERTIFIED)
     for i in range(n_modes):
         for j in range(i):
             good &= np.abs(found[:, i] - found[:, j]) > SAME * np.abs(found[:, i])

@@ -109,9 +109,14 @@ class SupportModel:
         return Points(rows, ab, jacobian, by_all)
 
     def predict_many(
-        self, theta: FloatArray, modes: tuple[int, ...], *, near: NumberedModes | None = None
+        self,
+        theta: FloatArray,
+        modes: tuple[int, ...],
+        *,
+        near: NumberedModes | None = None,
+        slopes: bool = True,
     ) -> NumberedModes:
-        """Return numbered modes at many parameter vectors (n_sets, n_parameters).
+        """Return numbered modes at many parameter vectors (n_sets, n_parameters), with slopes or without.
 
         Raises
         ------
@@ -126,7 +131,8 @@ class SupportModel:
                 allowed=f"1 to {self.highest_mode}",
                 remedy="build the support model with a higher highest_mode",
             )
-        return numbered_poles(self.condensed, self.points(theta), modes, near=near)
+        points = self.points(theta)
+        return numbered_poles(self.condensed, points if slopes else points.plain(), modes, near=near)
 
     def predict(
         self, theta: FloatArray, modes: tuple[int, ...], *, near: Prediction | None = None

@@ -65,6 +65,51 @@ class Residuals:
         """Number of residuals."""
         return sum(self._used())
 
+    @property
+    def weighted(self) -> bool:
+        """Whether every value has a standard deviation."""
+        return all(
+            std is not None
+            for t in self.targets
+            for value, std in (
+                (t.frequency_hz, t.frequency_std_hz),
+                (t.damping_ratio, t.damping_ratio_std),
+            )
+            if value is not None
+        )
+
+    @property
+    def log_normalisation(self) -> float:
+        """−log of the normal density of zero residuals in the logarithms of the measured values."""
+        scales = [
+            std / value
+            for t in self.targets
+            for value, std in (
+                (t.frequency_hz, t.frequency_std_hz),
+                (t.damping_ratio, t.damping_ratio_std),
+            )
+            if value is not None and std is not None
+        ]
+        return float(np.sum(np.log(np.sqrt(2.0 * np.pi) * np.array(scales))))
+
+    def values(self, poles: ComplexArray) -> FloatArray:
+        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_targets)."""
+        columns = []
+        for target, pole in zip(self.targets, poles.T, strict=True):
+            size = np.abs(pole)
+            if target.frequency_hz is not None:
+                columns.append(
+                    self._value(size / (2.0 * np.pi), target.frequency_hz, target.frequency_std_hz)
+                )
+            if target.damping_ratio is not None:
+                columns.append(self._value(-pole.real / size, target.damping_ratio, target.damping_ratio_std))
+        return np.stack(columns, axis=1)
+
+    def _value(self, model: FloatArray, measured: float, std: float | None) -> FloatArray:
+        if self.relative or std is None:
+            return (model - measured) / measured
+        return np.asarray(np.log(np.maximum(model, 1e-9) / measured) / (std / measured))
+
     def evaluate(self, poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals (count,) and their Jacobian (count, n_parameters).
 
@@ -94,8 +139,7 @@ class Residuals:
     def _residual(
         self, model: float, slope: FloatArray, measured: float, std: float | None
     ) -> tuple[float, FloatArray]:
+        value = float(self._value(np.asarray(model), measured, std))
         if self.relative or std is None:
-            return (model - measured) / measured, slope / measured
-        scale = std / measured  # standard deviation of the logarithm
-        floor = max(model, 1e-9)
-        return float(np.log(floor / measured)) / scale, slope / floor / scale
+            return value, slope / measured
+        return value, slope / max(model, 1e-9) * (measured / std)

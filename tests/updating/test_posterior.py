@@ -1,0 +1,90 @@
+"""The posterior against quadrature and Laplace; it refuses what has not converged."""
+
+import numpy as np
+import pytest
+from scipy.special import logsumexp
+
+from jackettwin.errors import InputError, NumericalError
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
+from jackettwin.updating.posterior import Posterior, sample_posterior
+from jackettwin.updating.update import log_covariance
+
+TRUTH = np.array([3e9, 0.15])
+MODES = (1, 2, 4)
+
+
+@pytest.fixture(scope="module")
+def model(jacket15: Assembly) -> SupportModel:
+    return support_model(
+        jacket15,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+        bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6)},
+        highest_mode=5,
+    )
+
+
+def record_of(model: SupportModel, seconds: float) -> Residuals:
+    """Return the truth's modes as one record gives them: Au's long-data law."""
+    targets = []
+    for mode, pole in zip(MODES, model.predict(TRUTH, MODES).poles, strict=True):
+        f, zeta = abs(pole) / (2 * np.pi), -pole.real / abs(pole)
+        f_std = f * np.sqrt(zeta / (2 * np.pi * f * seconds))
+        targets.append(Target(mode, f, f_std, zeta, zeta / np.sqrt(2 * np.pi * zeta * f * seconds)))
+    return Residuals(tuple(targets), relative=False)
+
+
+@pytest.fixture(scope="module")
+def posterior(model: SupportModel) -> Posterior:
+    return sample_posterior(model, record_of(model, 600.0), particles=200, islands=4)
+
+
+def test_log_evidence_is_that_of_quadrature(model: SupportModel, posterior: Posterior) -> None:
+    residuals = record_of(model, 600.0)
+    low, high = (np.log([getattr(p, side) for p in model.parameters]) for side in ("low", "high"))
+    centre, std = posterior.log_theta.mean(axis=0), posterior.log_theta.std(axis=0)
+    axes = [
+        np.linspace(max(a, c - 7 * s), min(b, c + 7 * s), 80)
+        for a, b, c, s in zip(low, high, centre, std, strict=True)
+    ]
+    z = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    near = model.predict_many(np.exp(centre)[None], MODES)
+    r = residuals.values(model.predict_many(np.exp(z), MODES, near=near, slopes=False).poles)
+    log_l = -0.5 * (r * r).sum(axis=1) - residuals.log_normalisation
+    cell = np.prod([a[1] - a[0] for a in axes]) / np.prod(high - low)
+    # three standard deviations of the estimate, and the grid's 0.01
+    exact = float(logsumexp(log_l) + np.log(cell))
+    assert abs(posterior.log_evidence - exact) < 3.0 * posterior.log_evidence_std + 0.01
+    assert posterior.log_evidence_std < 0.1
+
+
+def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
+    low, high = posterior.interval(0.9).T
+    assert (low < TRUTH).all() and (high > TRUTH).all()
+    assert (posterior.rhat < 1.05).all()
+
+
+def test_with_much_data_it_is_the_laplace_approximation(model: SupportModel) -> None:
+    residuals = record_of(model, 1e5)
+    posterior = sample_posterior(model, residuals, particles=120, islands=3, seed=1)
+    laplace = np.sqrt(np.diag(log_covariance(model, residuals, TRUTH)))
+    # 360 draws know a standard deviation to 4 %, correlated ones to about 10 %
+    np.testing.assert_allclose(posterior.log_theta.std(axis=0), laplace, rtol=0.25)
+    np.testing.assert_allclose(posterior.log_theta.mean(axis=0), np.log(TRUTH), atol=0.5 * laplace.max())
+
+
+def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
+    residuals = record_of(model, 600.0)
+    first, second = (sample_posterior(model, residuals, particles=100, islands=2, seed=4) for _ in range(2))
+    np.testing.assert_array_equal(first.log_theta, second.log_theta)
+
+
+def test_islands_that_disagree_are_no_posterior(model: SupportModel) -> None:
+    with pytest.raises(NumericalError, match="did not converge: R-hat"):
+        sample_posterior(model, record_of(model, 6e5), particles=6, islands=4)
+
+
+def test_without_standard_deviations_there_is_no_likelihood(model: SupportModel) -> None:
+    with pytest.raises(InputError, match="no likelihood"):
+        sample_posterior(model, Residuals((Target(1, 0.18),), relative=False))
