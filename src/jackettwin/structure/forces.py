@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 class SectionForces(NamedTuple):
     """Forces at both ends of every element, each (..., n_elements, 2), in the element's local axes.
 
-    Tension positive [N]; shear [N], torsion and bending [N·m] act on the face whose outward normal is local x.
+    Tension positive [N]; shear [N], torsion and bending [N·m] act on the face whose outward normal is x.
     """
 
     axial: FloatArray
