@@ -94,7 +94,7 @@ def morison_points(
     highest_z: float = np.inf,
     lowest_z: float = -np.inf,
     coefficients: Coefficients | None = None,
-    spacing: float = 2.0,
+    spacing: float = 1.0,
     exclude_parts: tuple[str, ...] = ("piles",),
 ) -> MorisonPoints:
     """Return the Gauss points of the members that reach below ``highest_z`` and above ``lowest_z``.
