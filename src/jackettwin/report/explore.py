@@ -44,12 +44,13 @@ def locus(
     Where the poles at a bound are the limits c → 0 and c → ∞ of a dashpot.
     """
     width = len(model.family.parameters)
+    n_law = width * len(model.suffixes)
     p = model.parameters[_LOSSY]
 
     def poles_at(values: FloatArray) -> ComplexArray:
-        moved = np.tile(np.reshape(theta, (-1, width)), (values.size, 1, 1))
-        moved[:, :, _LOSSY] = values[:, None]
-        return model.predict_many(moved.reshape(values.size, -1), modes).poles
+        moved = np.tile(theta, (values.size, 1))
+        moved[:, _LOSSY:n_law:width] = values[:, None]
+        return model.predict_many(moved, modes, slopes=False).poles
 
     values = np.geomspace(p.low, p.high, n)
     poles = poles_at(values)

@@ -41,6 +41,8 @@ class UpdateSettings:
     modes: tuple[int, ...] = (1, 2, 3, 4, 5)
     damping_of: str | tuple[str, ...] = "fore_aft"
     model_errors: tuple[ModelError, ...] = ()
+    dashpots: tuple[str, ...] = ()
+    """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``."""
 
     def fits_damping(self, label: str) -> bool:
         """Return whether the damping of a mode takes part in the fit."""

@@ -9,6 +9,8 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.updating import Update
+from jackettwin.updating.budget import SOURCES, damping_budget
+from jackettwin.updating.update import log_covariance
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -59,6 +61,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         ],
         "identifiability": dict(zip(names, u.identifiability(), strict=True)),
         "log_evidence": None,
+        "damping_budget": _budget(result.measured, u),
         "real_poles_rad_s": u.modes.damped.real_poles,
         "reference_frequency_hz": u.model.reference_hz,
         "unexplained_damping": [
@@ -87,6 +90,24 @@ def _measured(m: MeasuredMode) -> dict[str, Any]:
         "fits_frequency": m.fits_frequency,
         "fits_damping": m.fits_damping,
     }
+
+
+def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
+    """Return each mode's damping ratio by source; water is not modelled, so its part is not known."""
+    covariance = None if u.residuals.relative else log_covariance(u.model, u.residuals, u.best.theta)
+    budget = damping_budget(u.model, u.best.theta, u.residuals.modes, log_covariance=covariance)
+    intervals = budget.share_interval_90
+    return [
+        {
+            "label": m.label,
+            "damping_ratio": {**dict(zip(SOURCES, budget.damping_ratio[i], strict=True)), "water": None},
+            "share": {**dict(zip(SOURCES, budget.share[i], strict=True)), "water": None},
+            "share_interval_90": None
+            if intervals is None
+            else {**dict(zip(SOURCES, intervals[i].tolist(), strict=True)), "water": None},
+        }
+        for i, m in enumerate(measured)
+    ]
 
 
 def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:

@@ -88,6 +88,7 @@ class UpdateSchema(Schema):
     modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
     damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
     model_error: list[ModelErrorSchema] = []
+    dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
 
 
 class TwinSchema(Schema):
@@ -203,4 +204,5 @@ def _update_settings(schema: TwinSchema) -> UpdateSettings:
         modes=tuple(u.modes),
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
+        dashpots=tuple(dict.fromkeys(u.dashpots)),
     )

@@ -15,6 +15,7 @@ from jackettwin.twin.measure import Measured, Sighting, fuse, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.updating import Residuals, Target, Update, family, numbered_modes, support_model, update
+from jackettwin.updating.extras import Extras
 
 _PAIRED_MODES = 12
 """Modes of the model that measured modes may be paired with."""
@@ -83,7 +84,8 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
 
 def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residuals) -> Update:
     chosen = family(law)
-    own = {p.name for p in chosen.parameters}
+    extras = Extras(config.update.dashpots)
+    own = {p.name for p in (*chosen.parameters, *extras.parameters)}
     bounds = {
         k: v for k, v in config.update.bounds.items() if any(k == n or k.startswith(f"{n}_") for n in own)
     }
@@ -95,6 +97,7 @@ def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residua
             tie=config.tie,
             bounds=bounds,
             highest_mode=max(residuals.modes),
+            extras=extras,
         )
     except InputError as error:
         raise error.at(file=config.path, field="update" if bounds else None) from None
