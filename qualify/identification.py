@@ -67,6 +67,9 @@ def table(results: list[Identification], system: ModalSystem) -> list[str]:
     ]
     for k in range(10):
         known = np.isfinite(ratio[:, k])
+        if known.sum() < 2:
+            rows.append(f"| {FREQUENCY_HZ[k]} | {known.mean():.3f} | – | – | – | – | – |")
+            continue
         spread = np.std(ratio[known, k])
         inside = [np.mean(np.abs(e[known, k, i]) < 1.96 * e[known, k, 2 + i]) for i in (0, 1)]
         rows.append(

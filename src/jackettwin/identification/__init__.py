@@ -8,6 +8,7 @@ from jackettwin.identification.estimate import (
     Spectrum,
     Stabilisation,
 )
+from jackettwin.identification.fdd import fdd
 from jackettwin.identification.fusion import FusedIdentification, FusedMode, fuse
 from jackettwin.identification.mac import mac
 from jackettwin.identification.settings import IdentificationSettings
@@ -22,6 +23,7 @@ __all__ = [
     "Rejected",
     "Spectrum",
     "Stabilisation",
+    "fdd",
     "fuse",
     "identify",
     "mac",

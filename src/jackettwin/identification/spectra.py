@@ -9,6 +9,7 @@ from scipy import ndimage, signal
 from jackettwin.identification.estimate import Spectrum
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 SEGMENTS = 8
 """Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""
@@ -28,22 +29,37 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
     y : (n_channels, n_samples)
         Zero-mean samples; NaN marks a missing one.
     """
+    length = segment_length or max(y.shape[1] // SEGMENTS, 16)
+    f, matrix = spectral_matrix(y, sample_rate_hz, length)
+    density = np.asarray(np.einsum("faa->af", matrix).real)
+    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    singular = np.linalg.svd(matrix / np.multiply.outer(scale, scale), compute_uv=False).T
+    return Spectrum(f, density, np.asarray(singular))
+
+
+def spectral_matrix(
+    y: FloatArray, sample_rate_hz: float, segment_length: int
+) -> tuple[FloatArray, ComplexArray]:
+    """Return frequencies and one-sided spectral matrices by Welch's method, Hann, half overlapping.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one, which counts as zero with the power scaled back.
+
+    Returns
+    -------
+    (n_frequencies,), (n_frequencies, n_channels, n_channels)
+    """
     valid = np.isfinite(y)
-    filled = np.where(valid, y, 0.0)
-    n_channels, n_samples = y.shape
-    length = segment_length or max(n_samples // SEGMENTS, 16)
-    segments = _segments(filled, length)
-    window = signal.get_window("hann", length)
+    segments = _segments(np.where(valid, y, 0.0), segment_length)
+    window = signal.get_window("hann", segment_length)
     x = np.fft.rfft(segments * window, axis=-1)
     matrix = np.einsum("asf,bsf->fab", x, x.conj()) / segments.shape[1]
     matrix *= 2.0 / (sample_rate_hz * np.sum(window**2))
     share = np.maximum(valid.mean(axis=1), 1e-3)
-    matrix /= np.sqrt(np.multiply.outer(share, share))
-    density = np.asarray(np.einsum("faa->af", matrix).real)
-    scale = np.sqrt(np.maximum(np.sum(filled**2, axis=1) / (n_samples * share), np.finfo(float).tiny))
-    singular = np.asarray(np.linalg.svd(matrix / np.multiply.outer(scale, scale), compute_uv=False).T)
-    f = np.arange(length // 2 + 1) * (sample_rate_hz / length)
-    return Spectrum(f, density, singular)
+    f = np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length))
+    return f, np.asarray(matrix / np.sqrt(np.multiply.outer(share, share)))
 
 
 def lowest_peak_hz(spectrum: Spectrum) -> float | None:

@@ -1,0 +1,115 @@
+"""What an identification works on: usable channels, band, sample rate and lag window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.identification.estimate import ResolvedSettings
+from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records import Record, decimate
+
+if TYPE_CHECKING:
+    from jackettwin.identification.settings import IdentificationSettings
+
+EDGE_BELOW_PEAK = 0.65
+"""Lower edge of the band as a share of the lowest clear peak."""
+BAND_RATIO = 25.0
+"""Upper edge of the band over its lower edge."""
+SAMPLES_A_CYCLE = 2.5
+"""Sample rate over the upper edge of the band: the decimation filter passes up to 0.8 of Nyquist."""
+WINDOW_CYCLES = 1.0
+"""Block rows in cycles of the lower edge. Twice that is the lag window: long enough to tell a pair of
+frequencies a few per cent apart, short enough that the covariances are still determined."""
+WINDOW_SHARE = 0.2
+"""Largest lag window as a share of the record."""
+DEAD = 1e-9
+"""A channel is dead when it moves less than this share of its largest value."""
+
+
+def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
+    """Return the vibration channels that are alive, and a sentence on each that is not."""
+    vibration = [c.name for c in record.channels if c.quantity in VIBRATIONS]
+    alive, warnings = [], []
+    for channel, y in zip(record.channels, record.data, strict=True):
+        if channel.name not in vibration:
+            continue
+        finite = y[np.isfinite(y)]
+        if len(finite) < 0.5 * len(y):
+            warnings.append(
+                f"channel {channel.name} left out: {1.0 - len(finite) / max(len(y), 1):.0%} missing"
+            )
+        elif np.ptp(finite) <= DEAD * np.abs(finite).max():
+            warnings.append(f"channel {channel.name} left out: constant")
+        else:
+            alive.append(channel.name)
+    if not alive:
+        raise InputError(
+            "no usable vibration channel" + "".join(f"; {text}" for text in warnings),
+            file=record.name,
+            field="channels",
+            value=list(record.channel_names),
+            allowed=f"at least one live channel of {', '.join(sorted(VIBRATIONS))}",
+            remedy="check the record's quantities and its data",
+        )
+    return record.select(alive), tuple(warnings)
+
+
+def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedSettings, Record]:
+    """Choose what the settings leave open, and decimate."""
+    low, high = _band(record, settings)
+    rate = settings.sample_rate_hz
+    if rate is None:
+        rate = record.sample_rate_hz / max(int(record.sample_rate_hz / (SAMPLES_A_CYCLE * high)), 1)
+    window = settings.block_rows or max(int(np.ceil(WINDOW_CYCLES * rate / low)), 4)
+    _check_duration(record, low, 2.0 * window / rate)
+    reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
+    n_channels = len(record.channels)
+    top = min(settings.max_order or 60, (window - 1) * n_channels)
+    orders = tuple(
+        range(min(settings.order_step, 2) if settings.order_step < 2 else 2, top + 1, settings.order_step)
+    )
+    return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def _band(record: Record, settings: IdentificationSettings) -> tuple[float, float]:
+    nyquist = 0.5 * record.sample_rate_hz
+    low = settings.lowest_frequency_hz
+    if low is None:
+        peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
+        if peak is None:
+            raise InputError(
+                "no spectral peak stands out",
+                file=record.name,
+                field="lowest_frequency_hz",
+                remedy="state the lowest frequency of interest",
+            )
+        low = EDGE_BELOW_PEAK * peak
+    limit = 2.0 / SAMPLES_A_CYCLE * nyquist
+    high = settings.highest_frequency_hz or min(BAND_RATIO * low, limit)
+    if not low < high < nyquist:
+        raise InputError(
+            "the band of interest does not fit the record",
+            file=record.name,
+            field="lowest_frequency_hz, highest_frequency_hz",
+            value=(low, high),
+            allowed=f"0 < lowest < highest < {nyquist:g} Hz",
+            remedy="choose a lower band or use a record of higher rate",
+        )
+    return low, high
+
+
+def _check_duration(record: Record, low: float, window_s: float) -> None:
+    needed = max(window_s / WINDOW_SHARE, FEWEST_CYCLES / low)
+    if record.duration_s < needed:
+        raise InputError(
+            "record too short for its lag window",
+            file=record.name,
+            field="duration_s",
+            value=record.duration_s,
+            allowed=f"≥ {needed:.0f} s for a lowest frequency of {low:.3g} Hz",
+            remedy="use a longer record or raise lowest_frequency_hz",
+        )
