@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.soil.coefficients import C
+from jackettwin.soil.coefficients import OMEGA0, C
 from jackettwin.soil.support import Spring
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure.damping import Rayleigh
@@ -74,6 +74,7 @@ class Extras:
         """
         n_sets, n_extra = values.shape
         rows = np.zeros((n_sets, len(self.dashpots), width))
+        rows[..., OMEGA0] = 1.0
         jacobian = np.zeros((*rows.shape, n_extra))
         for j in range(len(self.dashpots)):
             rows[:, j, C] = jacobian[:, j, C, j] = values[:, j]

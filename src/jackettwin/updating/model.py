@@ -14,7 +14,6 @@ from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
-from jackettwin.soil.coefficients import OMEGA0
 from jackettwin.soil.support import Spring, Support, pinned
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
@@ -98,7 +97,6 @@ class SupportModel:
         slopes = np.array([slopes for _, slopes in pairs]).reshape(*soil.shape, p)
         rotor, rotor_slopes = self.extras.rows(extra, soil.shape[2])
         rows = np.concatenate([soil, rotor], axis=1)
-        rows[..., OMEGA0] = np.where(rows[..., OMEGA0] > 0.0, rows[..., OMEGA0], 1.0)
         jacobian = np.zeros((*rows.shape, theta.shape[1]))
         for g in range(n_groups):
             jacobian[:, g, :, g * p : (g + 1) * p] = slopes[:, g]
