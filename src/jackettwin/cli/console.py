@@ -20,8 +20,8 @@ OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
-output = Console(highlight=False, soft_wrap=True)
-"""Tables for people."""
+output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
+"""Tables for people; a file or a pipe has no width of its own."""
 
 
 class Commands(click.Group):
@@ -37,6 +37,12 @@ class Commands(click.Group):
         except KeyboardInterrupt:
             messages.print("interrupted: nothing half-written is left behind")
             ctx.exit(INTERRUPTED)
+        except OSError as error:
+            what = f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
+            messages.print(
+                f"[bold red]error:[/] {_plain(what)}; check the path and its rights", soft_wrap=True
+            )
+            ctx.exit(BAD_INPUT)
         except JackettwinError as error:
             messages.print(f"[bold red]failed:[/] {_plain(str(error))}", soft_wrap=True)
             ctx.exit(OUR_FAULT)

@@ -8,7 +8,9 @@ from jackettwin import __version__
 from jackettwin.cli.console import Commands
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.modes import modes_command
+from jackettwin.cli.run import run_command
 from jackettwin.cli.update import update_command
+from jackettwin.cli.verify import verify_command
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -21,5 +23,5 @@ def main(traceback: bool) -> None:
     """
 
 
-for command in (modes_command, identify_command, update_command):
+for command in (run_command, verify_command, modes_command, identify_command, update_command):
     main.add_command(command)

@@ -6,7 +6,7 @@ import click
 from rich.table import Table
 
 from jackettwin.cli.console import number, output, print_json, progress
-from jackettwin.twin import TwinResult, count_steps, read_twin, run_twin, update_document
+from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
 
 DEFAULT_TWIN = "openfast_pile"
 
@@ -61,7 +61,13 @@ def print_updates(result: TwinResult) -> None:
         output.print(table)
         for e in excess:
             if not e.explained:
-                points = 100 * (e.measured - e.model)
-                output.print(f"  {e.label}: {points:+.2f} % damping that no support can explain")
+                output.print(f"  {e.label}: {_unexplained(e)}")
     for warning in result.warnings:
         output.print(f"warning: {warning}")
+
+
+def _unexplained(excess: DampingExcess) -> str:
+    points = 100 * abs(excess.measured - excess.model)
+    if excess.measured > excess.model:
+        return f"{points:.2f} % of critical that no support can explain"
+    return f"{points:.2f} % of critical less than the model has: its steel damping is too high there"

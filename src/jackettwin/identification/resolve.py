@@ -49,7 +49,6 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
     if not alive:
         raise InputError(
             "no usable vibration channel" + "".join(f"; {text}" for text in warnings),
-            file=record.name,
             field="channels",
             value=list(record.channel_names),
             allowed=f"at least one live channel of {', '.join(sorted(VIBRATIONS))}",
@@ -83,9 +82,9 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
         if peak is None:
             raise InputError(
                 "no spectral peak stands out",
-                file=record.name,
                 field="lowest_frequency_hz",
-                remedy="state the lowest frequency of interest",
+                value=f"a record of {record.duration_s:.0f} s",
+                remedy="state the lowest frequency of interest, or use a longer record",
             )
         low = EDGE_BELOW_PEAK * peak
     limit = 2.0 / SAMPLES_A_CYCLE * nyquist
@@ -93,7 +92,6 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
     if not low < high < nyquist:
         raise InputError(
             "the band of interest does not fit the record",
-            file=record.name,
             field="lowest_frequency_hz, highest_frequency_hz",
             value=(low, high),
             allowed=f"0 < lowest < highest < {nyquist:g} Hz",
@@ -107,7 +105,6 @@ def _check_duration(record: Record, low: float, window_s: float) -> None:
     if record.duration_s < needed:
         raise InputError(
             "record too short for its lag window",
-            file=record.name,
             field="duration_s",
             value=record.duration_s,
             allowed=f"≥ {needed:.0f} s for a lowest frequency of {low:.3g} Hz",

@@ -4,10 +4,11 @@ from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.document import observation_document, run_document, update_document
 from jackettwin.twin.files import read_twin, shipped_twins
 from jackettwin.twin.observe import Observation, observe
-from jackettwin.twin.result import TwinResult
+from jackettwin.twin.result import DampingExcess, TwinResult
 from jackettwin.twin.run import count_steps, run_twin
 
 __all__ = [
+    "DampingExcess",
     "TwinConfig",
     "TwinResult",
     "count_steps",

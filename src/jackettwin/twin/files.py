@@ -15,7 +15,8 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure, read_structure
 from jackettwin.structure.files import BodySchema
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
-from jackettwin.updating import DEFAULT_LAWS, Target, family
+from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
+from jackettwin.updating.extras import Extras
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -158,8 +159,11 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         raise InputError(
             "a channel is given twice", field="sensors", value=[s.channel for s in schema.sensors]
         )
-    for law in (*schema.update.laws, *([schema.support.law] if schema.support.law else [])):
-        family(law)
+    if schema.support.law:
+        with located(field="support"):
+            family(schema.support.law)
+    with located(field="update"):
+        _check_update(schema.update)
     damping = schema.damping.rayleigh if schema.damping is not None else None
     return TwinConfig(
         name=path.stem,
@@ -178,6 +182,23 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         identification=IdentificationSettings.from_mapping(schema.identification),
         update=_update_settings(schema),
     )
+
+
+def _check_update(update: UpdateSchema) -> None:
+    """Refuse unknown laws and impossible bounds now, not after the records have been identified."""
+    with located(field="laws"):
+        known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
+    known |= {p.name for p in Extras(tuple(update.dashpots)).parameters}
+    for name, (low, high) in update.bounds.items():
+        if not any(name == k or name.startswith(f"{k}_") for k in known):
+            raise InputError(
+                "no law has such a parameter",
+                field=f"bounds.{name}",
+                value=name,
+                allowed=", ".join(sorted(known)),
+                remedy=did_you_mean(name, sorted(known)),
+            )
+        Parameter(name, low, high, "")
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
