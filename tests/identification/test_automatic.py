@@ -82,7 +82,7 @@ def test_wind_speed_takes_no_part(tower, rng):
 
 def test_a_record_without_a_live_channel_is_refused():
     record = Record(np.ones((1, 1000)), 10.0, (Channel("a"),), name="dead.parquet")
-    with pytest.raises(InputError, match=r"dead.parquet.*no usable vibration channel.*constant"):
+    with pytest.raises(InputError, match=r"no usable vibration channel.*constant"):
         identify(record)
 
 
