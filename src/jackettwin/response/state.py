@@ -46,7 +46,8 @@ def _instant_stiffness(pencil: Pencil) -> Matrix:
     return total
 
 
-def _damping(pencil: Pencil) -> Matrix:
+def damping_matrix(pencil: Pencil) -> Matrix:
+    """Return C = αM + βK + Σ c S: all that is proportional to velocity."""
     total = pencil.rayleigh.alpha * pencil.M + pencil.rayleigh.beta * pencil.K
     for group in pencil.groups:
         if isinstance(group.law, Prony) and group.law.c:
@@ -73,7 +74,7 @@ def state_matrix(pencil: Pencil) -> FloatArray:
             remedy="use the damped modes of the full model, or a maxwell law instead",
         )
     n, branches = pencil.n, maxwell_branches(pencil)
-    M, K, C = dense(pencil.M), dense(_instant_stiffness(pencil)), dense(_damping(pencil))
+    M, K, C = dense(pencil.M), dense(_instant_stiffness(pencil)), dense(damping_matrix(pencil))
     size = 2 * n + sum(dofs.size for _, _, _, dofs in branches)
     A = np.zeros((size, size))
     A[:n, n : 2 * n] = np.eye(n)
@@ -93,7 +94,7 @@ def shifted_inverse(pencil: Pencil, sigma: float) -> tuple[spla.LinearOperator, 
     """Return (A − σI)⁻¹ of the state matrix A through one factorisation of F(σ), and its size."""
     branches = maxwell_branches(pencil)
     size = 2 * pencil.n + sum(branch.dofs.size for branch in branches)
-    n, M, C = pencil.n, pencil.M, _damping(pencil)
+    n, M, C = pencil.n, pencil.M, damping_matrix(pencil)
     F = sp.csc_array(pencil.F(sigma))
     lu = factorised(F.real.copy())
 

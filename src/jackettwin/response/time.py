@@ -1,44 +1,183 @@
-"""Exact stepping of a small linear model, internal variables included."""
+r"""Exact stepping of a linear model, internal variables included; loads straight from sample to sample.
+
+The state :math:`x = [q, \dot q, y]` follows :math:`\dot x = A x + B f`. With f linear within a step h,
+
+.. math:: x_{k+1} = e^{Ah} x_k + P_0 f_k + P_1 f_{k+1}
+
+holds exactly (first-order hold; Franklin, Powell & Workman 1998, section 6.3.2): no restriction on h from the
+stiffest dashpot, no numerical damping. What depends on the motion itself enters as a feedback g(t, x) that is
+evaluated at both ends of each step: second order, and the smaller the part that is left to it, the better.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
+import scipy.linalg as la
 
+from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.state import maxwell_branches, state_matrix
 from jackettwin.response.system import Pencil
+from jackettwin.structure.eigen import dense
 
 FloatArray = npt.NDArray[np.float64]
+Feedback = Callable[[int, FloatArray], FloatArray]
+"""Force (m_g,) at step k in state x."""
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """ẋ = Ax + Bf with displacements first, then velocities, then internal variables.
+
+    Attributes
+    ----------
+    A : (n_states, n_states)
+    B : (n_states, n) states from forces on the ``n`` coordinates
+    """
+
+    A: FloatArray
+    B: FloatArray
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return int(self.B.shape[1])
+
+
+@dataclass(frozen=True)
+class Hold:
+    """x_{k+1} = E x_k + P0 f_k + P1 f_{k+1}."""
+
+    E: FloatArray
+    P0: FloatArray
+    P1: FloatArray
+
+
+def state_space(pencil: Pencil) -> StateSpace:
+    """Return the first-order form of a pencil whose laws have finitely many states.
+
+    Raises
+    ------
+    InputError
+        If a law is a springpot.
+    """
+    A = state_matrix(pencil)
+    B = np.zeros((A.shape[0], pencil.n))
+    B[pencil.n : 2 * pencil.n] = la.inv(dense(pencil.M))
+    return StateSpace(A, B)
+
+
+def first_order_hold(A: FloatArray, B: FloatArray, step_s: float) -> Hold:
+    """Return the exact step of ẋ = Ax + Bf for forces that are straight within it.
+
+    Raises
+    ------
+    InputError
+        If the step is not positive.
+    """
+    if not 0.0 < step_s < np.inf:
+        raise InputError("must be positive", field="step_s", value=step_s, allowed="> 0")
+    n, m = B.shape
+    block = np.zeros((n + 2 * m, n + 2 * m))
+    block[:n, :n], block[:n, n : n + m] = A * step_s, B * step_s
+    block[n : n + m, n + m :] = np.eye(m)
+    exact = la.expm(block)
+    ramp = exact[:n, n + m :]
+    return Hold(exact[:n, :n], exact[:n, n : n + m] - ramp, ramp)
+
+
+def march(hold: Hold, x0: FloatArray, f: FloatArray) -> FloatArray:
+    """Return the states (n_steps + 1, n_states) under given forces ``f`` (n_steps + 1, m)."""
+    gain = f[:-1] @ hold.P0.T + f[1:] @ hold.P1.T
+    x = np.empty((f.shape[0], x0.size))
+    x[0] = x0
+    for k in range(gain.shape[0]):
+        x[k + 1] = hold.E @ x[k] + gain[k]
+    return x
+
+
+def periodic_start(hold: Hold, f: FloatArray) -> FloatArray:
+    """Return the state to which forces that repeat, ``f`` (n_steps + 1, m) with f[−1] = f[0], bring it back.
+
+    A record that starts here has no transient: it is a piece of a motion without beginning.
+
+    Raises
+    ------
+    NumericalError
+        If a motion neither decays nor is driven: a mechanism.
+    """
+    end = march(hold, np.zeros(hold.E.shape[0]), f)[-1]
+    left = np.eye(end.size) - np.linalg.matrix_power(hold.E, f.shape[0] - 1)
+    x0 = np.linalg.solve(left, end)
+    if not np.isfinite(x0).all():
+        raise NumericalError("no periodic motion: a motion of the model is not damped")
+    return np.asarray(x0)
+
+
+def march_with_feedback(
+    hold: Hold,
+    feedback_hold: Hold,
+    x0: FloatArray,
+    f: FloatArray,
+    feedback: Feedback,
+    *,
+    evaluations: int = 1,
+) -> tuple[FloatArray, FloatArray]:
+    """Return states and feedback forces (n_steps + 1, m_g) under ``f`` and forces that depend on the motion.
+
+    Each step extrapolates the feedback, evaluates it at the state this gives, and corrects;
+    ``evaluations`` more rounds bring it closer to the implicit solution.
+
+    Parameters
+    ----------
+    feedback_hold : Hold
+        The same E, with P0 and P1 of the feedback's own input.
+
+    Raises
+    ------
+    NumericalError
+        If the motion grows without bound.
+    """
+    gain = f[:-1] @ hold.P0.T + f[1:] @ hold.P1.T
+    P0, P1 = feedback_hold.P0, feedback_hold.P1
+    x = np.empty((f.shape[0], x0.size))
+    x[0] = x0
+    g = np.empty((f.shape[0], P0.shape[1]))
+    g[0] = feedback(0, x0)
+    before = g[0]
+    for k in range(gain.shape[0]):
+        base = hold.E @ x[k] + gain[k] + P0 @ g[k]
+        guess = 2.0 * g[k] - before
+        for _ in range(evaluations):
+            guess = feedback(k + 1, base + P1 @ guess)
+        x[k + 1] = base + P1 @ guess
+        before, g[k + 1] = g[k], guess
+    if not np.isfinite(x[-1]).all():
+        raise NumericalError("the motion grows without bound: shorten the load step")
+    return x, g
+
+
+def equilibrium(space: StateSpace, force: FloatArray) -> FloatArray:
+    """Return the state at rest under a constant force, dashpots relaxed."""
+    return np.asarray(-la.solve(space.A, space.B @ force))
 
 
 def free_decay(pencil: Pencil, x0: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:
-    """Return displacements (n_steps + 1, n) after release from rest at ``x0``, dashpots relaxed there.
-
-    The state steps by the matrix exponential: exact for any step.
-    """
-    A = state_matrix(pencil)
-    state = np.zeros(A.shape[0])
+    """Return displacements (n_steps + 1, n) after release from rest at ``x0``, dashpots relaxed there."""
+    space = state_space(pencil)
+    state = np.zeros(space.A.shape[0])
     state[: pencil.n] = x0
     state[2 * pencil.n :] = np.concatenate([np.empty(0), *(x0[b.dofs] for b in maxwell_branches(pencil))])
-    return _march(expm(A * step_s), np.zeros_like(state), state, pencil.n, n_steps)
+    hold = first_order_hold(space.A, space.B, step_s)
+    return march(hold, state, np.zeros((n_steps + 1, pencil.n)))[:, : pencil.n]
 
 
 def step_response(pencil: Pencil, force: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:
     """Return displacements (n_steps + 1, n) under a constant force applied at t = 0 to the model at rest."""
-    A = state_matrix(pencil)
-    size = A.shape[0]
-    augmented = np.zeros((size + 1, size + 1))
-    augmented[:size, :size] = A
-    augmented[pencil.n : 2 * pencil.n, size] = np.linalg.solve(pencil.M, force)
-    exact = expm(augmented * step_s)
-    return _march(exact[:size, :size], exact[:size, size], np.zeros(size), pencil.n, n_steps)
-
-
-def _march(A: FloatArray, b: FloatArray, state: FloatArray, n: int, n_steps: int) -> FloatArray:
-    out = np.empty((n_steps + 1, n))
-    out[0] = state[:n]
-    for k in range(n_steps):
-        state = A @ state + b
-        out[k + 1] = state[:n]
-    return out
+    space = state_space(pencil)
+    hold = first_order_hold(space.A, space.B, step_s)
+    f = np.broadcast_to(force, (n_steps + 1, pencil.n))
+    return march(hold, np.zeros(space.A.shape[0]), f)[:, : pencil.n]

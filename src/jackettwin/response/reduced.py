@@ -1,0 +1,103 @@
+"""A system on a small basis that keeps every DOF its supports act on: Craig–Bampton about the supports.
+
+The support DOFs stay unknowns of their own, so that any law acts on them exactly, however strong; inside, the
+modes with these DOFs held are kept up to a frequency.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from jackettwin.errors import InputError
+from jackettwin.response.state import factorised
+from jackettwin.response.system import IntArray, Pencil, System
+from jackettwin.structure.eigen import dense, lowest_modes
+
+FloatArray = npt.NDArray[np.float64]
+
+_FIRST_GUESS = 40
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """A reduced system.
+
+    Attributes
+    ----------
+    pencil : Pencil
+        Dense; coordinates are the kept DOFs, then the modes inside.
+    basis : (assembly.n_dof, n) shapes of the coordinates
+    """
+
+    pencil: Pencil
+    basis: FloatArray
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return self.pencil.n
+
+
+def reduced(system: System, *, below_hz: float, keep: tuple[int, ...] = ()) -> Reduced:
+    """Return the system on its support DOFs, the DOFs ``keep`` of the assembly, and the modes inside.
+
+    Parameters
+    ----------
+    below_hz : float
+        Modes with the kept DOFs held are retained up to this frequency. Those of the whole system are then
+        good to (f/below_hz)⁴ or better.
+
+    Raises
+    ------
+    InputError
+        If ``below_hz`` is not positive, or nothing is left to move.
+    """
+    if not 0.0 < below_hz < np.inf:
+        raise InputError("must be positive", field="below_hz", value=below_hz, allowed="> 0")
+    full = system.pencil
+    touched = [group.dofs for group in full.groups]
+    kept = np.searchsorted(system.free, np.intersect1d(system.free, np.array(keep, dtype=np.intp)))
+    b = np.unique(np.concatenate([*touched, kept]).astype(np.intp))
+    i = np.setdiff1d(np.arange(full.n), b)
+    K, M = sp.csc_array(full.K), sp.csc_array(full.M)
+    phi = _modes_below(sp.csc_array(K[i][:, i]), sp.csc_array(M[i][:, i]), 2.0 * pi * below_hz)
+    T = np.zeros((full.n, b.size + phi.shape[1]))
+    T[b, np.arange(b.size)] = 1.0
+    if b.size and i.size:
+        T[i, : b.size] = -factorised(sp.csc_array(K[i][:, i])).solve(K[i][:, b].toarray())
+    T[i, b.size :] = phi
+    if T.shape[1] == 0:
+        raise InputError("no mode below this frequency", field="below_hz", value=below_hz)
+    # unit mass of every coordinate: metres, radians and modes side by side
+    T /= np.sqrt(np.einsum("ij,ij->j", T, M @ T))
+    pencil = Pencil(
+        _symmetric(T.T @ (M @ T)),
+        _symmetric(T.T @ (K @ T)),
+        full.rayleigh,
+        tuple(replace(g, S=_symmetric(T.T @ (g.S @ T)), dofs=_on(b, g.dofs)) for g in full.groups),
+    )
+    return Reduced(pencil, system.expand(T))
+
+
+def _modes_below(K: sp.csc_array, M: sp.csc_array, limit: float) -> FloatArray:
+    number = _FIRST_GUESS
+    while K.shape[0]:
+        omega, phi = lowest_modes(K, M, number)
+        if omega[-1] >= limit or number >= K.shape[0] or omega.size < number:
+            return np.asarray(phi[:, omega < limit])
+        number *= 2
+    return np.zeros((0, 0))
+
+
+def _on(b: IntArray, dofs: IntArray) -> IntArray:
+    return np.searchsorted(b, dofs)
+
+
+def _symmetric(matrix: FloatArray) -> FloatArray:
+    full = dense(matrix)
+    return np.asarray(0.5 * (full + full.T))
