@@ -9,6 +9,7 @@ from jackettwin.cli.console import Commands
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.modes import modes_command
 from jackettwin.cli.run import run_command
+from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
 from jackettwin.cli.verify import verify_command
 
@@ -23,5 +24,12 @@ def main(traceback: bool) -> None:
     """
 
 
-for command in (run_command, verify_command, modes_command, identify_command, update_command):
+for command in (
+    run_command,
+    verify_command,
+    modes_command,
+    identify_command,
+    update_command,
+    superelement_command,
+):
     main.add_command(command)

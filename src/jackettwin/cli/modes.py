@@ -62,7 +62,7 @@ def modes_command(
     held = read_support(
         support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
     )
-    system = build_system(assembly, held, rayleigh=_rayleigh(rayleigh))
+    system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
     document = _document(assembly, system, number)
     if as_json:
         print_json(document)
@@ -70,7 +70,14 @@ def modes_command(
         _print(document)
 
 
-def _rayleigh(text: str | None) -> Rayleigh:
+def rayleigh_option(text: str | None) -> Rayleigh:
+    """Return the steel damping of ``--rayleigh ZETA,F_HZ``.
+
+    Raises
+    ------
+    InputError
+        If the text is not two numbers in range.
+    """
     if text is None:
         return Rayleigh()
     match = re.fullmatch(r"([^,]+),([^,]+)", text)

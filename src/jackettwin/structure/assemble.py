@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -101,7 +101,9 @@ def assemble(
     mesh = discretise(structure, theory=theory, subdivide=subdivide)
     p, R = mesh.properties, mesh.axes
     K = _gather(mesh, beam.to_global(beam.stiffness(p), R))
-    M = _gather(mesh, beam.to_global(beam.mass(p, rotary_inertia=rotary), R)) + _point_masses(structure, mesh)
+    inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
+    M = _gather(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
+    M = M + _point_masses(structure, mesh)
     T = _rigid_links(structure, mesh)
     if gravity:
         K = K + _gravity_stiffness(structure, mesh, K, M, T)

@@ -170,6 +170,8 @@ class Structure:
     """Elements a member unless the analysis says otherwise."""
     beam: str = "euler-bernoulli"
     rotary_inertia: bool = False
+    shear_in_mass: bool = True
+    """Whether the mass of Timoshenko beams knows their shear; SubDyn's does not."""
 
     def __post_init__(self) -> None:
         for name, point in self.nodes.items():

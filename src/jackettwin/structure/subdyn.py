@@ -114,6 +114,7 @@ def read_subdyn(path: Path) -> Structure:
             subdivide=max(1, _integer(deck.scalar("NDiv", "1"), path, "NDiv")),
             beam=_THEORY[femmod],
             rotary_inertia=True,
+            shear_in_mass=False,
         )
 
 

@@ -1,0 +1,229 @@
+"""``jackettwin superelement``: a foundation as 6 + N coordinates."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+import numpy.typing as npt
+from rich.table import Table
+
+from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.modes import rayleigh_option
+from jackettwin.errors import InputError
+from jackettwin.response.superelement import (
+    INTERFACE,
+    RUNGE_KUTTA,
+    Superelement,
+    fixed_interface_frequencies,
+    slowed,
+    superelement,
+)
+from jackettwin.response.superelement_error import (
+    ReducedModes,
+    damping_ratio,
+    default_band_hz,
+    hertz,
+    reduced_modes,
+)
+from jackettwin.response.superelement_files import require_format, write_superelement
+from jackettwin.response.system import build_system
+from jackettwin.soil import read_support
+from jackettwin.structure import Assembly, assemble, read_structure
+from jackettwin.structure.cut import at_interface
+from jackettwin.structure.model import Vector
+from jackettwin.updating import numbered_modes
+
+
+@click.command("superelement")
+@click.argument("structure")
+@click.option(
+    "--support", help="pinned, clamped, LAW:arguments, or a YAML file; default: the structure's own."
+)
+@click.option(
+    "--modes",
+    "number",
+    default=24,
+    show_default=True,
+    type=click.IntRange(0, 500),
+    help="Internal coordinates N.",
+)
+@click.option(
+    "--reference",
+    metavar="X,Y,Z",
+    help="Reference point [m] in the structure's frame; default: the interface's centroid.",
+)
+@click.option(
+    "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: least ratio and its frequency."
+)
+@click.option(
+    "--band-hz",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Damping is met up to here; default: five modes of the structure.",
+)
+@click.option(
+    "--time-step",
+    "step_s",
+    metavar="S",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Slow the fastest poles until explicit steps this long are stable.",
+)
+@click.option(
+    "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
+)
+@click.option(
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="FILE.npz, or FILE.dat for OpenFAST's ExtPtfm.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def superelement_command(
+    structure: str,
+    support: str | None,
+    number: int,
+    reference: str | None,
+    rayleigh: str | None,
+    band_hz: float | None,
+    step_s: float | None,
+    beam: str | None,
+    subdivide: int | None,
+    out: Path,
+    as_json: bool,
+) -> None:
+    """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is."""
+    require_format(out)
+    whole = read_structure(structure)
+    foundation, rest = at_interface(whole)
+    point = _point(reference)
+
+    def built(part: Any) -> Assembly:
+        return assemble(part, beam_theory=beam, subdivide=subdivide)
+
+    complete = built(whole)
+    held = read_support(
+        support, whole, first_frequency_hz=lambda: float(numbered_modes(complete, 1).frequency_hz[0])
+    )
+    steel = rayleigh_option(rayleigh)
+    full, base = (build_system(part, held, rayleigh=steel) for part in (complete, built(foundation)))
+    top = None if rest is None else built(rest)
+    band = band_hz or default_band_hz(full)
+    element = superelement(base, number=number, reference_m=point, band_hz=band)
+    if step_s is not None:
+        element = slowed(element, step_s=step_s, band_hz=band)
+    plain = superelement(base, number=number, reference_m=point, band_hz=band, damped=False)
+    files = write_superelement(element, out)
+    document = _document(
+        element,
+        fixed_interface_frequencies(base, max(number, 1)),
+        reduced_modes(element, full, top, band_hz=band),
+        reduced_modes(plain, full, top, band_hz=band),
+        band,
+    )
+    document |= {"structure": whole.name, "files": [str(path) for path in files]}
+    if as_json:
+        print_json(document)
+    else:
+        _print(document)
+    for warning in document["warnings"]:
+        messages.print(f"warning: {warning}")
+
+
+def _point(text: str | None) -> Vector | None:
+    if text is None:
+        return None
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = z = np.nan
+    if not np.isfinite([x, y, z]).all():
+        raise InputError("not X,Y,Z", field="--reference", value=text, remedy="write e.g. 0,0,28")
+    return (x, y, z)
+
+
+def _document(
+    element: Superelement,
+    fixed_hz: npt.NDArray[np.float64],
+    error: ReducedModes,
+    plain: ReducedModes,
+    band_hz: float,
+) -> dict[str, Any]:
+    fastest = element.fastest_pole_rad_s
+    step = RUNGE_KUTTA / fastest if fastest > 0.0 else None
+    columns = zip(error.full, error.reduced, plain.reduced, strict=True)
+    return {
+        "reference_m": element.reference_m,
+        "n": element.n,
+        "damped_shapes": element.n_damped,
+        "interface_stiffness": element.interface_stiffness,
+        "interface_mass": element.interface_mass,
+        "interface_damping": element.C[:INTERFACE, :INTERFACE],
+        "guyan_frequency_hz": element.guyan_frequency_hz,
+        "fixed_interface_frequency_hz": fixed_hz,
+        "band_hz": band_hz,
+        "fastest_pole_rad_s": fastest,
+        "largest_explicit_step_s": step,
+        "modes": [
+            {
+                "frequency_hz": float(hertz(f)),
+                "damping_ratio": float(damping_ratio(f)),
+                "reduced_frequency_hz": float(hertz(r)),
+                "reduced_damping_ratio": float(damping_ratio(r)),
+                "plain_craig_bampton_frequency_hz": float(hertz(p)),
+                "plain_craig_bampton_damping_ratio": float(damping_ratio(p)),
+            }
+            for f, r, p in columns
+        ],
+        "largest_frequency_error": float(np.abs(error.frequency_error).max(initial=0.0)),
+        "largest_damping_error": float(np.abs(error.damping_error).max(initial=0.0)),
+        "warnings": _warnings(error, step),
+    }
+
+
+def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
+    found = []
+    worst = float(np.abs(error.damping_error / np.maximum(damping_ratio(error.full), 1e-3)).max(initial=0.0))
+    if worst > 0.05:
+        found.append(
+            f"a damping ratio is {100 * worst:.0f} % off: keep more coordinates or shorten --time-step"
+        )
+    if step_s is not None and step_s < 1e-3:
+        found.append(f"explicit integrators need steps below {step_s:.2g} s; --time-step slows fast poles")
+    return found
+
+
+def _print(document: dict[str, Any]) -> None:
+    x, y, z = document["reference_m"]
+    output.print(
+        f"{document['structure']}: {document['n']} coordinates ({document['damped_shapes']} damped shapes), "
+        f"reference point ({x:.3f}, {y:.3f}, {z:.3f}) m"
+    )
+    for key, name in (
+        ("guyan_frequency_hz", "interface alone"),
+        ("fixed_interface_frequency_hz", "interface held"),
+    ):
+        output.print(f"{name} [Hz]: " + " ".join(f"{f:.4f}" for f in document[key][:6]))
+    table = Table(
+        "f [Hz]",
+        "ζ [%]",
+        "reduced f [Hz]",
+        "reduced ζ [%]",
+        "plain Craig–Bampton ζ [%]",
+        title=f"whole structure up to {document['band_hz']:.3g} Hz",
+        title_justify="left",
+    )
+    for row in document["modes"]:
+        table.add_row(
+            f"{row['frequency_hz']:.5f}",
+            f"{100 * row['damping_ratio']:.4f}",
+            f"{row['reduced_frequency_hz']:.5f}",
+            f"{100 * row['reduced_damping_ratio']:.4f}",
+            f"{100 * row['plain_craig_bampton_damping_ratio']:.4f}",
+        )
+    output.print(table)
+    output.print("wrote " + ", ".join(document["files"]))

@@ -1,0 +1,83 @@
+"""Cut a structure at its interface: what stands on the ground, and what stands on that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from jackettwin.errors import InputError
+from jackettwin.structure.model import Structure
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
+    """Return (foundation, rest): what is joined to the ground without passing the interface, and the rest.
+
+    Masses on interface nodes and members between two of them belong to the foundation. The rest is None if
+    nothing stands on the interface.
+
+    Raises
+    ------
+    InputError
+        If the structure has no interface nodes, or no reaction nodes below them.
+    """
+    interface = set(structure.interface_nodes)
+    if not interface:
+        raise InputError(
+            "the structure has no interface",
+            field="interface_nodes",
+            value=[],
+            remedy="name the nodes that carry what stands on the foundation",
+        )
+    inside = _reached(structure, set(structure.reaction_nodes) - interface, interface)
+    if not inside:
+        raise InputError(
+            "no reaction node stands below the interface",
+            field="reaction_nodes",
+            value=list(structure.reaction_nodes),
+            remedy="name the nodes that stand on the ground",
+        )
+    foundation = inside | interface
+    below = [m.name for m in structure.members if {m.start, m.end} <= foundation]
+    above = [m.name for m in structure.members if not {m.start, m.end} <= foundation]
+    rest = set(structure.nodes) - foundation
+    base = replace(_part(structure, foundation, below), interface_nodes=structure.interface_nodes)
+    if not rest:
+        return base, None
+    top = replace(_part(structure, rest | interface, above), reactions=())
+    return base, replace(top, masses=tuple(m for m in top.masses if m.node in rest))
+
+
+def _reached(structure: Structure, start: set[str], stop: set[str]) -> set[str]:
+    """Return the nodes reached from ``start`` without ``stop``."""
+    neighbours: dict[str, list[str]] = {name: [] for name in structure.nodes}
+    pairs = [(m.start, m.end) for m in structure.members]
+    pairs += [(link.leader, link.follower) for link in structure.rigid_links]
+    for a, b in pairs:
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    reached, stack = set(start), list(start)
+    while stack:
+        for name in neighbours[stack.pop()]:
+            if name not in reached and name not in stop:
+                reached.add(name)
+                stack.append(name)
+    return reached
+
+
+def _part(structure: Structure, nodes: set[str], members: Iterable[str]) -> Structure:
+    names = set(members)
+    used = {n for m in structure.members if m.name in names for n in (m.start, m.end)}
+    links = tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= nodes)
+    used |= {n for link in links for n in (link.leader, link.follower)}
+    return replace(
+        structure,
+        nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
+        members=tuple(m for m in structure.members if m.name in names),
+        masses=tuple(m for m in structure.masses if m.node in used),
+        rigid_links=links,
+        reactions=tuple(r for r in structure.reactions if r.node in used),
+        interface_nodes=tuple(n for n in structure.interface_nodes if n in used),
+    )

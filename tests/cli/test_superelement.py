@@ -1,0 +1,57 @@
+"""``jackettwin superelement``: the contract's keys and refusals."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+
+DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(main, ["superelement", *arguments])
+
+
+def test_json_has_the_keys_of_the_contract(tmp_path: Path) -> None:
+    out = tmp_path / "jacket.npz"
+    result = run(str(DECK), "--modes", "6", "--reference", "0,0,30", "--out", str(out), "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert np.shape(found["interface_stiffness"]) == np.shape(found["interface_mass"]) == (6, 6)
+    assert len(found["guyan_frequency_hz"]) == len(found["fixed_interface_frequency_hz"]) == 6
+    # SubDyn's own summary of this deck
+    assert found["guyan_frequency_hz"][0] == pytest.approx(1.425245, rel=1e-5)
+    with np.load(out) as data:
+        assert {"M", "C", "K", "T"} <= set(data)
+        assert data["T"].shape[1] == 12
+        np.testing.assert_allclose(data["K"][:6, :6], found["interface_stiffness"], rtol=1e-12)
+
+
+def test_strong_dashpots_beside_plain_craig_bampton(tmp_path: Path) -> None:
+    feet = "kelvin-voigt:k=2.5e9,c=7.6e8"
+    result = run("jacket15", "--support", feet, "--out", str(tmp_path / "se.dat"), "--json")
+    found = json.loads(result.stdout)
+    second = found["modes"][3]
+    assert second["reduced_damping_ratio"] == pytest.approx(second["damping_ratio"], rel=0.01)
+    assert second["plain_craig_bampton_damping_ratio"] > 2.0 * second["damping_ratio"]
+    assert "--time-step" in found["warnings"][0]
+    assert (tmp_path / "se_ExtPtfm.dat").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["jacket15", "--out", "se.txt"], "unknown format of a superelement"),
+        (["jacket15", "--reference", "1,2", "--out", "se.npz"], "not X,Y,Z"),
+        (["jacket51", "--out", "se.npz"], "did you mean 'jacket15'"),
+        (["jacket15"], "Missing option '--out'"),
+    ],
+)
+def test_bad_input_exits_2(arguments: list[str], message: str) -> None:
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr.replace("\n", " ")
