@@ -1,5 +1,7 @@
 """Foundation files: the shipped ones are what they say, bad ones are refused."""
 
+from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil import read_support
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.viscoelastic import loss_factor
 from jackettwin.structure import assemble, read_structure
@@ -28,6 +31,30 @@ def test_the_shipped_foundation_meets_table_5_1_piled_and_lumped() -> None:
         # table 6.1 (identified): f1, f2, f4 within 1.5 %, P-Δ off
         identified = np.abs(modes.frequency_hz[[0, 1, 3]] / [0.1819, 0.1838, 0.7362] - 1.0)
         assert (identified < 0.015).all()
+
+
+def test_a_foundation_is_a_support(tmp_path: Path) -> None:
+    """By its shipped name or as a file: the pile heads, with their mass, under the structure as it is."""
+    structure = read_structure("jacket15")
+    copy = tmp_path / "piles.yaml"
+    copy.write_text((resources.files("jackettwin") / "data" / "foundations" / "jacket15.yaml").read_text())
+    lumped, heads = read_foundation("jacket15").lumped(structure)
+    assert lumped is structure
+    wanted = undamped_modes(build_system(assemble(structure), heads), 4).frequency_hz
+    for text in ("jacket15", str(copy)):
+        support = read_support(text, structure, first_frequency_hz=lambda: 0.183)
+        found = undamped_modes(build_system(assemble(structure), support), 4).frequency_hz
+        np.testing.assert_array_equal(found, wanted)
+
+
+def test_the_piles_move_with_the_feet() -> None:
+    """A rigid translation of feet and structure carries the piles' lumped mass, once a foot."""
+    structure = read_structure("jacket15")
+    assembly, heads = assemble(structure), read_foundation("jacket15").heads(structure)
+    with_piles, without = (build_system(assembly, s).pencil.M for s in (heads, replace(heads, masses=())))
+    lift = np.tile([0.0, 0.0, 1.0, 0.0, 0.0, 0.0], assembly.n_dof // 6)
+    added = lift @ (with_piles @ lift) - lift @ (without @ lift)
+    assert added == pytest.approx(sum(mass[2, 2] for _, mass in heads.masses), rel=1e-9)
 
 
 def test_the_records_foundation_has_its_loss_factor() -> None:

@@ -139,10 +139,22 @@ def build_system(
         raise InputError("every degree of freedom is held", field="support", remedy="hold fewer nodes")
     number = np.full(assembly.n_dof, -1, dtype=np.intp)
     number[free] = np.arange(free.size)
-    M = sp.csc_array(assembly.mass[free][:, free])
+    M = sp.csc_array((assembly.mass + _ground_mass(assembly, support))[free][:, free])
     K = sp.csc_array(assembly.stiffness[free][:, free])
     groups = _groups(assembly, (*support.springs, *dashpots), number, free.size)
     return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups), free)
+
+
+def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:
+    """Return the mass of the ground's own bodies (piles) on the assembly's DOFs."""
+    blocks = [(assembly.dofs(node), matrix) for node, matrix in support.masses]
+    rows = [np.repeat(dofs, dofs.size) for dofs, _ in blocks]
+    columns = [np.tile(dofs, dofs.size) for dofs, _ in blocks]
+    values = [matrix.ravel() for _, matrix in blocks]
+    if not blocks:
+        return sp.csc_array((assembly.n_dof, assembly.n_dof))
+    triplets = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    return sp.coo_array(triplets, shape=(assembly.n_dof, assembly.n_dof)).tocsc()
 
 
 def _groups(assembly: Assembly, springs: tuple[Spring, ...], number: IntArray, n: int) -> tuple[Group, ...]:

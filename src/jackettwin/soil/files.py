@@ -1,17 +1,19 @@
-"""Supports from the command line (``kelvin-voigt:k=2.5e9,c=7.6e8``) and from YAML."""
+"""Supports from the command line (``kelvin-voigt:k=2.5e9,c=7.6e8``) and from YAML: springs, or piles."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import pi
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.soil.foundation import build_foundation, read_foundation, shipped_foundations
+from jackettwin.soil.law_files import ElasticLaw, LawSchema
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
 from jackettwin.soil.viscoelastic import (
     Law,
@@ -23,66 +25,6 @@ from jackettwin.soil.viscoelastic import (
     zener,
 )
 from jackettwin.structure.model import Structure
-
-NotNegative = Annotated[float, Field(ge=0.0)]
-Positive = Annotated[float, Field(gt=0.0)]
-
-
-class BranchSchema(Schema):
-    """A Maxwell branch: relative stiffness and relaxation time."""
-
-    g: NotNegative
-    tau_s: Positive
-
-
-class ElasticLaw(Schema):
-    """K."""
-
-    type: Literal["elastic"]
-
-    def build(self) -> Law:
-        """Return the law."""
-        return Prony(k0=1.0)
-
-
-class KelvinVoigtLaw(Schema):
-    """K·(1 + τs)."""
-
-    type: Literal["kelvin-voigt"]
-    tau_s: NotNegative
-
-    def build(self) -> Law:
-        """Return the law."""
-        return kelvin_voigt(1.0, self.tau_s)
-
-
-class MaxwellLaw(Schema):
-    """K·(g0 + Σ g τs/(1+τs))."""
-
-    type: Literal["maxwell"]
-    g0: NotNegative = 1.0
-    branches: list[BranchSchema] = Field(min_length=1)
-
-    def build(self) -> Law:
-        """Return the law."""
-        return Prony(
-            k0=self.g0, k=tuple(b.g for b in self.branches), tau=tuple(b.tau_s for b in self.branches)
-        )
-
-
-class SpringpotLaw(Schema):
-    """K·(s/ω0)^α."""
-
-    type: Literal["springpot"]
-    alpha: Annotated[float, Field(ge=0.0, lt=1.0)]
-    omega0_rad_s: Positive
-
-    def build(self) -> Law:
-        """Return the law."""
-        return Springpot(1.0, self.alpha, self.omega0_rad_s)
-
-
-LawSchema = Annotated[ElasticLaw | KelvinVoigtLaw | MaxwellLaw | SpringpotLaw, Field(discriminator="type")]
 
 
 class SpringSchema(Schema):
@@ -111,7 +53,8 @@ def read_support(
     Parameters
     ----------
     text : str or Path or None
-        ``pinned``, ``clamped``, a short form, or a YAML file; None is the structure's own.
+        ``pinned``, ``clamped``, a short form, a shipped foundation, or a YAML file of springs or of a pile
+        foundation; None is the structure's own.
     structure : Structure
     first_frequency_hz : callable
         Gives the first pinned frequency, the default reference frequency of ``springpot`` and ``maxwell-3``.
@@ -138,10 +81,12 @@ def read_support(
     name, colon, arguments = word.partition(":")
     if colon and name in SHORT_FORMS:
         return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
+    if word in shipped_foundations():
+        return read_foundation(word).heads(structure)
     path = Path(word) if folder is None else folder / word
     if path.suffix.lower() in (".yaml", ".yml"):
         return _read_support_file(path, structure)
-    known = ["pinned", "clamped", *SHORT_FORMS]
+    known = ["pinned", "clamped", *shipped_foundations(), *SHORT_FORMS]
     raise InputError(
         "unknown support or law",
         field="support",
@@ -239,7 +184,14 @@ def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def _read_support_file(path: Path, structure: Structure) -> Support:
-    schema = validate(SupportSchema, read_yaml(path, what="support file"), file=path)
+    content = read_yaml(path, what="support file")
+    if isinstance(content, dict) and "pile" in content:
+        return build_foundation(content, path).heads(structure)
+    return _springs(content, path, structure)
+
+
+def _springs(content: Any, path: Path, structure: Structure) -> Support:
+    schema = validate(SupportSchema, content, file=path)
     springs = []
     for index, entry in enumerate(schema.supports):
         place = f"supports.{index}"

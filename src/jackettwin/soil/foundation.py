@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from importlib import resources
 from math import pi
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, read_yaml, validate
-from jackettwin.soil.files import LawSchema
 from jackettwin.soil.impedance import lumped_head, on_pile_heads
+from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
 from jackettwin.soil.piles import (
     CurveOptions,
     Pile,
@@ -31,9 +31,6 @@ from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.model import Material, Section, Structure
 
-NotNegative = Annotated[float, Field(ge=0.0)]
-Positive = Annotated[float, Field(gt=0.0)]
-
 
 @dataclass(frozen=True)
 class Foundation:
@@ -47,9 +44,13 @@ class Foundation:
         """Return the structure on its piles, every node of them."""
         return with_piles(structure, self.pile, self.springs, law=self.law)
 
-    def lumped(self, structure: Structure) -> tuple[Structure, Support]:
-        """Return the structure on pile heads lumped at its feet: as many unknowns as without piles."""
+    def heads(self, structure: Structure) -> Support:
+        """Return pile heads lumped at the feet: as many unknowns as without piles."""
         return on_pile_heads(structure, lumped_head(self.pile, self.springs, law=self.law))
+
+    def lumped(self, structure: Structure) -> tuple[Structure, Support]:
+        """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""
+        return structure, self.heads(structure)
 
 
 class PileSchema(Schema):
@@ -202,6 +203,12 @@ class FoundationSchema(Schema):
         )
 
 
+def shipped_foundations() -> tuple[str, ...]:
+    """Return the names of the foundations that come with the package."""
+    folder = resources.files("jackettwin") / "data" / "foundations"
+    return tuple(sorted(f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")))
+
+
 def read_foundation(name: str | Path) -> Foundation:
     """Return the foundation of a YAML file, or a shipped one (``jacket15``, ``jacket15_records``).
 
@@ -213,8 +220,17 @@ def read_foundation(name: str | Path) -> Foundation:
     path = Path(name)
     if not path.suffix:
         path = Path(str(resources.files("jackettwin") / "data" / "foundations" / f"{name}.yaml"))
-    schema = validate(FoundationSchema, read_yaml(path, what="foundation file"), file=path)
-    try:
+    return build_foundation(read_yaml(path, what="foundation file"), path)
+
+
+def build_foundation(content: Any, path: Path) -> Foundation:
+    """Return the foundation that a file's content describes.
+
+    Raises
+    ------
+    InputError
+        If it says something that cannot be.
+    """
+    schema = validate(FoundationSchema, content, file=path)
+    with located(file=path):
         return schema.build()
-    except InputError as error:
-        raise error.at(file=path) from None

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.errors import InputError
 from jackettwin.soil.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.soil.viscoelastic import Law
@@ -89,11 +90,19 @@ def lumped_head(pile: Pile, springs: PileSprings, *, law: Law = ELASTIC) -> Pile
     return PileHead(reduced(m.steel), reduced(m.soil), reduced(m.mass), law)
 
 
-def on_pile_heads(structure: Structure, head: PileHead) -> tuple[Structure, Support]:
-    """Return the structure with a lumped pile on every reaction node: springs, law and mass at the feet."""
-    mass = tuple(tuple(float(v) for v in row) for row in head.mass)
-    reactions = tuple(replace(reaction, mass=mass) for reaction in structure.reactions)
+def on_pile_heads(structure: Structure, head: PileHead) -> Support:
+    """Return a lumped pile under every reaction node: springs, law and mass at the feet.
+
+    Raises
+    ------
+    InputError
+        If the structure has no reaction nodes.
+    """
+    if not structure.reactions:
+        raise InputError("the structure has no reaction nodes to put piles under", field="reaction_nodes")
     springs = []
     for foot in structure.reaction_nodes:
         springs += [Spring(foot, head.steel), Spring(foot, head.soil, head.law)]
-    return replace(structure, reactions=reactions), Support(springs=tuple(springs))
+    return Support(
+        springs=tuple(springs), masses=tuple((foot, head.mass) for foot in structure.reaction_nodes)
+    )

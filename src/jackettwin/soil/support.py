@@ -36,6 +36,8 @@ class Support:
     springs: tuple[Spring, ...] = ()
     fixed: tuple[tuple[str, tuple[int, ...]], ...] = field(default=())
     """(node, held DOFs 0–5) pairs."""
+    masses: tuple[tuple[str, FloatArray], ...] = ()
+    """(node, 6×6 mass that moves with it) pairs: piles."""
 
 
 def pinned(structure: Structure) -> Support:
