@@ -6,6 +6,7 @@ import click
 
 from jackettwin import __version__
 from jackettwin.cli.console import Commands
+from jackettwin.cli.export import export_command
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.modes import modes_command
 from jackettwin.cli.run import run_command
@@ -31,5 +32,6 @@ for command in (
     identify_command,
     update_command,
     superelement_command,
+    export_command,
 ):
     main.add_command(command)

@@ -1,7 +1,15 @@
 """Supports: what the ground does to the structure."""
 
 from jackettwin.soil.files import parse_law, read_support
-from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
+from jackettwin.soil.support import (
+    Spring,
+    Support,
+    clamped,
+    on_translations,
+    own_support,
+    pinned,
+    with_static_reactions,
+)
 
 __all__ = [
     "Spring",
@@ -12,4 +20,5 @@ __all__ = [
     "parse_law",
     "pinned",
     "read_support",
+    "with_static_reactions",
 ]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import InputError
 from jackettwin.soil.viscoelastic import Law, Prony
-from jackettwin.structure.model import Structure
+from jackettwin.structure.model import Reaction, Structure
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -65,3 +66,43 @@ def own_support(structure: Structure) -> Support:
         if reaction.stiffness is not None:
             springs.append(Spring(reaction.node, np.array(reaction.stiffness)))
     return Support(tuple(springs), tuple(fixed))
+
+
+def with_static_reactions(structure: Structure, support: Support) -> Structure:
+    """Return the structure with a support as its own reactions: held DOFs, static stiffness and mass.
+
+    Raises
+    ------
+    InputError
+        If the support acts on nodes that are not reaction nodes.
+    """
+    nodes = structure.reaction_nodes
+    stiffness = {node: np.zeros((6, 6)) for node in nodes}
+    mass = {node: np.zeros((6, 6)) for node in nodes}
+    fixed = dict.fromkeys(nodes, (False,) * 6)
+    touched = (
+        [s.node for s in support.springs] + [n for n, _ in support.fixed] + [n for n, _ in support.masses]
+    )
+    for node in touched:
+        if node not in stiffness:
+            raise InputError(
+                "the support acts on a node that is no reaction node",
+                field="support",
+                value=node,
+                allowed=", ".join(nodes),
+            )
+    for spring in support.springs:
+        stiffness[spring.node] += spring.law.static_stiffness * spring.matrix
+    for node, matrix in support.masses:
+        mass[node] += matrix
+    for node, dofs in support.fixed:
+        x, y, z, rx, ry, rz = (held or dof in dofs for dof, held in enumerate(fixed[node]))
+        fixed[node] = (x, y, z, rx, ry, rz)
+    reactions = tuple(
+        Reaction(node, fixed[node], _as_tuple(stiffness[node]), _as_tuple(mass[node])) for node in nodes
+    )
+    return replace(structure, reactions=reactions)
+
+
+def _as_tuple(matrix: FloatArray) -> tuple[tuple[float, ...], ...] | None:
+    return tuple(tuple(float(v) for v in row) for row in matrix) if matrix.any() else None

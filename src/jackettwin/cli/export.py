@@ -1,0 +1,57 @@
+"""``jackettwin export``: a foundation as an OpenFAST SubDyn input file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from jackettwin.cli.console import messages, output, print_json
+from jackettwin.errors import InputError
+from jackettwin.response.superelement import dissipates
+from jackettwin.soil import Support, read_support, with_static_reactions
+from jackettwin.structure import Structure, assemble, read_structure
+from jackettwin.structure.cut import at_interface
+from jackettwin.structure.subdyn_deck import write_subdyn
+from jackettwin.updating import numbered_modes
+
+
+@click.command("export")
+@click.argument("structure")
+@click.option(
+    "--support",
+    help="pinned, clamped, LAW:arguments, a foundation or a YAML file; default: the structure's own.",
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="FILE.dat: a SubDyn input file.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def export_command(structure: str, support: str | None, out: Path, as_json: bool) -> None:
+    """Write what stands below the interface of STRUCTURE as a SubDyn input file."""
+    if out.suffix.lower() != ".dat":
+        raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
+    whole = read_structure(structure)
+    held = read_support(
+        support, whole, first_frequency_hz=lambda: float(numbered_modes(assemble(whole), 1).frequency_hz[0])
+    )
+    foundation, _ = at_interface(whole)
+    files = [str(path) for path in write_subdyn(with_static_reactions(foundation, held), out)]
+    warnings = _warnings(whole, held)
+    if as_json:
+        print_json({"structure": whole.name, "files": files, "warnings": warnings})
+    else:
+        output.print("wrote " + ", ".join(files))
+    for warning in warnings:
+        messages.print(f"warning: {warning}")
+
+
+def _warnings(whole: Structure, held: Support) -> list[str]:
+    found = []
+    if any(dissipates(spring.law) for spring in held.springs):
+        found.append("a deck knows no damping in the ground: the superelement does")
+    if not whole.rotary_inertia or (whole.beam == "timoshenko" and whole.shear_in_mass):
+        found.append("SubDyn adds rotary inertia to its beams, and leaves shear out of their mass")
+    return found

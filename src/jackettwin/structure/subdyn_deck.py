@@ -1,0 +1,247 @@
+"""Structures to OpenFAST SubDyn input files, in the format of OpenFAST 5.
+
+A deck holds what SubDyn knows: joints, circular beams, rigid links, concentrated masses, and reactions with the
+static stiffness and mass of what is below them. Names that are not whole numbers become numbers, in their order.
+"""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.files import atomic_path
+from jackettwin.structure.masses import body_from_static_moments, rigid_body_mass
+from jackettwin.structure.model import Material, PointMass, Reaction, Section, Structure
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+_FEMMOD = {"euler-bernoulli": 1, "timoshenko": 3}
+_DOFS = ("x", "y", "z", "tx", "ty", "tz")
+_ZERO_ROW = "   ".join(["0.0"] * 6)
+_MODES = 24
+
+Tube = tuple[Material, Section]
+
+
+def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
+    """Write a SubDyn input file, and one SSI file for each different reaction; return the files.
+
+    Raises
+    ------
+    InputError
+        If the structure has no interface nodes.
+    """
+    if not structure.interface_nodes:
+        raise InputError(
+            "SubDyn needs interface joints",
+            field="interface_nodes",
+            value=[],
+            remedy="name the nodes under the tower",
+        )
+    grounds = {
+        r.node: ssi_text(r) for r in structure.reactions if r.stiffness is not None or r.mass is not None
+    }
+    names = {
+        text: f"{path.stem}_ssi_{k}.dat" for k, text in enumerate(dict.fromkeys(grounds.values()), start=1)
+    }
+    files = {path: subdyn_text(structure, {node: names[text] for node, text in grounds.items()})}
+    files |= {path.with_name(name): text for text, name in names.items()}
+    for target, text in files.items():
+        with atomic_path(target) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    return tuple(files)
+
+
+def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
+    """Return a SubDyn input file.
+
+    Parameters
+    ----------
+    ssi_files : {reaction node: name of its SSI file}
+    """
+    joints, members = _numbers(structure.nodes), _numbers(m.name for m in structure.members)
+    tubes: dict[Tube, int] = {}
+    for m in structure.members:
+        for section in (m.section_start, m.section_end):
+            tubes.setdefault((m.material, section), len(tubes) + 1)
+    sections = [
+        _control(structure),
+        _joints(structure, joints),
+        _reactions(structure, joints, ssi_files),
+        _table("INTERFACE JOINTS: 1/0 for Locked (to the TP)/Free DOF @each Interface Joint", "NInterf",
+               "IJointID TPID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss",
+               [f"{joints[node]} 1 1 1 1 1 1 1" for node in structure.interface_nodes]),
+        _members(structure, joints, members, tubes),
+        _table("CIRCULAR BEAM CROSS-SECTION PROPERTIES", "NPropSetsCyl",
+               "PropSetID YoungE ShearG MatDens XsecD XsecT",
+               [f"{k} {_n(m.youngs_modulus_pa)} {_n(m.shear_modulus_pa)} {_n(m.density_kg_m3)} "
+                f"{_n(s.outer_diameter_m)} {_n(s.thickness_m)}" for (m, s), k in tubes.items()]),
+        _table("RECTANGULAR BEAM CROSS-SECTION PROPERTIES", "NPropSetsRec",
+               "PropSetID YoungE ShearG MatDens XsecSa XsecSb XsecT", []),
+        _table("ARBITRARY BEAM CROSS-SECTION PROPERTIES", "NXPropSets",
+               "PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0 XsecJt", []),
+        _table("CABLE PROPERTIES", "NCablePropSets", "PropSetID EA MatDens T0 CtrlChannel", []),
+        _table("RIGID LINK PROPERTIES", "NRigidPropSets", "PropSetID MatDens",
+               ["1 0.0"] if structure.rigid_links else []),
+        _table("SPRING ELEMENT PROPERTIES", "NSpringPropSets", "PropSetID k11 k12 k13 k14 k15 k16 k22 k23 k24 "
+               "k25 k26 k33 k34 k35 k36 k44 k45 k46 k55 k56 k66", []),
+        _table("MEMBER COSINE MATRICES COSM(i,j)", "NCOSMs",
+               "COSMID COSM11 COSM12 COSM13 COSM21 COSM22 COSM23 COSM31 COSM32 COSM33", []),
+        _masses(structure, joints),
+        _output(),
+    ]  # fmt: skip
+    return "\n".join(line for section in sections for line in section) + "\n"
+
+
+def ssi_text(reaction: Reaction) -> str:
+    """Return an SSI file: upper triangles of stiffness and mass, one entry a line."""
+    lines = ["! stiffness and mass of what holds a reaction joint, static; SI units"]
+    for letter, matrix in (("K", reaction.stiffness), ("M", reaction.mass)):
+        values = np.zeros((6, 6)) if matrix is None else np.array(matrix)
+        lines += [f"{_n(values[i, j])}   {letter}{_DOFS[i]}{_DOFS[j]}" for i in range(6) for j in range(i, 6)]
+    return "\n".join(lines) + "\n"
+
+
+def _numbers(names: Iterable[str]) -> dict[str, int]:
+    """Return {name: number}: the names themselves if all are whole numbers."""
+    known = list(names)
+    if all(name.isdecimal() and int(name) > 0 for name in known) and len(set(map(int, known))) == len(known):
+        return {name: int(name) for name in known}
+    return {name: k for k, name in enumerate(known, start=1)}
+
+
+def _n(value: float) -> str:
+    """Return the shortest text that reads back as the same number."""
+    return repr(float(value))
+
+
+def _ruled(title: str) -> str:
+    return f"{'-' * 12} {title} ".ljust(88, "-")
+
+
+def _table(title: str, keyword: str, header: str, rows: Sequence[str]) -> list[str]:
+    units = " ".join("(-)" for _ in header.split())
+    return [_ruled(title), f"{len(rows):>6}   {keyword:<16}- Number of rows", header, units, *rows]
+
+
+def _control(structure: Structure) -> list[str]:
+    values = (
+        ("False", "Echo", "Echo input data (flag)"),
+        ('"DEFAULT"', "SDdeltaT", "Local Integration Step"),
+        ("3", "IntMethod", "Integration Method [1/2/3/4 = RK4/AB4/ABM4/AM2]"),
+        ("True", "SttcSolve", "Solve dynamics about static equilibrium point"),
+        _ruled("FEA and CRAIG-BAMPTON PARAMETERS"),
+        (f"{_FEMMOD[structure.beam]}", "FEMMod", "Element model [1= Euler-Bernoulli; 3= 2-node Timoshenko]"),
+        (f"{structure.subdivide}", "NDiv", "Number of sub-elements per member"),
+        (f"{_MODES}", "Nmodes", "Number of internal modes to retain"),
+        ("1", "JDampings", "Damping Ratios for each retained mode (% of critical)"),
+        ("0", "GuyanDampMod", "Guyan damping {0=none, 1=Rayleigh Damping, 2=user specified matrix}"),
+        ("0.0, 0.0", "RayleighDamp", "Mass and stiffness proportional damping coefficients"),
+        ("6", "GuyanDampSize", "Guyan damping matrix [only if GuyanDampMod=2]"),
+        *[f"   {_ZERO_ROW}"] * 6,
+        _ruled("INITIAL RIGID-BODY POSITION [floating structures only]"),
+        "RBSurge RBSway RBHeave RBRoll RBPitch RBYaw",
+        "(m) (m) (m) (deg) (deg) (deg)",
+        _ZERO_ROW,
+    )  # fmt: skip
+    return [
+        _ruled("SubDyn MultiMember Support Structure Input File"),
+        f"{structure.name}; z = 0 is the mean sea level",
+        _ruled("SIMULATION CONTROL"),
+        *(row if isinstance(row, str) else f"{row[0]:>12}   {row[1]:<14}- {row[2]}" for row in values),
+    ]
+
+
+def _joints(structure: Structure, joints: dict[str, int]) -> list[str]:
+    sea = structure.sea_level_z_m
+    header = "JointID JointXss JointYss JointZss JointType JointDirX JointDirY JointDirZ JointStiff"
+    rows = [
+        f"{joints[name]} {_n(x)} {_n(y)} {_n(z - sea)} 1 0.0 0.0 0.0 0.0"
+        for name, (x, y, z) in structure.nodes.items()
+    ]
+    return _table("STRUCTURE JOINTS: joints connect structure members", "NJoints", header, rows)
+
+
+def _reactions(structure: Structure, joints: dict[str, int], ssi_files: dict[str, str]) -> list[str]:
+    header = "RJointID RctTDXss RctTDYss RctTDZss RctRDXss RctRDYss RctRDZss SSIfile"
+    rows = [
+        f'{joints[r.node]} {" ".join(str(int(f)) for f in r.fixed)} "{ssi_files.get(r.node, "")}"'
+        for r in structure.reactions
+    ]
+    return _table(
+        "BASE REACTION JOINTS: 1/0 for Locked/Free DOF @ each Reaction Node", "NReact", header, rows
+    )
+
+
+def _members(
+    structure: Structure, joints: dict[str, int], members: dict[str, int], tubes: dict[Tube, int]
+) -> list[str]:
+    rows = [
+        f"{members[m.name]} {joints[m.start]} {joints[m.end]} {tubes[m.material, m.section_start]} "
+        f"{tubes[m.material, m.section_end]} 1c 0.0"
+        for m in structure.members
+    ]
+    first = max(members.values(), default=0) + 1
+    rows += [
+        f"{first + k} {joints[link.leader]} {joints[link.follower]} 1 1 3 0.0"
+        for k, link in enumerate(structure.rigid_links)
+    ]
+    header = "MemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType MSpin/COSMID"
+    return _table("MEMBERS", "NMembers", header, rows)
+
+
+def _masses(structure: Structure, joints: dict[str, int]) -> list[str]:
+    """Return one concentrated mass a joint: several bodies on one become one."""
+    by_joint = sorted((m for m in structure.masses if m.mass_kg > 0.0), key=lambda m: joints[m.node])
+    rows = []
+    for node, bodies in groupby(by_joint, key=lambda m: m.node):
+        body = _joined(list(bodies))
+        values = (body.mass_kg, *body.inertia_kg_m2, *body.cg_offset_m)
+        rows.append(f"{joints[node]} {' '.join(map(_n, values))}")
+    header = "CMJointID JMass JMXX JMYY JMZZ JMXY JMXZ JMYZ MCGX MCGY MCGZ"
+    return _table("JOINT ADDITIONAL CONCENTRATED MASSES", "NCmass", header, rows)
+
+
+def _joined(bodies: list[PointMass]) -> PointMass:
+    if len(bodies) == 1:
+        return bodies[0]
+    M = sum((rigid_body_mass(body) for body in bodies), np.zeros((6, 6)))
+    return body_from_static_moments(
+        node=bodies[0].node,
+        mass_kg=float(M[0, 0]),
+        static_moment_kg_m=(float(M[1, 5]), float(M[2, 3]), float(M[0, 4])),
+        inertia_about_node_kg_m2=(
+            float(M[3, 3]), float(M[4, 4]), float(M[5, 5]), float(M[3, 4]), float(M[3, 5]), float(M[4, 5]),
+        ),
+    )  # fmt: skip
+
+
+def _output() -> list[str]:
+    switches = (
+        ("True", "SumPrint", "Output a Summary File (flag)"),
+        ("0", "OutCBModes", "Output Guyan and Craig-Bampton modes"),
+        ("0", "OutFEMModes", "Output first 30 FEM modes"),
+        ("False", "OutCOSM", "Output cosine matrices with the selected output member forces (flag)"),
+        ("False", "OutAll", "Output all members' end forces (flag)"),
+        ("2", "OutSwtch", "Output requested channels to: 1=<rootname>.SD.out; 2=<rootname>.out; 3=both"),
+        ("True", "TabDelim", "Generate a tab-delimited output (flag)"),
+        ("1", "OutDec", "Decimation of output"),
+        ('"ES15.6e2"', "OutFmt", "Output format for numerical results"),
+        ('"A15"', "OutSFmt", "Output format for header strings"),
+        _ruled("MEMBER OUTPUT LIST"),
+        ("0", "NMOutputs", "Number of members whose forces will be output (-)"),
+        "MemberID NOutCnt NodeCnt",
+        "(-) (-) (-)",
+        _ruled("SSOutList"),
+        '"IntfFXss, IntfFYss, IntfFZss, IntfMXss, IntfMYss, IntfMZss"',
+        "END of output channels and end of file (END must appear in the first 3 columns of this line)",
+    )
+    return [
+        _ruled("OUTPUT: SUMMARY & OUTFILE"),
+        *(row if isinstance(row, str) else f"{row[0]:>12}   {row[1]:<14}- {row[2]}" for row in switches),
+    ]
