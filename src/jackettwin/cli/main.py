@@ -10,6 +10,7 @@ from jackettwin.cli.export import export_command
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.modes import modes_command
 from jackettwin.cli.run import run_command
+from jackettwin.cli.stages import stages_command
 from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
 from jackettwin.cli.verify import verify_command
@@ -33,5 +34,6 @@ for command in (
     update_command,
     superelement_command,
     export_command,
+    stages_command,
 ):
     main.add_command(command)

@@ -1,7 +1,7 @@
 """Structures to OpenFAST SubDyn input files, in the format of OpenFAST 5.
 
-A deck holds what SubDyn knows: joints, circular beams, rigid links, concentrated masses, and reactions with the
-static stiffness and mass of what is below them. Names that are not whole numbers become numbers, in their order.
+A deck holds what SubDyn knows: joints, circular beams, rigid links, concentrated masses, and reactions with
+the static stiffness and mass of what is below them. Names that are not whole numbers become numbers.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:
         _table("CABLE PROPERTIES", "NCablePropSets", "PropSetID EA MatDens T0 CtrlChannel", []),
         _table("RIGID LINK PROPERTIES", "NRigidPropSets", "PropSetID MatDens",
                ["1 0.0"] if structure.rigid_links else []),
-        _table("SPRING ELEMENT PROPERTIES", "NSpringPropSets", "PropSetID k11 k12 k13 k14 k15 k16 k22 k23 k24 "
-               "k25 k26 k33 k34 k35 k36 k44 k45 k46 k55 k56 k66", []),
+        _table("SPRING ELEMENT PROPERTIES", "NSpringPropSets", "PropSetID k11 k12 k13 k14 k15 k16 k22 "
+               "k23 k24 k25 k26 k33 k34 k35 k36 k44 k45 k46 k55 k56 k66", []),
         _table("MEMBER COSINE MATRICES COSM(i,j)", "NCOSMs",
                "COSMID COSM11 COSM12 COSM13 COSM21 COSM22 COSM23 COSM31 COSM32 COSM33", []),
         _masses(structure, joints),

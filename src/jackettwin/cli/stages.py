@@ -1,0 +1,83 @@
+"""``jackettwin stages``: a structure part by part, beside another one or the thesis."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import number as show
+from jackettwin.cli.console import output, print_json
+from jackettwin.structure import read_structure
+from jackettwin.updating.stages import Stage, stages
+from jackettwin.verify.jacket import T5_2, T5_2_ROSAP, T5_4, T5_4_ROSAP
+
+Reference = dict[str, tuple[float, ...]]
+
+_PUBLISHED: dict[str, Reference] = {
+    "thesis": {"jacket": T5_2, "tower": T5_4},
+    "rosap": {"jacket": T5_2_ROSAP, "tower": T5_4_ROSAP},
+}
+"""Tables 5.2 and 5.4, Python and ROSAP rows, by the part added last; table 5.3 repeats table 5.2."""
+
+
+@click.command("stages")
+@click.argument("structure")
+@click.option("--against", help="thesis, rosap (tables 5.2 and 5.4), or another structure.")
+@click.option("--number", default=5, show_default=True, type=click.IntRange(1, 100), help="How many modes.")
+@click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def stages_command(structure: str, against: str | None, number: int, gravity: bool, as_json: bool) -> None:
+    """Frequencies of STRUCTURE on pinned feet as its parts are added: jacket, transition piece, tower."""
+    own = stages(read_structure(structure), number, gravity=gravity)
+    reference: Reference = {}
+    if against is not None:
+        reference = _PUBLISHED.get(against) or _frequencies(
+            stages(read_structure(against), number, gravity=gravity)
+        )
+    document = {"structure": structure, "against": against, "stages": [_row(s, reference) for s in own]}
+    if as_json:
+        print_json(document)
+    else:
+        _print(document)
+
+
+def _frequencies(found: tuple[Stage, ...]) -> Reference:
+    return {stage.parts[-1]: tuple(map(float, stage.frequency_hz)) for stage in found}
+
+
+def _row(stage: Stage, reference: Reference) -> dict[str, Any]:
+    theirs = reference.get(stage.parts[-1], ())
+    modes = []
+    for k, f in enumerate(stage.frequency_hz):
+        other = theirs[k] if k < len(theirs) else None
+        modes.append(
+            {
+                "mode": k + 1,
+                "frequency_hz": float(f),
+                "reference_frequency_hz": other,
+                "relative_error": None if other is None else float(f) / other - 1.0,
+            }
+        )
+    return {"name": stage.name, "parts": stage.parts, "mass_kg": stage.mass_kg, "modes": modes}
+
+
+def _print(document: dict[str, Any]) -> None:
+    for stage in document["stages"]:
+        title = f"{stage['name'].replace('_', ' ')}: {stage['mass_kg'] / 1e3:,.0f} t"
+        table = Table("mode", "f [Hz]", title=title, title_justify="left")
+        compared = any(row["reference_frequency_hz"] is not None for row in stage["modes"])
+        if compared:
+            table.add_column(f"{document['against']} f [Hz]")
+            table.add_column("difference [%]")
+        for row in stage["modes"]:
+            cells = [str(row["mode"]), f"{row['frequency_hz']:.4f}"]
+            if compared:
+                error = row["relative_error"]
+                cells += [
+                    show(row["reference_frequency_hz"]),
+                    show(None if error is None else 100 * error, 3),
+                ]
+            table.add_row(*cells)
+        output.print(table)

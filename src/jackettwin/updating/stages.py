@@ -1,0 +1,55 @@
+"""A structure built up part by part: the stages that thesis section 5.4 compares models at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.structure.assemble import assemble
+from jackettwin.structure.check import check
+from jackettwin.structure.model import Structure
+from jackettwin.updating.model import numbered_modes
+from jackettwin.updating.steel import only_parts
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Some parts of a structure on pinned feet.
+
+    Attributes
+    ----------
+    parts : names of the parts standing
+    mass_kg : float
+    frequency_hz : (n_modes,) undamped
+    """
+
+    parts: tuple[str, ...]
+    mass_kg: float
+    frequency_hz: FloatArray
+
+    @property
+    def name(self) -> str:
+        """``jacket``, then ``+ transition_piece`` and so on: the part added last."""
+        return self.parts[0] if len(self.parts) == 1 else f"+ {self.parts[-1]}"
+
+
+def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple[Stage, ...]:
+    """Return a stage for every part, in the order the structure names them; the last is the whole.
+
+    Raises
+    ------
+    InputError
+        If the first part does not stand on its own: parts must be named from the ground upwards.
+    """
+    parts = tuple(dict.fromkeys(member.part for member in structure.members))
+    found = []
+    for k in range(1, len(parts) + 1):
+        # the whole keeps what no member holds, rigid links' ends among them
+        standing = structure if k == len(parts) else only_parts(structure, parts[:k])
+        assembly = assemble(standing, gravity=gravity)
+        found.append(Stage(parts[:k], check(assembly).mass_kg, numbered_modes(assembly, number).frequency_hz))
+    return tuple(found)
