@@ -45,7 +45,7 @@ def targets_only() -> TwinResult:
         labels=labels,
         observations=(),
         measured=measured,
-        unpaired=(),
+        names=(),
         updates=(fitted,),
         excess=((),),
         assumptions=("The steel has 1 %.",),
@@ -107,7 +107,7 @@ def complete(targets_only: TwinResult, record: Record, observation: Observation)
         sensors=tuple(Sensor(c.name, c.direction, height_m=c.height_m) for c in record.channels),
         observations=(replace(observation, identification=found),),
         measured=(*measured, *targets_only.measured[len(measured) :]),
-        unpaired=found.modes[2:],
+        names=((*(m.label for m in measured), *[""] * (len(found.modes) - len(measured))),),
         excess=(excess,),
         warnings=("Beware <script>alert(1)</script>.",),
     )

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from jackettwin.report import Plot, Section, Text, build_gallery, build_report
-from jackettwin.report.build import mode_names, report_sections
+from jackettwin.report.build import report_sections
 from jackettwin.report.numbers import frequency, percent
+from jackettwin.report.tables import records_table
 from jackettwin.twin import TwinResult
 
 
@@ -100,11 +101,16 @@ def test_names_are_escaped(report: Path) -> None:
     assert "noise &lt;&amp;&gt; modes" in html
 
 
-def test_identified_modes_are_named_after_what_they_were_paired_with(complete: TwinResult) -> None:
-    found = complete.identifications[0]
-    names = mode_names(complete, found)
-    assert names[:2] == [m.label for m in complete.measured[:2]]
-    assert names[2:] == [""] * (len(found.modes) - 2)
+def test_the_report_says_which_mode_is_which_in_every_record(complete: TwinResult) -> None:
+    table = records_table(complete)
+    assert table.columns == ("mode", *complete.identifications[0].records)
+    for row, name, mode in zip(
+        table.rows, complete.names[0], complete.identifications[0].modes, strict=False
+    ):
+        assert row[0] == name.replace("_1", " 1").replace("side_side", "side-side").replace(
+            "fore_aft", "fore-aft"
+        )
+        assert row[1].startswith(f"{mode.frequency_hz:.4f}")
 
 
 def test_targets_alone_make_a_report(targets_only: TwinResult, tmp_path: Path) -> None:

@@ -136,3 +136,8 @@ def test_bad_support_files_are_refused(tmp_path: Path, old: str, new: str, messa
     (tmp_path / "soil.yaml").write_text(FILE.replace(old, new, 1))
     with pytest.raises(InputError, match=message):
         read("soil.yaml", tmp_path)
+
+
+def test_without_a_first_frequency_the_reference_must_be_stated() -> None:
+    with pytest.raises(InputError, match="f0: reference frequency is missing; give f0"):
+        read_support("springpot:k=1e9,alpha=0.06", STRUCTURE)

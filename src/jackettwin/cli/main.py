@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import click
 
-from jackettwin import __version__
 from jackettwin.cli.console import Commands
 from jackettwin.cli.export import export_command
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.modes import modes_command
+from jackettwin.cli.refine import refine_command
 from jackettwin.cli.run import run_command
 from jackettwin.cli.stages import stages_command
 from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
 from jackettwin.cli.verify import verify_command
+from jackettwin.version import __version__
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -32,6 +33,7 @@ for command in (
     modes_command,
     identify_command,
     update_command,
+    refine_command,
     superelement_command,
     export_command,
     stages_command,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from jackettwin import __version__
-from jackettwin.identification import Identification, ModalEstimate, mac
+from jackettwin.identification import Identification
 from jackettwin.report import (
     explore,
     figures_identification,
@@ -22,9 +21,7 @@ from jackettwin.report.page import Block, Plot, Section, Table, Text, write_figu
 from jackettwin.report.summary import headline, shown_update
 from jackettwin.twin import TwinResult
 from jackettwin.updating import Update
-
-_NEAR = 0.08
-"""A mode of one record lies this close to the same mode of another."""
+from jackettwin.version import __version__
 
 
 def build_report(result: TwinResult, out_dir: Path) -> Path:
@@ -67,27 +64,6 @@ def report_sections(result: TwinResult) -> list[Section]:
     return [section for section in sections if section.blocks]
 
 
-def mode_names(result: TwinResult, found: Identification) -> list[str]:
-    """Return the label of each identified mode; empty for one the model lacks."""
-    lost = {id(mode) for mode in result.unpaired}
-    return ["" if id(mode) in lost else _name(result, mode) for mode in found.modes]
-
-
-def _name(result: TwinResult, mode: ModalEstimate) -> str:
-    """Return the label of the measured mode that a paired estimate belongs to."""
-    best, resemblance = "", 0.0
-    for m in result.measured:
-        if m.estimate is mode:
-            return m.label
-        if m.estimate is None or m.estimate.mode_shape.shape != mode.mode_shape.shape:
-            continue
-        near = abs(m.estimate.frequency_hz / mode.frequency_hz - 1.0) < _NEAR
-        value = float(mac(mode.mode_shape, m.estimate.mode_shape)) if near else 0.0
-        if value > resemblance:
-            best, resemblance = m.label, value
-    return best
-
-
 def _subtitle(result: TwinResult) -> str:
     names = [name for found in result.identifications for name in found.records]
     source = (
@@ -122,7 +98,7 @@ def _record(result: TwinResult) -> list[Block]:
     blocks: list[Block] = [Plot("time_series", caption, figures_record.time_series(result.record))]
     if result.identifications:
         found = result.identifications[0]
-        modes = list(zip(mode_names(result, found), found.modes, strict=True))
+        modes = list(zip(result.names[0], found.modes, strict=True))
         caption = (
             "Power spectral density (PSD) of each channel by Welch's method, and singular values of the "
             "spectral matrix of the channels scaled to unit variance, largest darkest. "
@@ -135,10 +111,9 @@ def _record(result: TwinResult) -> list[Block]:
 
 def _identification(result: TwinResult) -> list[Block]:
     blocks: list[Block] = []
-    for i, found in enumerate(result.identifications):
-        names = mode_names(result, found)
+    for i, (found, names) in enumerate(zip(result.identifications, result.names, strict=True)):
         if i == 0:
-            blocks += _diagrams(found, names)
+            blocks += [*_diagrams(found, names), tables.records_table(result)]
         blocks.append(tables.identified_table(found, names, folded=i > 0))
     if result.identifications:
         first = result.identifications[0]
@@ -148,7 +123,7 @@ def _identification(result: TwinResult) -> list[Block]:
     return blocks
 
 
-def _diagrams(found: Identification, names: list[str]) -> list[Block]:
+def _diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
     s = found.settings
     modes = list(zip(names, found.modes, strict=True))
     caption = (

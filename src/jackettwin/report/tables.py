@@ -135,6 +135,27 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     return Table(f"Modes identified in {', '.join(found.records)}.", columns, tuple(rows), folded=folded)
 
 
+def records_table(result: TwinResult) -> Table:
+    """Return every named mode in every record: which is which, and how far the records agree."""
+    found = [
+        dict(zip(names, seen.modes, strict=True))
+        for names, seen in zip(result.names, result.identifications, strict=True)
+    ]
+    rows = [
+        (
+            words(m.label),
+            *(
+                f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}" if mode else UNKNOWN
+                for mode in (modes.get(m.label) for modes in found)
+            ),
+        )
+        for m in result.measured
+    ]
+    records = [name for seen in result.identifications for name in seen.records]
+    caption = "Which mode is which in every record: f [Hz] / ζ [%]; a dash where it was not found."
+    return Table(caption, ("mode", *records), tuple(rows))
+
+
 def rejected_table(found: Identification) -> Table:
     """Return the candidates that were not accepted, each with its reason."""
     rows = [(r.reason, frequency(r.frequency_hz), percent(r.damping_ratio)) for r in found.rejected]

@@ -25,9 +25,9 @@ def mass_mac(M: Any, phi: FloatArray, x: npt.NDArray[Any]) -> FloatArray:
     return np.asarray(cross / np.outer(own, np.einsum("ij,ij->j", x.conj(), Mx).real))
 
 
-def near_degenerate(frequencies: FloatArray) -> list[IntArray]:
+def near_degenerate(frequencies: FloatArray, closer_than: float = NEAR_DEGENERATE) -> list[IntArray]:
     """Return the indices of ascending frequencies in groups whose neighbours are near-degenerate."""
-    cuts = np.flatnonzero(np.diff(frequencies) > NEAR_DEGENERATE * frequencies[1:]) + 1
+    cuts = np.flatnonzero(np.diff(frequencies) > closer_than * frequencies[1:]) + 1
     return np.split(np.arange(frequencies.size), cuts)
 
 

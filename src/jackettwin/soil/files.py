@@ -41,11 +41,15 @@ class SupportSchema(Schema):
     supports: list[SpringSchema] = Field(min_length=1)
 
 
+def _unknown_frequency() -> float:
+    raise InputError("reference frequency is missing", field="f0", remedy="give f0=… [Hz]")
+
+
 def read_support(
     text: str | Path | None,
     structure: Structure,
     *,
-    first_frequency_hz: Callable[[], float],
+    first_frequency_hz: Callable[[], float] = _unknown_frequency,
     folder: Path | None = None,
 ) -> Support:
     """Return the support a user asked for.
@@ -57,7 +61,8 @@ def read_support(
         foundation; None is the structure's own.
     structure : Structure
     first_frequency_hz : callable
-        Gives the first pinned frequency, the default reference frequency of ``springpot`` and ``maxwell-3``.
+        Gives the first pinned frequency, the default reference frequency of ``springpot`` and ``maxwell-3``;
+        without it these need ``f0``.
     folder : Path, optional
         What a relative path is relative to.
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from jackettwin import __version__
 from jackettwin.identification import ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.updating import Update
 from jackettwin.updating.budget import SOURCES, damping_budget
 from jackettwin.updating.update import log_covariance
+from jackettwin.version import __version__
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -19,7 +19,10 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "name": result.name,
         "modes": [_measured(m) for m in result.measured],
         "updates": [update_document(result, i) for i in range(len(result.updates))],
-        "identification": [observation_document(seen) for seen in result.observations],
+        "identification": [
+            observation_document(seen, names)
+            for seen, names in zip(result.observations, result.names, strict=True)
+        ],
         "unpaired_modes": [mode_document(e, None) for e in result.unpaired],
         "assumptions": list(result.assumptions),
         "warnings": list(result.warnings),
@@ -127,14 +130,17 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
     ]
 
 
-def observation_document(seen: Observation) -> dict[str, Any]:
-    """Return the document of one record of ``jackettwin identify``."""
+def observation_document(seen: Observation, labels: tuple[str, ...] | None = None) -> dict[str, Any]:
+    """Return the document of one record of ``jackettwin identify``, with the model's labels if given."""
     found = seen.identification
     names = [channel.name for channel in found.channels]
     s = found.settings
     return {
         "records": list(found.records),
-        "modes": [mode_document(m, names) for m in found.modes],
+        "modes": [
+            mode_document(m, names) | ({} if labels is None else {"label": labels[i] or None})
+            for i, m in enumerate(found.modes)
+        ],
         "rejected": [
             {"frequency_hz": r.frequency_hz, "damping_ratio": r.damping_ratio, "reason": r.reason}
             for r in found.rejected

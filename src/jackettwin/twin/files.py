@@ -6,7 +6,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
@@ -23,11 +23,32 @@ Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Vector = tuple[float, float, float]
 
 
+class SteelSchema(Schema):
+    """Factors on the stiffness (E and G) and the density of a part."""
+
+    youngs_modulus: Positive = 1.0
+    density: Positive = 1.0
+
+
 class StructureChoice(Schema):
-    """A structure with overrides."""
+    """A structure with overrides; ``steel`` is what ``jackettwin refine`` prints."""
 
     source: str
     rna: BodySchema | None = None
+    steel: dict[str, SteelSchema] = {}
+
+    def build(self, folder: Path) -> Structure:
+        """Return the structure, refined; its rotor–nacelle assembly is left to the caller."""
+        structure = read_structure(self.source, folder=folder)
+        for part, factors in self.steel.items():
+            with located(field="structure.steel"):
+                structure = structure.with_material(part, **factors.model_dump())
+        return structure
+
+
+StructureOrName = Annotated[
+    StructureChoice, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
+]
 
 
 class RayleighSchema(Schema):
@@ -95,7 +116,7 @@ class UpdateSchema(Schema):
 class TwinSchema(Schema):
     """A twin file."""
 
-    structure: str | StructureChoice
+    structure: StructureOrName
     rna: BodySchema | None = None
     beam: Literal["euler-bernoulli", "timoshenko"] | None = None
     rotary_inertia: bool | None = None
@@ -202,9 +223,13 @@ def _check_update(update: UpdateSchema) -> None:
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
-    choice = schema.structure
-    structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
-    rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
+    choice = (
+        schema.structure
+        if isinstance(schema.structure, StructureChoice)
+        else StructureChoice(source=schema.structure)
+    )
+    structure = choice.build(folder)
+    rna = schema.rna or choice.rna
     if rna is None:
         return structure
     top = structure.top_node

@@ -39,13 +39,13 @@ class Measured:
     observations : one a record
     sensors : tuple of Sensor
     sightings : {mode number from 1: its sightings, one a record at most}
-    unpaired : identified modes without a counterpart in the model
+    numbers : for each record, the mode number of each identified mode; None if the model lacks it
     """
 
     observations: tuple[Observation, ...]
     sensors: tuple[Sensor, ...]
     sightings: dict[int, tuple[Sighting, ...]]
-    unpaired: tuple[ModalEstimate, ...]
+    numbers: tuple[tuple[int | None, ...], ...]
 
 
 def measure(
@@ -68,7 +68,7 @@ def measure(
         step(f"identify {path.name}")
         observations.append(observe(path, config.identification, channels=channels))
     sightings: dict[int, list[Sighting]] = {}
-    unpaired: list[ModalEstimate] = []
+    numbers = []
     for seen in observations:
         found = seen.identification
         by_channel = {s.channel: s for s in (config.sensors or _sensors_of(seen.record))}
@@ -80,13 +80,13 @@ def measure(
             sightings.setdefault(mode + 1, []).append(
                 Sighting(found.modes[index], likeness, found.duration_s)
             )
-        used = {index for index, _ in pairs.values()}
-        unpaired += [e for i, e in enumerate(found.modes) if i not in used]
+        number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
+        numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
     return Measured(
         tuple(observations),
         config.sensors or _sensors_of(observations[0].record),
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
-        tuple(unpaired),
+        tuple(numbers),
     )
 
 

@@ -57,9 +57,7 @@ def cautions(
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        if found.unpaired:
-            places = ", ".join(f"{f:.3f}" for f in sorted(e.frequency_hz for e in found.unpaired))
-            lines.append(f"Identified but without a counterpart in the model (Hz): {places}.")
+        lines += _strangers(found)
     for u in updates:
         if u.best.locked_damper:
             lines.append(
@@ -73,6 +71,16 @@ def cautions(
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)
+
+
+def _strangers(found: Measured) -> list[str]:
+    lost = [
+        f"{mode.frequency_hz:.3f} in {seen.record.name}"
+        for seen, numbers in zip(found.observations, found.numbers, strict=True)
+        for mode, number in zip(seen.identification.modes, numbers, strict=True)
+        if number is None
+    ]
+    return [f"Identified but without a counterpart in the model (Hz): {', '.join(lost)}."] if lost else []
 
 
 def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:

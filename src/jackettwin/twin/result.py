@@ -65,10 +65,10 @@ class TwinResult:
         Undamped modes on pinned supports and what to call them.
     observations : tuple of Observation
         One a record: its quality, the repaired record, what was identified.
+    names : tuple of tuple of str
+        For each record, the label of each identified mode; empty without a counterpart in the model.
     measured : tuple of MeasuredMode
         In the order of mode numbers.
-    unpaired : tuple of ModalEstimate
-        Identified modes the model has no counterpart for.
     updates : tuple of Update
         One a law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
@@ -83,8 +83,8 @@ class TwinResult:
     numbered: UndampedModes
     labels: tuple[str, ...]
     observations: tuple[Observation, ...]
+    names: tuple[tuple[str, ...], ...]
     measured: tuple[MeasuredMode, ...]
-    unpaired: tuple[ModalEstimate, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
     assumptions: tuple[str, ...]
@@ -99,3 +99,13 @@ class TwinResult:
     def identifications(self) -> tuple[Identification, ...]:
         """What was identified, one a record."""
         return tuple(seen.identification for seen in self.observations)
+
+    @property
+    def unpaired(self) -> tuple[ModalEstimate, ...]:
+        """Identified modes the model has no counterpart for."""
+        return tuple(
+            mode
+            for found, names in zip(self.identifications, self.names, strict=True)
+            for mode, name in zip(found.modes, names, strict=True)
+            if not name
+        )

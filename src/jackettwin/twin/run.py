@@ -68,13 +68,17 @@ def run_twin(
         numbered=numbered,
         labels=labels,
         observations=() if found is None else found.observations,
+        names=() if found is None else _names(found, labels),
         measured=measured,
-        unpaired=() if found is None else found.unpaired,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
         assumptions=assumptions(config, measured),
         warnings=cautions(config, found, measured, tuple(updates)),
     )
+
+
+def _names(found: Measured, labels: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple("" if n is None else labels[n - 1] for n in numbers) for numbers in found.numbers)
 
 
 def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:

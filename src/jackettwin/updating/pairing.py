@@ -15,6 +15,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 FREQUENCY_WIDTH = 0.15
 """How far (standard deviation of ln f) a measured mode may lie from the pinned model's."""
+MIXING = 0.06
+"""Modes closer than this (relative) mix in a measured shape: half-power bands, 2ζf, of 1 to 3 % overlap."""
 LEAST_MAC = 0.6
 """A shape less like the model's than this is no match."""
 LEAST_VISIBLE = 0.1
@@ -26,8 +28,9 @@ def pair(
 ) -> dict[int, tuple[int, float]]:
     """Return {model mode (from 0): (index of the estimate, likeness)}.
 
-    Two bending modes a percent apart mix in any measured shape, so near-degenerate model modes are compared
-    as a subspace: likeness is the share of the measured shape that lies in it (the MAC if it is one mode).
+    Two bending modes a few percent apart mix in any measured shape, the more the weaker one is excited, so
+    close model modes that the sensors see are compared as a subspace: likeness is the share of the measured
+    shape that lies in it (the MAC if it is one mode).
     The score is likeness times a Gaussian of ln f, with a little of the single MAC to say which is which; the
     assignment maximises its sum, so that two measured modes never share a model mode.
 
@@ -40,18 +43,18 @@ def pair(
     if not estimates or not frequency_hz.size:
         return {}
     measured = np.array([e.mode_shape / np.linalg.norm(e.mode_shape) for e in estimates])
-    single = np.array([[mac(x, shape) for shape in shapes.T] for x in measured])
-    likeness = np.empty_like(single)
-    for group in near_degenerate(frequency_hz):
-        basis = la.orth(shapes[:, group])
-        likeness[:, group] = (np.abs(measured.conj() @ basis) ** 2).sum(axis=1)[:, None]
-    apart = np.log(np.array([e.frequency_hz for e in estimates])[:, None] / frequency_hz)
-    score = (likeness + 0.1 * single) * np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
     size = np.linalg.norm(shapes, axis=0)
     visible = np.flatnonzero(size >= LEAST_VISIBLE * size.max())
-    rows, columns = linear_sum_assignment(-score[:, visible])
+    single = np.array([[mac(x, shape) for shape in shapes[:, visible].T] for x in measured])
+    likeness = np.empty_like(single)
+    for group in near_degenerate(frequency_hz[visible], MIXING):
+        basis = la.orth(shapes[:, visible[group]])
+        likeness[:, group] = (np.abs(measured.conj() @ basis) ** 2).sum(axis=1)[:, None]
+    apart = np.log(np.array([e.frequency_hz for e in estimates])[:, None] / frequency_hz[visible])
+    score = (likeness + 0.1 * single) * np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
+    rows, columns = linear_sum_assignment(-score)
     return {
-        int(column): (int(row), float(likeness[row, column]))
-        for row, column in zip(rows, visible[columns], strict=True)
+        int(visible[column]): (int(row), float(likeness[row, column]))
+        for row, column in zip(rows, columns, strict=True)
         if likeness[row, column] >= LEAST_MAC and abs(apart[row, column]) <= 2.0 * FREQUENCY_WIDTH
     }

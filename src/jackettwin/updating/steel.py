@@ -31,6 +31,16 @@ class Factor:
     low: float = 0.1
     high: float = 10.0
 
+    def __post_init__(self) -> None:
+        if not 0.0 < self.low < self.high:
+            raise InputError(
+                "bounds are reversed or not positive",
+                field="bounds",
+                value=[self.low, self.high],
+                allowed="0 < low < high",
+                remedy="give [low, high]",
+            )
+
     @property
     def name(self) -> str:
         """``part.property``."""
@@ -89,15 +99,15 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
     Raises
     ------
     InputError
-        If there is no factor, no target, or more factors than targets.
+        If there are more factors than targets. Without factors the frequencies are only compared.
     """
     modes = tuple(sorted(target_hz))
-    if not 0 < len(factors) <= len(modes):
+    if len(factors) > len(modes):
         raise InputError(
             "more factors than frequencies cannot be told apart",
-            field="steel",
+            field="free",
             value=[f.name for f in factors],
-            allowed=f"1 to {len(modes)} factors",
+            allowed=f"up to {len(modes)} factors",
         )
     target = np.array([target_hz[mode] for mode in modes])
     number = max(modes) + 3
@@ -127,21 +137,18 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
     def jacobian(z: FloatArray) -> FloatArray:
         return evaluate(z)[1]
 
-    fit = least_squares(
-        residuals,
-        np.zeros(len(factors)),
-        jac=jacobian,
-        bounds=(np.log([f.low for f in factors]), np.log([f.high for f in factors])),
-        xtol=1e-10,
-    )
-    after = (fit.fun + 1.0) * target
+    z = np.zeros(len(factors))
+    if factors:
+        bounds = (np.log([f.low for f in factors]), np.log([f.high for f in factors]))
+        z = least_squares(residuals, z, jac=jacobian, bounds=bounds, xtol=1e-10).x
+    values = np.exp(z)
     return SteelFit(
-        structure=_scaled(structure, factors, np.exp(fit.x)),
-        factors={factor.name: float(value) for factor, value in zip(factors, np.exp(fit.x), strict=True)},
+        structure=_scaled(structure, factors, values),
+        factors={factor.name: float(value) for factor, value in zip(factors, values, strict=True)},
         modes=modes,
         target_hz=target,
         before_hz=_frequencies(reference, modes),
-        after_hz=after,
+        after_hz=(residuals(z) + 1.0) * target,
     )
 
 

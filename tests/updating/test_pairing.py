@@ -1,0 +1,63 @@
+"""Pairing: close modes mix in measured shapes, and still each gets its own name."""
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import ModalEstimate
+from jackettwin.updating.pairing import pair
+
+FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
+SHAPES = np.array(
+    [
+        [0.0, 1.0, 0.0, 0.0, 0.3],
+        [1.0, 0.0, 0.9, 0.3, 0.0],
+        [0.0, 0.6, 0.0, 0.0, -1.0],
+        [0.6, 0.0, 0.1, -1.0, 0.0],
+    ]
+)
+"""Side-side and fore-aft pairs at a tower's top and middle, x and y; a torsion mode seen sideways."""
+
+
+def estimate(frequency_hz: float, shape: np.ndarray) -> ModalEstimate:
+    return ModalEstimate(
+        frequency_hz=frequency_hz,
+        damping_ratio=0.02,
+        mode_shape=shape.astype(complex),
+        mpc=1.0,
+        mpd_rad=0.0,
+        order_share=1.0,
+    )
+
+
+@pytest.mark.parametrize("mixed", [0.0, 0.5, 0.9])
+def test_a_weak_mode_mixed_with_its_strong_neighbour_keeps_its_name(mixed: float) -> None:
+    weak = (1.0 - mixed) * SHAPES[:, 4] + mixed * 1j * SHAPES[:, 3]
+    measured = (estimate(0.742, SHAPES[:, 3]), estimate(0.761, weak))
+    found = pair(measured, FREQUENCY, SHAPES)
+    assert {mode: index for mode, (index, _) in found.items()} == {3: 0, 4: 1}
+
+
+def test_every_mode_of_the_model_finds_itself_in_any_order(rng: np.random.Generator) -> None:
+    order = rng.permutation(5)
+    measured = tuple(estimate(FREQUENCY[i] * 1.01, SHAPES[:, i] * np.exp(1j * i)) for i in order)
+    found = pair(measured, FREQUENCY, SHAPES)
+    assert {mode: int(order[index]) for mode, (index, _) in found.items()} == {i: i for i in range(5)}
+    assert all(likeness == pytest.approx(1.0) for _, likeness in found.values())
+
+
+def test_the_right_shape_at_the_wrong_frequency_is_not_paired() -> None:
+    assert pair((estimate(1.2, SHAPES[:, 3]),), FREQUENCY, SHAPES) == {}
+
+
+def test_the_right_frequency_with_the_wrong_shape_is_not_paired() -> None:
+    assert pair((estimate(0.65, SHAPES[:, 4]),), FREQUENCY, SHAPES).keys() <= {3, 4}
+
+
+def test_a_mode_the_sensors_cannot_see_is_not_paired() -> None:
+    blind = SHAPES.copy()
+    blind[:, 2] *= 1e-3
+    assert 2 not in pair((estimate(0.65, SHAPES[:, 2]),), FREQUENCY, blind)
+
+
+def test_nothing_measured_pairs_with_nothing() -> None:
+    assert pair((), FREQUENCY, SHAPES) == {}
