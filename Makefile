@@ -57,5 +57,8 @@ lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra dev --extra docs --extra bench --constraint requirements.lock --output-file requirements-dev.lock pyproject.toml
 
+docs: $(VENV)/.dev ## the documentation, to site/
+	$(BIN)/mkdocs build --quiet --strict
+
 clean: ## remove everything built
 	rm -rf $(VENV) build dist site out .mypy_cache .ruff_cache .pytest_cache
