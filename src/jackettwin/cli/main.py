@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from jackettwin.cli.check import check_command
 from jackettwin.cli.console import Commands
 from jackettwin.cli.export import export_command
 from jackettwin.cli.identify import identify_command
@@ -37,5 +38,6 @@ for command in (
     superelement_command,
     export_command,
     stages_command,
+    check_command,
 ):
     main.add_command(command)

@@ -27,13 +27,13 @@ import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 
-from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.state import Branch, factorised, maxwell_branches
+from jackettwin.response.static import self_weight
 from jackettwin.response.system import IntArray, Pencil, System
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot, prony_fit
 from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.check import rigid_body_motion
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
 from jackettwin.structure.model import Structure, Vector
@@ -171,7 +171,7 @@ def superelement(
         0.0  # static shapes: exactly zero but for rounding
     )
     shapes = system.expand(basis[: pencil.n])
-    return Superelement(M, C, K, point, shapes.T @ _weight(system), shapes, n_damped)
+    return Superelement(M, C, K, point, shapes.T @ self_weight(system.assembly), shapes, n_damped)
 
 
 def fixed_interface_frequencies(system: System, number: int) -> FloatArray:
@@ -313,12 +313,6 @@ def _square(branch: Branch) -> sp.csc_array:
 def _on(u: FloatArray, matrix: sp.csc_array) -> FloatArray:
     product = u.T @ (matrix @ u)
     return np.asarray(0.5 * (product + product.T))
-
-
-def _weight(system: System) -> FloatArray:
-    """Return the steel's self-weight on the assembly's DOFs [N]."""
-    lift = rigid_body_motion(system.assembly)[:, 2]
-    return np.asarray(-GRAVITY_M_S2 * (system.assembly.mass @ lift))
 
 
 def poles(M: FloatArray, C: FloatArray, K: FloatArray) -> ComplexArray:

@@ -1,0 +1,121 @@
+"""``jackettwin check``: every member under self-weight and given forces, to ISO 19902."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import output, print_json
+from jackettwin.errors import InputError
+from jackettwin.response.static import nodal_load, self_weight, static_displacement
+from jackettwin.response.system import build_system
+from jackettwin.soil import read_support
+from jackettwin.structure import assemble, read_structure
+from jackettwin.structure.forces import section_forces, von_mises_stress
+from jackettwin.structure.iso19902 import CHECKS, EDITIONS
+from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
+from jackettwin.updating import numbered_modes
+
+
+@click.command("check")
+@click.argument("structure")
+@click.option("--support", help="As for `jackettwin modes`.")
+@click.option(
+    "--force",
+    "forces",
+    multiple=True,
+    metavar="NODE=FX,FY,FZ[,MX,MY,MZ]",
+    help="A factored force [N, N·m]; may be repeated.",
+)
+@click.option("--no-weight", is_flag=True, help="Leave the self-weight out.")
+@click.option(
+    "--yield-strength", default=355e6, show_default=True, type=click.FloatRange(min=1e6), help="[Pa]"
+)
+@click.option(
+    "--edition", default="2007", show_default=True, type=click.Choice(EDITIONS), help="Of ISO 19902."
+)
+@click.option(
+    "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def check_command(
+    structure: str,
+    support: str | None,
+    forces: tuple[str, ...],
+    no_weight: bool,
+    yield_strength: float,
+    edition: str,
+    subdivide: int | None,
+    as_json: bool,
+) -> None:
+    """Check every member of STRUCTURE at rest under its weight and the forces given."""
+    chosen = read_structure(structure)
+    assembly = assemble(chosen, subdivide=subdivide)
+    held = read_support(
+        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
+    )
+    load = nodal_load(assembly, dict(_force(text) for text in forces))
+    if not no_weight:
+        load = load + self_weight(assembly)
+    u = static_displacement(build_system(assembly, held), load)
+    uses = member_uses(assembly, u, DesignBasis(yield_strength, edition))
+    stress = von_mises_stress(assembly, section_forces(assembly, u))
+    document = {
+        "structure": chosen.name,
+        "largest_von_mises_stress_pa": float(stress.max()),
+        "members": [_row(use) for use in sorted(uses, key=lambda use: -use.utilisation)],
+        "warnings": _warnings(uses),
+    }
+    if as_json:
+        print_json(document)
+    else:
+        _print(document)
+
+
+def _force(text: str) -> tuple[str, tuple[float, ...]]:
+    node, _, numbers = text.partition("=")
+    try:
+        return node, tuple(float(part) for part in numbers.split(","))
+    except ValueError:
+        raise InputError(
+            "not NODE=FX,FY,FZ", field="--force", value=text, remedy="write e.g. tower_top=2e6,0,0"
+        ) from None
+
+
+def _row(use: MemberUse) -> dict[str, Any]:
+    return {
+        "member": use.member,
+        "part": use.part,
+        "utilisation": use.utilisation,
+        "check": use.check,
+        "clause": CHECKS[use.check],
+        "by_check": dict(use.by_check),
+        "covered": use.covered,
+    }
+
+
+def _warnings(uses: tuple[MemberUse, ...]) -> list[str]:
+    thin = [use.member for use in uses if not use.covered]
+    over = [use.member for use in uses if use.utilisation > 1.0]
+    found = []
+    if thin:
+        found.append(f"{len(thin)} members have D/t above 120, beyond ISO 19902 13: {', '.join(thin[:5])}")
+    if over:
+        found.append(f"{len(over)} members are used above 1: {', '.join(over[:5])}")
+    return found
+
+
+def _print(document: dict[str, Any]) -> None:
+    table = Table(
+        "member", "part", "utilisation", "governed by", title=document["structure"], title_justify="left"
+    )
+    for row in document["members"][:15]:
+        table.add_row(row["member"], row["part"], f"{row['utilisation']:.3f}", row["clause"])
+    output.print(table)
+    if len(document["members"]) > 15:
+        output.print(f"and {len(document['members']) - 15} more members")
+    output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
+    for warning in document["warnings"]:
+        output.print(f"warning: {warning}")
