@@ -136,7 +136,7 @@ def test_stiffness_is_the_load_of_a_turned_tower_top(rotor) -> None:
 def test_bad_rotors_are_refused(rotor, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="locked, free"):
         rotor_loads(rotor, np.array([10.0, 0.0, 0.0]), pitch=0.0, shaft="loose")
-    with pytest.raises(InputError, match="no such windIO file"):
+    with pytest.raises(InputError, match="no such rotor .*did you mean 'iea15'"):
         read_rotor("iea99")
     (tmp_path / "empty.yaml").write_text("name: nothing\n")
     with pytest.raises(InputError, match="components"):

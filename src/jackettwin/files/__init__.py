@@ -2,6 +2,16 @@
 
 from jackettwin.files.atomic import atomic_folder, atomic_path, write_json
 from jackettwin.files.schema import Schema, validate
+from jackettwin.files.shipped import find_file, shipped
 from jackettwin.files.yaml import read_yaml
 
-__all__ = ["atomic_folder", "Schema", "atomic_path", "read_yaml", "validate", "write_json"]
+__all__ = [
+    "atomic_folder",
+    "atomic_path",
+    "find_file",
+    "read_yaml",
+    "Schema",
+    "shipped",
+    "validate",
+    "write_json",
+]

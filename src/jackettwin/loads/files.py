@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
 from jackettwin.errors import InputError
-from jackettwin.files import read_yaml
+from jackettwin.files import find_file, read_yaml
 from jackettwin.loads.bem import Control
 from jackettwin.loads.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.rotor import Rotor
@@ -31,9 +30,7 @@ def read_rotor(name: str | Path) -> tuple[Rotor, Control]:
     InputError
         If the file is missing or lacks a part that is needed.
     """
-    path = Path(name)
-    if not path.suffix:
-        path = Path(str(resources.files("jackettwin") / "data" / "rotors" / f"{name}.yaml"))
+    path = find_file(name, "rotors")
     data = read_yaml(path, what="windIO file")
     try:
         return _rotor(data), _control(data)

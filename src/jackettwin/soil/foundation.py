@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import resources
 from math import pi
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from jackettwin.errors import InputError, located
-from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.soil.impedance import lumped_head, on_pile_heads
 from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
 from jackettwin.soil.piles import (
@@ -205,8 +204,7 @@ class FoundationSchema(Schema):
 
 def shipped_foundations() -> tuple[str, ...]:
     """Return the names of the foundations that come with the package."""
-    folder = resources.files("jackettwin") / "data" / "foundations"
-    return tuple(sorted(f.name.removesuffix(".yaml") for f in folder.iterdir() if f.name.endswith(".yaml")))
+    return shipped("foundations")
 
 
 def read_foundation(name: str | Path) -> Foundation:
@@ -217,9 +215,7 @@ def read_foundation(name: str | Path) -> Foundation:
     InputError
         If the file is missing or says something that cannot be.
     """
-    path = Path(name)
-    if not path.suffix:
-        path = Path(str(resources.files("jackettwin") / "data" / "foundations" / f"{name}.yaml"))
+    path = find_file(name, "foundations")
     return build_foundation(read_yaml(path, what="foundation file"), path)
 
 

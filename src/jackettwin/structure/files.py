@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
 from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.model import (
@@ -187,10 +186,7 @@ class StructureSchema(Schema):
 
 def shipped_structures() -> tuple[str, ...]:
     """Return the names of the structures that come with the package."""
-    folder = resources.files("jackettwin.data").joinpath("structures")
-    return tuple(
-        sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-    )
+    return shipped("structures")
 
 
 def read_structure(source: str | Path, *, folder: Path | None = None) -> Structure:
@@ -207,21 +203,7 @@ def read_structure(source: str | Path, *, folder: Path | None = None) -> Structu
     InputError
         If the file is missing or anything in it is wrong; the message names file, field and value.
     """
-    name = str(source)
-    if name in shipped_structures():
-        with resources.as_file(
-            resources.files("jackettwin.data").joinpath("structures", f"{name}.yaml")
-        ) as path:
-            return _read_yaml_structure(path)
-    path = Path(source) if folder is None else folder / Path(source)
-    if not path.exists() and path.suffix == "":
-        raise InputError(
-            "no such structure",
-            field="structure",
-            value=name,
-            allowed=f"{', '.join(shipped_structures())}, a .yaml file, or a SubDyn .dat file",
-            remedy=did_you_mean(name, shipped_structures()),
-        )
+    path = find_file(source, "structures", folder=folder, also=" or a SubDyn .dat file")
     if path.suffix.lower() == ".dat":
         return read_subdyn(path)
     return _read_yaml_structure(path)

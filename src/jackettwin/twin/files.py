@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure, read_structure
@@ -133,10 +132,7 @@ class TwinSchema(Schema):
 
 def shipped_twins() -> tuple[str, ...]:
     """Return the names of the twins that come with the package."""
-    folder = resources.files("jackettwin.data").joinpath("twins")
-    return tuple(
-        sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-    )
+    return shipped("twins")
 
 
 def read_twin(source: str | Path) -> TwinConfig:
@@ -147,23 +143,7 @@ def read_twin(source: str | Path) -> TwinConfig:
     InputError
         If the file is missing or anything in it is wrong; the message names file, field and value.
     """
-    name = str(source)
-    if name in shipped_twins():
-        with resources.as_file(resources.files("jackettwin.data").joinpath("twins", f"{name}.yaml")) as path:
-            return _read(path)
-    path = Path(source)
-    if not path.exists() and path.suffix == "":
-        raise InputError(
-            "no such twin",
-            field="twin",
-            value=name,
-            allowed=f"{', '.join(shipped_twins())}, or a .yaml file",
-            remedy=did_you_mean(name, shipped_twins()),
-        )
-    return _read(path)
-
-
-def _read(path: Path) -> TwinConfig:
+    path = find_file(source, "twins")
     schema = validate(TwinSchema, read_yaml(path, what="twin file"), file=path)
     with located(file=path):
         return _build(schema, path)
