@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from jackettwin.identification import IdentificationSettings, identify
     from jackettwin.records import Channel, Record, read_record, write_record
     from jackettwin.report import build_report
-    from jackettwin.response.modal import damped_modes, undamped_modes
-    from jackettwin.response.system import build_system
+    from jackettwin.response import build_system, damped_modes, undamped_modes
     from jackettwin.soil import read_support
     from jackettwin.structure import Rayleigh, assemble, jacket, read_structure
     from jackettwin.twin import read_twin, run_twin
@@ -27,8 +26,8 @@ _HOME = {
     "Record": "records",
     "assemble": "structure",
     "build_report": "report",
-    "build_system": "response.system",
-    "damped_modes": "response.modal",
+    "build_system": "response",
+    "damped_modes": "response",
     "identify": "identification",
     "jacket": "structure",
     "read_record": "records",
@@ -36,7 +35,7 @@ _HOME = {
     "read_support": "soil",
     "read_twin": "twin",
     "run_twin": "twin",
-    "undamped_modes": "response.modal",
+    "undamped_modes": "response",
     "write_record": "records",
 }
 

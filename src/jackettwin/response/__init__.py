@@ -1,1 +1,16 @@
-"""What the structure does."""
+"""What the structure does: modes, poles, motion in time."""
+
+from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.system import System, build_system
+
+__all__ = [
+    "DampedModes",
+    "Sensor",
+    "System",
+    "UndampedModes",
+    "build_system",
+    "damped_modes",
+    "observation_matrix",
+    "undamped_modes",
+]
