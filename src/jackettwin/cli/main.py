@@ -8,9 +8,11 @@ from jackettwin.cli.check import check_command
 from jackettwin.cli.console import Commands
 from jackettwin.cli.export import export_command
 from jackettwin.cli.identify import identify_command
+from jackettwin.cli.loads import loads_command
 from jackettwin.cli.modes import modes_command
 from jackettwin.cli.refine import refine_command
 from jackettwin.cli.run import run_command
+from jackettwin.cli.simulate import simulate_command
 from jackettwin.cli.stages import stages_command
 from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
@@ -39,5 +41,7 @@ for command in (
     export_command,
     stages_command,
     check_command,
+    simulate_command,
+    loads_command,
 ):
     main.add_command(command)

@@ -19,6 +19,7 @@ import scipy.sparse as sp
 
 from jackettwin.errors import InputError
 from jackettwin.loads.current import Current
+from jackettwin.loads.kernels import morison
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, beam
 
@@ -193,14 +194,22 @@ def point_forces(
     wet : (..., n)
         Wet share of each point.
     """
-    c = grid.coefficients
+    c, D = grid.coefficients, grid.diameter
     v = u if velocity is None else u - velocity
-    vn = np.einsum("nij,...nj->...ni", grid.normal, v)
-    an = np.einsum("nij,...nj->...ni", grid.normal, du)
-    drag = 0.5 * c.drag * grid.diameter[:, None] * np.linalg.norm(vn, axis=-1, keepdims=True) * vn
-    inertia = c.inertia * 0.25 * np.pi * grid.diameter[:, None] ** 2 * an
-    length = np.broadcast_to(grid.weight * wet, vn.shape[:-1])
-    return np.asarray(c.density_kg_m3 * length[..., None] * (drag + inertia))
+    shape = np.broadcast_shapes(v.shape, du.shape)
+    flat = (-1, *shape[-2:])
+    length = np.broadcast_to(grid.weight * wet, shape[:-1])
+    forces = np.empty((int(np.prod(shape[:-2])), *shape[-2:]))
+    morison(
+        0.5 * c.density_kg_m3 * c.drag * D,
+        0.25 * np.pi * c.density_kg_m3 * c.inertia * D**2,
+        grid.normal,
+        np.broadcast_to(v, shape).reshape(flat),
+        np.broadcast_to(du, shape).reshape(flat),
+        length.reshape(flat[:-1]),
+        forces,
+    )
+    return forces.reshape(shape)
 
 
 def nodal_loads(grid: MorisonPoints, forces: FloatArray) -> FloatArray:

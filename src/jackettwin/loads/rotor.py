@@ -8,13 +8,14 @@ less its own motion (and less the wake's induction, if one is given), and only t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.loads.blades import Blade
+from jackettwin.loads.blades import ALPHA, Blade
+from jackettwin.loads.kernels import blade_elements
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -117,39 +118,65 @@ def rotor_loads(
     """
     if shaft not in SHAFTS:
         raise InputError("unknown shaft", field="shaft", value=shaft, allowed=", ".join(SHAFTS))
-    d = rotor.shaft
-    turn = rotation(d, azimuth)
-    arm, chordwise, normal = (part @ turn.T for part in elements(rotor, pitch))
-    relative = (wind if wind.ndim > 2 else wind[..., None, None, :]) - rotor_speed * np.cross(d, arm)
-    if motion is not None:
-        spin = motion[..., 3:]
-        hub = motion[..., :3] + np.cross(spin, rotor.hub)
-        if shaft == "free":
-            spin = spin - (spin @ d)[..., None] * d
-        relative = relative - hub[..., None, None, :] - np.cross(spin[..., None, None, :], arm)
-    if induced is not None:
-        tangent = np.cross(d, arm)
-        tangent = tangent / np.linalg.norm(tangent, axis=-1, keepdims=True)
-        relative = relative - induced[:, :1] * d - induced[:, 1:] * tangent
-    force = _element_forces(rotor.blade, relative, chordwise, normal, density)
-    total = force.sum(axis=(-3, -2))
-    moment = np.cross(arm, force).sum(axis=(-3, -2))
-    if shaft == "free":
-        moment = moment - (moment @ d)[..., None] * d
-    return np.concatenate([total, moment + np.cross(rotor.hub, total)], axis=-1)
+    wind = wind if wind.ndim > 2 else wind[..., None, None, :]
+    motion = np.zeros(6) if motion is None else motion
+    leading = np.broadcast_shapes(wind.shape[:-3], motion.shape[:-1])
+    compiled = compiled_rotor(
+        rotor, pitch=pitch, rotor_speed=rotor_speed, shaft=shaft, induced=induced, density=density
+    )
+    n = int(np.prod(leading))
+    out = compiled.loads(
+        np.broadcast_to(wind, (*leading, rotor.n_blades, rotor.blade.z.size, 3)).reshape(n, -1, 3),
+        np.broadcast_to(motion, (*leading, 6)).reshape(n, 6),
+        np.full(n, azimuth),
+    )
+    return out.reshape(*leading, 6)
 
 
-def _element_forces(
-    blade: Blade, relative: FloatArray, chordwise: FloatArray, normal: FloatArray, density: float
-) -> FloatArray:
-    """Return lift and drag of the elements (..., n_blades, n, 3) [N]."""
-    wc, wn = (relative * chordwise).sum(-1), (relative * normal).sum(-1)
-    cl, cd = blade.coefficients(np.arctan2(wn, wc))
-    speed = np.hypot(wc, wn)
-    scale = 0.5 * density * speed * blade.chord * blade.weight
-    along = scale * (cd * wc - cl * wn)
-    across = scale * (cl * wc + cd * wn)
-    return np.asarray(along[..., None] * chordwise + across[..., None] * normal)
+@dataclass(frozen=True)
+class CompiledRotor:
+    """A rotor at one pitch and speed as arrays for compiled loops over time; elements blade by blade."""
+
+    fixed: tuple[Any, ...]
+
+    def loads(self, wind: FloatArray, motion: FloatArray, azimuth: FloatArray) -> FloatArray:
+        """Return loads (n, 6): wind at the elements (n, n_elements, 3), motion (n, 6), azimuth (n,)."""
+        out = np.empty((wind.shape[0], 6))
+        blade_elements(*(*self.fixed, azimuth, wind, motion, out))
+        return out
+
+
+def compiled_rotor(
+    rotor: Rotor,
+    *,
+    pitch: float,
+    rotor_speed: float = 0.0,
+    shaft: str = "locked",
+    induced: FloatArray | None = None,
+    density: float = AIR_KG_M3,
+) -> CompiledRotor:
+    """Return the rotor ready for many times; arguments as in ``rotor_loads``."""
+    blade, B = rotor.blade, rotor.n_blades
+    arm, chordwise, normal = (np.ascontiguousarray(part.reshape(-1, 3)) for part in elements(rotor, pitch))
+    wake = np.zeros((blade.z.size, 2)) if induced is None else induced
+    return CompiledRotor(
+        (
+            arm,
+            chordwise,
+            normal,
+            np.tile(np.arange(blade.z.size), B),
+            np.tile(0.5 * density * blade.chord * blade.weight, B),
+            np.ascontiguousarray(blade.cl),
+            np.ascontiguousarray(blade.cd),
+            float(ALPHA[0]),
+            float(ALPHA[1] - ALPHA[0]),
+            np.tile(wake, (B, 1)),
+            rotor.shaft,
+            rotor.hub,
+            rotor_speed,
+            shaft == "free",
+        )
+    )
 
 
 class Linearised(NamedTuple):

@@ -20,6 +20,9 @@ SIGMA_RATIOS = (1.0, 0.8, 0.5)
 SCALE_RATIOS = (8.1, 2.7, 0.66)
 """σ_k/σ_1 and L_k/Λ_1 of u, v, w: IEC 61400-1 (2019) table C.1."""
 
+_INCOHERENT = 1e-4
+"""Coherence below this is none: the highest frequencies need no Cholesky factor."""
+
 DECAY, SCALE_TERM = 12.0, 0.12
 """Coherence of u: exp(−12 √((f r/V)² + (0.12 r/L_1)²)), IEC 61400-1 (2019) eq. (C.16)."""
 
@@ -102,14 +105,16 @@ def turbulence(
     shape = (3, f.size, points.shape[0])
     white = (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2.0)
     distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    field = np.zeros((n_times // 2 + 1, points.shape[0], 3), dtype=np.complex128)
-    for block in np.array_split(np.arange(f.size), max(1, f.size * distance.size // 2_000_000)):
+    nearest = (distance + np.where(distance > 0.0, 0.0, np.inf)).min(initial=np.inf)
+    coherent = np.flatnonzero(coherence(wind, f, nearest) > _INCOHERENT)
+    for block in np.array_split(coherent, max(1, coherent.size * distance.size // 2_000_000)):
         matrix = coherence(wind, f[block, None, None], distance) + 1e-9 * np.eye(points.shape[0])
-        white[0, block] = np.einsum("fij,fj->fi", np.linalg.cholesky(matrix), white[0, block])
+        white[0, block] = (np.linalg.cholesky(matrix) @ white[0, block, :, None])[..., 0]
+    field = np.zeros((3, points.shape[0], n_times // 2 + 1), dtype=np.complex128)
     for component in range(3):
         amplitude = np.sqrt(0.5 * _band_mean(wind, f, component) / duration)
-        field[1:, :, component] = amplitude[:, None] * white[component]
-    return np.asarray(np.fft.irfft(field, n=n_times, axis=0) * n_times)
+        field[component, :, 1:] = (amplitude[:, None] * white[component]).T
+    return np.ascontiguousarray(np.fft.irfft(field, n=n_times, axis=-1).T * n_times)
 
 
 def _band_mean(wind: Wind, f: FloatArray, component: int) -> FloatArray:

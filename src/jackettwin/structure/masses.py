@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -73,3 +74,16 @@ def body_from_static_moments(
     rows, columns = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
     inertia = tuple(float(I[i, j]) for i, j in zip(rows, columns, strict=True))
     return PointMass(node, mass_kg, (float(a[0]), float(a[1]), float(a[2])), cast("Inertia", inertia), part)
+
+
+def turned_body(body: PointMass, angle: float) -> PointMass:
+    """Return a body turned about the vertical through its node by ``angle`` [rad], right-handed."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    R = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    a, I = R @ np.array(body.cg_offset_m), R @ body.inertia_tensor @ R.T  # noqa: E741
+    inertia = (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])
+    return replace(
+        body,
+        cg_offset_m=cast("Vector", tuple(map(float, a))),
+        inertia_kg_m2=cast("Inertia", tuple(map(float, inertia))),
+    )

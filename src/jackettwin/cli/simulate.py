@@ -1,0 +1,55 @@
+"""``jackettwin simulate``: the record of a known asset under wind and waves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import output, print_json
+from jackettwin.errors import InputError
+from jackettwin.records import write_record
+from jackettwin.simulate import Simulation, read_scenario, simulate
+
+DEFAULT_SCENARIO = "parked"
+
+
+@click.command("simulate")
+@click.argument("scenario", default=DEFAULT_SCENARIO)
+@click.option("--out", required=True, help="The record to write: NAME.parquet, NAME.json beside it.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def simulate_command(scenario: str, out: str, as_json: bool) -> None:
+    """Simulate SCENARIO, a shipped name or a YAML file, and write its record."""
+    chosen = read_scenario(scenario)
+    path = _record_path(out)
+    done = simulate(chosen)
+    write_record(done.record, path)
+    if as_json:
+        print_json({**done.document(), "record": str(path)})
+    else:
+        _print(done, path)
+
+
+def _record_path(out: str) -> Path:
+    path = Path(out)
+    if path.is_dir():
+        raise InputError("is a folder", field="--out", value=out, remedy="name a file, e.g. record.parquet")
+    return path if path.suffix else path.with_suffix(".parquet")
+
+
+def _print(done: Simulation, path: Path) -> None:
+    speed = done.seconds_simulated / done.wall_s
+    output.print(
+        f"{path}: {done.seconds_simulated:g} s simulated in {done.wall_s:.2f} s ({speed:.0f} times real time)"
+    )
+    table = Table("channel", "unit", "rms", "largest")
+    for channel, row in zip(done.record.channels, done.record.data, strict=True):
+        known = row[row == row]
+        rms = float((known**2).mean() ** 0.5)
+        table.add_row(channel.name, channel.unit, f"{rms:.4g}", f"{abs(known).max():.4g}")
+    output.print(table)
+    truth = Table("true mode", "f [Hz]", "ζ [%]")
+    for mode in done.record.metadata["true_modes"]:
+        truth.add_row(mode["label"], f"{mode['frequency_hz']:.4f}", f"{100.0 * mode['damping_ratio']:.2f}")
+    output.print(truth)

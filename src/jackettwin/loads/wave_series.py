@@ -1,0 +1,102 @@
+"""Wave loads as time series, projected on a few coordinates: resultants, modes, any columns of motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from jackettwin.loads.current import Current
+from jackettwin.loads.morison import MorisonPoints, point_forces, wetness
+from jackettwin.loads.sea_series import sea_series
+from jackettwin.loads.waves import AirySea, Waves
+
+FloatArray = npt.NDArray[np.float64]
+
+_CHUNK = 48
+"""Points at a time: their fields stay in the cache."""
+_REGULAR_SAMPLES = 256
+"""Times in one period of a regular wave."""
+
+
+class WaveSeries(NamedTuple):
+    """Loads that repeat: (n_times, n_columns) at times ``step_s`` apart, and the water's spread.
+
+    ``sigma`` (n,) is the standard deviation of the water's velocity across the members at the points [m/s].
+    """
+
+    loads: FloatArray
+    step_s: float
+    sigma: FloatArray
+
+    @property
+    def period_s(self) -> float:
+        """Time after which the loads repeat."""
+        return float(self.step_s * self.loads.shape[0])
+
+
+def resultant_columns(grid: MorisonPoints) -> FloatArray:
+    """Return (3n, 6): force and moment about the still water's origin from forces at the points."""
+    columns = np.zeros((grid.weight.size, 3, 6))
+    columns[:, :, :3] = np.eye(3)
+    x, y, z = grid.points.T
+    columns[:, 2, 3], columns[:, 1, 3] = y, -z
+    columns[:, 0, 4], columns[:, 2, 4] = z, -x
+    columns[:, 1, 5], columns[:, 0, 5] = x, -y
+    return columns.reshape(-1, 6)
+
+
+def wave_series(
+    grid: MorisonPoints,
+    waves: Waves,
+    columns: FloatArray,
+    *,
+    depth: float,
+    period: float,
+    step: float = 0.25,
+    current: Current | None = None,
+) -> WaveSeries:
+    """Return the loads of waves that repeat after ``period`` [s].
+
+    Parameters
+    ----------
+    columns : (3n, n_columns)
+        Work of forces at the points on each coordinate: ``grid.N.T @ basis``, or ``resultant_columns``.
+    depth : float
+        Water depth [m]; nothing below the bed is loaded.
+    step : float
+        Longest time between samples of a random sea [s].
+    """
+    random = isinstance(waves, AirySea) and waves.omega.size > 1
+    n_times = 2 * int(np.ceil(0.5 * period / step)) if random else _REGULAR_SAMPLES
+    t = np.arange(n_times, dtype=np.float64) * (period / n_times)
+    loads = np.zeros((n_times, columns.shape[1]))
+    sigma = np.zeros(grid.weight.size)
+    for start in range(0, grid.weight.size, _CHUNK):
+        here = slice(start, start + _CHUNK)
+        part = some_points(grid, here)
+        if isinstance(waves, AirySea) and random:
+            surface, u, du = sea_series(waves, part.points, period=period, n_times=n_times)
+        else:
+            surface = waves.surface(part.points, t)
+            u, du = waves.motion(part.points, t)
+        if current is not None:
+            u = u + current.velocity(part.points[:, 2])
+        wet = wetness(part, surface) * (part.points[:, 2] >= -depth)
+        forces = point_forces(part, u, du, wet=wet)
+        loads += forces.reshape(n_times, -1) @ columns[3 * start : 3 * start + 3 * part.weight.size]
+        # the covariance of the water's velocity, seen across the member
+        spread = u - u.mean(axis=0)
+        covariance = np.einsum("tni,tnj->nij", spread[::4], spread[::4]) / spread[::4].shape[0]
+        sigma[here] = np.sqrt(0.5 * np.maximum(np.einsum("nij,nij->n", part.normal, covariance), 0.0))
+    return WaveSeries(loads, period / n_times, sigma)
+
+
+def some_points(grid: MorisonPoints, here: slice) -> MorisonPoints:
+    """Return a part of the points."""
+    N = sp.csr_array(grid.N[:, 3 * here.start : 3 * here.stop])
+    per_point = ("points", "weight", "half_height", "diameter", "tube_diameter", "bore", "member", "normal")
+    return replace(grid, N=N, **{name: getattr(grid, name)[here] for name in per_point})

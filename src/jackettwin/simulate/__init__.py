@@ -1,0 +1,8 @@
+"""Records of a known asset under wind and waves."""
+
+from jackettwin.simulate.files import read_scenario, shipped_scenarios
+from jackettwin.simulate.record import Simulation, simulate
+from jackettwin.simulate.resultant import loads_document
+from jackettwin.simulate.scenario import Scenario
+
+__all__ = ["Scenario", "Simulation", "loads_document", "read_scenario", "shipped_scenarios", "simulate"]

@@ -1,0 +1,86 @@
+"""The asset of a scenario file: structure, ground, damping."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jackettwin.errors import InputError, located
+from jackettwin.response.modal import undamped_modes
+from jackettwin.response.system import build_system
+from jackettwin.simulate.scenario import Asset
+from jackettwin.simulate.schema import ScenarioSchema
+from jackettwin.soil import pinned, read_support
+from jackettwin.soil.foundation import Foundation, FoundationSchema, SoilSchema, read_foundation
+from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
+
+
+def build_asset(schema: ScenarioSchema, folder: Path) -> Asset:
+    """Return the asset; relative paths are relative to ``folder``.
+
+    Raises
+    ------
+    InputError
+        If a part is missing, given twice, or wrong.
+    """
+    structure, foundation = _structure(schema, folder), _foundation(schema, folder)
+    if foundation is not None:
+        structure, support = foundation.lumped(structure)
+    else:
+        support = read_support(
+            schema.support, structure, first_frequency_hz=lambda: _first_frequency(structure), folder=folder
+        )
+    steel = schema.damping.rayleigh
+    return Asset(
+        structure=structure,
+        support=support,
+        beam=schema.beam,
+        rotary_inertia=schema.rotary_inertia,
+        subdivide=schema.subdivide,
+        gravity=schema.gravity,
+        rayleigh=Rayleigh() if steel is None else Rayleigh.minimum(steel.ratio, steel.frequency_hz),
+        coupled_damping=schema.damping.coupled,
+    )
+
+
+def _structure(schema: ScenarioSchema, folder: Path) -> Structure:
+    choice = schema.structure
+    structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
+    rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
+    if rna is None:
+        return structure
+    top = structure.top_node
+    others = tuple(mass for mass in structure.masses if mass.node != top)
+    return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
+
+
+def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:
+    given = [key for key in ("soil", "foundation", "support") if getattr(schema, key) is not None]
+    if len(given) > 1:
+        raise InputError("the ground is given twice", field=", ".join(given), remedy="keep one of them")
+    if schema.foundation is not None:
+        name = schema.foundation
+        return read_foundation(folder / name if Path(name).suffix else name)
+    if (schema.soil is None) != (schema.piles is None):
+        raise InputError(
+            "soil and piles go together",
+            field="piles" if schema.piles is None else "soil",
+            remedy="give both, or foundation, or support",
+        )
+    if schema.soil is None or schema.piles is None:
+        return None
+    ground = schema.soil
+    whole = FoundationSchema(
+        pile=schema.piles,
+        soil=SoilSchema(layers=ground.layers, linear=ground.linear),
+        scour=ground.scour,
+        curves=ground.curves,
+        damping=ground.damping,
+        law=ground.law,
+    )
+    with located(field="soil"):
+        return whole.build()
+
+
+def _first_frequency(structure: Structure) -> float:
+    system = build_system(assemble(structure), pinned(structure))
+    return float(undamped_modes(system, 1).frequency_hz[0])

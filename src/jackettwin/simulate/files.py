@@ -1,0 +1,228 @@
+"""Scenario files: YAML to a checked scenario."""
+
+from __future__ import annotations
+
+from math import radians
+from pathlib import Path
+from typing import Any
+
+from jackettwin.errors import InputError, located
+from jackettwin.files import find_file, read_yaml, shipped, validate
+from jackettwin.loads.current import Current
+from jackettwin.loads.files import read_rotor
+from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.water import Water
+from jackettwin.loads.waves import peak_factor
+from jackettwin.loads.wind import Wind
+from jackettwin.response.sensors import Sensor
+from jackettwin.simulate.asset import build_asset
+from jackettwin.simulate.scenario import Air, Clock, Instrument, Scenario, Sea, Turbine
+from jackettwin.simulate.schema import (
+    RotorSchema,
+    ScenarioSchema,
+    SensorSchema,
+    TimeSchema,
+    WaterSchema,
+    WavesSchema,
+)
+from jackettwin.structure import Structure
+
+REGULAR = ("airy", "stokes5", "stream")
+_LONGEST_LOAD_STEP_S = 0.05
+
+
+def shipped_scenarios() -> tuple[str, ...]:
+    """Return the names of the scenarios that come with the package."""
+    return shipped("scenarios")
+
+
+def read_scenario(source: str | Path) -> Scenario:
+    """Read a scenario: a shipped name or a YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or anything in it is wrong; the message names file, field and value.
+    """
+    path = find_file(source, "scenarios")
+    return scenario_from(read_yaml(path, what="scenario file"), path)
+
+
+def scenario_from(data: Any, path: Path) -> Scenario:
+    """Return the scenario that a file's content describes; ``path`` names it and anchors relative paths.
+
+    Raises
+    ------
+    InputError
+        Names file, field and value.
+    """
+    schema = validate(ScenarioSchema, data, file=path)
+    with located(file=path):
+        asset = build_asset(schema, path.parent)
+        turbine = _turbine(schema)
+        names = [s.channel for s in schema.sensors]
+        if len(set(names)) != len(names):
+            raise InputError(
+                "a channel is given twice", field="sensors", value=names, remedy="rename one of them"
+            )
+        return Scenario(
+            name=path.stem,
+            path=path,
+            asset=asset,
+            sea=_sea(schema, asset.structure),
+            air=_air(schema, asset.structure, turbine),
+            turbine=turbine,
+            clock=_clock(schema.time),
+            instruments=tuple(_instrument(s) for s in schema.sensors)
+            or _standard_instruments(asset.structure),
+            sensor_seed=schema.sensor_seed,
+        )
+
+
+def _turbine(schema: ScenarioSchema) -> Turbine | None:
+    chosen = schema.rotor
+    if chosen is None:
+        if schema.wind is None:
+            return None
+        chosen = RotorSchema()
+    if chosen.state == "operating" and schema.wind is None:
+        raise InputError("an operating turbine needs wind", field="wind", remedy="add wind: {speed_m_s: …}")
+    with located(field="rotor.data"):
+        rotor, control = read_rotor(chosen.data)
+    return Turbine(rotor, control, chosen.state, radians(chosen.pitch_deg), radians(chosen.azimuth_deg))
+
+
+def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) -> Air | None:
+    w = schema.wind
+    if w is None or turbine is None:
+        return None
+    top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+    turbulence = 0.0 if w.turbulence == "none" else w.turbulence
+    with located(field="wind"):
+        wind = Wind(w.speed_m_s, top + turbine.rotor.hub_height, turbulence, w.shear)
+    return Air(wind, w.seed, radians(w.yaw_deg), w.tower_drag)
+
+
+def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
+    c, w = schema.current, schema.waves
+    if schema.water is None and w is None and c is None:
+        return None
+    given = schema.water or WaterSchema()
+    coefficients, water = _water(given, structure)
+    depth = given.depth_m or _depth(structure)
+    current = (
+        None if c is None else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg))
+    )
+    if w is None:
+        return Sea(depth, coefficients, water, current=current)
+    with located(field="waves"):
+        height, period = _size(w)
+        return Sea(
+            depth_m=depth,
+            coefficients=coefficients,
+            water=water,
+            waves=w.type,
+            height_m=height,
+            period_s=period,
+            direction=radians(w.direction_deg),
+            seed=w.seed,
+            stretching=w.stretching or ("none" if w.type == "airy" else "wheeler"),
+            gamma=None if w.type in REGULAR else _peakedness(w),
+            spreading=w.spreading,
+            relative_velocity=w.relative_velocity,
+            current=current,
+        )
+
+
+def _depth(structure: Structure) -> float:
+    """Return the depth down to the lowest foot."""
+    feet = structure.reaction_nodes or tuple(structure.nodes)
+    depth = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
+    if not depth > 0.0:
+        raise InputError(
+            "water depth is not known", field="water.depth_m", value=depth, remedy="state it in metres"
+        )
+    return depth
+
+
+def _water(w: WaterSchema, structure: Structure) -> tuple[Coefficients, Water | None]:
+    """Return the coefficients, and the water that moves with the structure if its mass is to be added."""
+    growth = tuple((g.top_z_m, g.bottom_z_m, g.thickness_m) for g in w.marine_growth)
+    if isinstance(w.flooded, bool):
+        everything = {m.name for m in structure.members if m.part not in ("tower", "piles")}
+        flooded = tuple(sorted(everything)) if w.flooded else ()
+    else:
+        flooded = tuple(w.flooded)
+    adds = bool(growth or flooded) if w.adds_mass is None else w.adds_mass
+    water = Water(flooded, w.growth_density) if adds else None
+    return Coefficients(w.drag, 1.0 + w.added_mass, growth, w.density), water
+
+
+def _size(w: WavesSchema) -> tuple[float, float]:
+    """Return H and T, or Hs and Tp; refuse those of the other kind."""
+    regular, random = ("height_m", "period_s"), ("hs_m", "tp_s")
+    needed = regular if w.type in REGULAR else random
+    others = (*random, "gamma", "spreading") if w.type in REGULAR else regular
+    for name in others:
+        if getattr(w, name) is not None:
+            raise InputError(
+                f"does not belong to waves of type {w.type}",
+                field=name,
+                value=getattr(w, name),
+                allowed=", ".join(needed),
+                remedy=f"give {' and '.join(needed)}, or another type",
+            )
+    for name in needed:
+        if getattr(w, name) is None:
+            raise InputError("required key is missing", field=name, remedy=f"add {name!r}")
+    return getattr(w, needed[0]), getattr(w, needed[1])
+
+
+def _peakedness(w: WavesSchema) -> float | None:
+    if w.type == "pierson-moskowitz":
+        return 1.0
+    if w.gamma is None and w.hs_m is not None and w.tp_s is not None:
+        return peak_factor(w.hs_m, w.tp_s)
+    return w.gamma
+
+
+def _clock(t: TimeSchema) -> Clock:
+    """Return the clock; loads default to the longest multiple of the step up to 0.05 s."""
+    h = t.step_s
+    load = t.load_step_s or max(h, h * int(_LONGEST_LOAD_STEP_S / h + 1e-9))
+    for field, value, unit in (
+        ("load_step_s", load, h),
+        ("duration_s", t.duration_s, load),
+        ("discard_s", t.discard_s, load),
+    ):
+        if abs(value / unit - round(value / unit)) > 1e-6 or (value < unit and field != "discard_s"):
+            raise InputError(
+                "must be a whole number of steps",
+                field=f"time.{field}",
+                value=value,
+                allowed=f"multiples of {unit:g} s",
+                remedy="change it, or step_s and load_step_s",
+            )
+    return Clock(t.duration_s, h, t.discard_s, load)
+
+
+def _instrument(s: SensorSchema) -> Instrument:
+    return Instrument(
+        sensor=Sensor(s.channel, s.direction, s.node, s.height_m),
+        quantity=s.quantity,
+        on_nacelle=s.frame == "nacelle",
+        noise=s.noise,
+        bias=s.bias,
+        limit=s.limit,
+        dropouts_per_hour=s.dropouts_per_hour,
+        dropout_s=s.dropout_s,
+    )
+
+
+def _standard_instruments(structure: Structure) -> tuple[Instrument, ...]:
+    """Return accelerometers along x and y on the top node."""
+    axes = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0)}
+    return tuple(
+        Instrument(Sensor(f"acc_top_{axis}", direction, node=structure.top_node))
+        for axis, direction in axes.items()
+    )

@@ -1,0 +1,153 @@
+"""The linear part of a scenario: structure, ground, and what water and air add in the mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.loads.bem import Operation, operating_damping, operating_point
+from jackettwin.loads.morison import morison_points
+from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
+from jackettwin.loads.water import water_mass
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.reduced import Reduced, reduced
+from jackettwin.response.state import state_matrix
+from jackettwin.response.system import Group, build_system
+from jackettwin.simulate.scenario import Air, Asset, Scenario, Sea, Turbine
+from jackettwin.simulate.tuning import tuned_tower
+from jackettwin.soil.viscoelastic import Prony
+from jackettwin.structure import Assembly, assemble
+from jackettwin.structure.masses import turned_body
+
+FloatArray = npt.NDArray[np.float64]
+
+BAND_HZ = 5.0
+"""Modes inside the structure are kept up to here."""
+_OVERDAMPED = 0.5
+
+
+@dataclass(frozen=True)
+class Model:
+    """An asset reduced to a few coordinates.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    reduced : Reduced
+    top : (6, n) motion of the top node from the coordinates
+    """
+
+    assembly: Assembly
+    reduced: Reduced
+    top: FloatArray
+
+    def with_forces_of_motion(self, *, damping: FloatArray, stiffness: FloatArray) -> Model:
+        """Return the model with forces −C q̇ − K q on its coordinates, (n, n); they need not be symmetric."""
+        pencil = self.reduced.pencil
+        everywhere = np.arange(pencil.n)
+        added = (Group(Prony(c=1.0), damping, everywhere), Group(Prony(k0=1.0), stiffness, everywhere))
+        pencil = replace(pencil, groups=(*pencil.groups, *added))
+        return replace(self, reduced=replace(self.reduced, pencil=pencil))
+
+
+@dataclass(frozen=True)
+class TrueMode:
+    """A mode of the linear model, aerodynamics and water included."""
+
+    label: str
+    frequency_hz: float
+    damping_ratio: float
+
+
+def build_model(scenario: Scenario) -> Model:
+    """Return the asset of a scenario in still air, its tower tuned if that is asked."""
+    return asset_model(
+        scenario.asset,
+        sea=scenario.sea,
+        yaw=0.0 if scenario.air is None else scenario.air.yaw,
+    )
+
+
+def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Model:
+    """Return an asset in still air, its nacelle turned by ``yaw`` [rad], its tower tuned if that is asked."""
+    top_node = asset.structure.top_node
+    structure = asset.structure.with_masses(
+        tuple(turned_body(m, yaw) if m.node == top_node else m for m in asset.structure.masses)
+    )
+    assembly = assemble(
+        structure,
+        beam_theory=asset.beam,
+        rotary_inertia=asset.rotary_inertia,
+        subdivide=asset.subdivide,
+        gravity=asset.gravity,
+    )
+    if sea is not None and sea.water is not None:
+        grid = morison_points(assembly, highest_z=0.0, coefficients=sea.coefficients)
+        assembly = replace(assembly, mass=assembly.mass + water_mass(assembly, grid, sea.water).tocsc())
+    system = build_system(assembly, asset.support, rayleigh=asset.rayleigh)
+    small = reduced(system, below_hz=BAND_HZ, keep=tuple(assembly.dofs(top_node)))
+    rows = assembly.expand[assembly.mesh.node_dofs(top_node)]
+    model = Model(assembly, small, np.asarray(rows @ small.basis))
+    if asset.coupled_damping is None:
+        return model
+    damping = tuned_tower(assembly, small, asset.coupled_damping)
+    return model.with_forces_of_motion(damping=damping, stiffness=np.zeros_like(damping))
+
+
+@dataclass(frozen=True)
+class Aerodynamics:
+    """The rotor about the mean wind, at the tower top in global axes."""
+
+    mean: Linearised
+    operation: Operation | None
+    turbine: Turbine
+
+
+def aerodynamics(air: Air, turbine: Turbine) -> Aerodynamics:
+    """Return the rotor linearised about the mean wind at the hub."""
+    speed, heading = air.wind.speed_m_s, -air.yaw
+    if turbine.state == "operating":
+        operation = operating_point(turbine.rotor, turbine.control, speed)
+        turbine = replace(turbine, pitch=operation.pitch)
+        found = operating_damping(turbine.rotor, operation, yaw_error=heading)
+    else:
+        operation = None
+        found = linearise(
+            turbine.rotor,
+            speed,
+            pitch=turbine.pitch,
+            yaw_error=heading,
+            azimuth=turbine.azimuth,
+            shaft="free" if turbine.state == "idling" else "locked",
+        )
+    R = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), air.yaw))
+    turned = Linearised(
+        R @ found.load, in_global_axes(found.damping, air.yaw), in_global_axes(found.stiffness, air.yaw)
+    )
+    return Aerodynamics(turned, operation, turbine)
+
+
+def with_aerodynamics(model: Model, mean: Linearised) -> Model:
+    """Return the model with the rotor's mean damping and stiffness at its top."""
+    top = model.top
+    return model.with_forces_of_motion(
+        damping=top.T @ mean.damping @ top, stiffness=top.T @ mean.stiffness @ top
+    )
+
+
+def true_modes(model: Model, *, below_hz: float) -> tuple[TrueMode, ...]:
+    """Return the modes of the linear model, by frequency."""
+    pencil = model.reduced.pencil
+    values, states = np.linalg.eig(state_matrix(pencil))
+    keep = (values.imag > 0.0) & (np.abs(values) < 2.0 * pi * below_hz)
+    keep &= -values.real < _OVERDAMPED * np.abs(values)
+    order = np.flatnonzero(keep)[np.argsort(np.abs(values[keep]))]
+    shapes = model.reduced.basis @ states[: pencil.n, order]
+    labels = mode_labels(mode_kinds(model.assembly, shapes))
+    return tuple(
+        TrueMode(label, float(abs(v)) / (2.0 * pi), float(-v.real / abs(v)))
+        for label, v in zip(labels, values[order], strict=True)
+    )

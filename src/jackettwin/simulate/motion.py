@@ -1,0 +1,177 @@
+"""The motion of an asset through a scenario."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.response.time import (
+    Hold,
+    StateSpace,
+    first_order_hold,
+    march,
+    march_with_feedback,
+    periodic_start,
+    state_space,
+)
+from jackettwin.simulate.model import (
+    Model,
+    TrueMode,
+    aerodynamics,
+    build_model,
+    true_modes,
+    with_aerodynamics,
+)
+from jackettwin.simulate.scenario import Scenario
+from jackettwin.simulate.water import WaterLoads, relative_drag, water_loads, water_points
+from jackettwin.simulate.wind import (
+    RotorLoads,
+    rotor_loads_in,
+    tower_damping,
+    tower_loads,
+    tower_points,
+    wind_field,
+)
+
+FloatArray = npt.NDArray[np.float64]
+
+_TRUTH_BELOW_HZ = 1.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """States of the linear model at every load step, and the forces between them.
+
+    Attributes
+    ----------
+    model : Model
+        With the mean damping of air and water.
+    states : (n_steps + 1, n_states)
+    force : (n_steps + 1, n) on the coordinates, all told
+    step_s : load step
+    modes : the linear model's
+    signals : channels of the environment at the load steps, (n_steps + 1,) each
+    """
+
+    model: Model
+    space: StateSpace
+    states: FloatArray
+    force: FloatArray
+    step_s: float
+    modes: tuple[TrueMode, ...]
+    signals: dict[str, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Loads:
+    """What drives the model: forces known beforehand, and the rotor's answer to motion."""
+
+    model: Model
+    repeating: FloatArray
+    """(n_steps + 1, n) forces that repeat after the simulated time."""
+    wave: WaterLoads | None
+    """Regular waves, which repeat after their own period."""
+    rotor: RotorLoads | None
+    damping: FloatArray
+    """(6, 6) of the rotor at the tower top that the model knows already."""
+    signals: dict[str, FloatArray]
+
+
+def simulate_motion(scenario: Scenario) -> Motion:
+    """Return the motion of a scenario's asset, from a start without transient.
+
+    The model's own motion, the mean damping of rotor, tower and waves included, is stepped exactly; what the
+    rotor adds beyond its mean damping is a feedback.
+
+    Raises
+    ------
+    InputError
+        If parts of the scenario do not fit each other.
+    NumericalError
+        If the motion grows without bound.
+    """
+    clock = scenario.clock
+    n_steps = round(clock.total_s / clock.load_step_s)
+    loads = _loads(scenario, n_steps)
+    space = state_space(loads.model.reduced.pencil)
+    hold = first_order_hold(space.A, space.B, clock.load_step_s)
+    x0 = periodic_start(hold, loads.repeating)
+    force = loads.repeating
+    if loads.wave is not None:
+        series = loads.wave.series
+        own = first_order_hold(space.A, space.B, series.step_s)
+        x0 = x0 + periodic_start(own, np.vstack([series.loads, series.loads[:1]]))
+        t = np.arange(n_steps + 1, dtype=np.float64) * clock.load_step_s
+        force = force + loads.wave.at(t)
+    if loads.rotor is None:
+        states = march(hold, x0, force)
+    else:
+        states, force = _with_rotor(loads, space, hold, x0, force)
+    return Motion(
+        loads.model,
+        space,
+        states,
+        force,
+        clock.load_step_s,
+        true_modes(loads.model, below_hz=_TRUTH_BELOW_HZ),
+        loads.signals,
+    )
+
+
+def _with_rotor(
+    loads: _Loads, space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    assert loads.rotor is not None
+    n, top = space.n, loads.model.top
+    velocity = np.zeros((6, space.A.shape[0]))
+    velocity[:, n : 2 * n] = top
+    change = loads.rotor.change(loads.damping)
+    n_times = loads.rotor.still.shape[0]
+    own = Hold(hold.E, hold.P0 @ top.T, hold.P1 @ top.T)
+    states, extra = march_with_feedback(hold, own, x0, force, lambda k, x: change(k % n_times, velocity @ x))
+    return states, force + extra @ top
+
+
+def _loads(scenario: Scenario, n_steps: int) -> _Loads:
+    """Return model and loads, with n_steps + 1 rows of which the last repeats the first."""
+    model = build_model(scenario)
+    basis, step = model.reduced.basis, scenario.clock.load_step_s
+    t = np.arange(n_steps + 1, dtype=np.float64) * step
+    repeating = np.zeros((n_steps + 1, model.reduced.n))
+    damping: list[FloatArray] = []
+    signals: dict[str, FloatArray] = {}
+    wave: WaterLoads | None = None
+    rotor: RotorLoads | None = None
+    known = np.zeros((6, 6))
+    if scenario.sea is not None:
+        grid = water_points(model.assembly, scenario.sea)
+        water = water_loads(scenario.sea, grid, np.asarray(grid.N.T @ basis), duration=scenario.clock.total_s)
+        if water is not None:
+            if scenario.sea.relative_velocity != "none":
+                damping.append(relative_drag(grid, water, basis))
+            if scenario.sea.waves is not None:
+                signals["wave_elevation"] = water.elevation(t)
+            if abs(water.series.period_s - scenario.clock.total_s) < 1e-9:
+                repeating += water.at(t)
+            else:
+                wave = water
+    if scenario.air is not None and scenario.turbine is not None:
+        air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
+        field_ = wind_field(air, aero, duration=scenario.clock.total_s, step=step)
+        rotor, known = rotor_loads_in(field_, air, aero), aero.mean.damping
+        repeating += _closed(rotor.still) @ model.top
+        signals["wind_hub_x"] = _closed(field_.at_hub()[:, 0])
+        tower = tower_points(model.assembly, air)
+        if tower is not None:
+            repeating += _closed(tower_loads(field_, tower, np.asarray(tower.N.T @ basis)))
+            damping.append(tower_damping(air, tower, basis))
+        model = with_aerodynamics(model, aero.mean)
+    zero = np.zeros((model.reduced.n,) * 2)
+    model = model.with_forces_of_motion(damping=sum(damping, zero), stiffness=zero)
+    return _Loads(model, repeating, wave, rotor, known, signals)
+
+
+def _closed(series: FloatArray) -> FloatArray:
+    return np.concatenate([series, series[:1]])

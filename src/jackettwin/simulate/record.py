@@ -1,0 +1,128 @@
+"""A simulated motion as a record, its truth beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import degrees
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.records import Channel, Record
+from jackettwin.simulate.motion import Motion, simulate_motion
+from jackettwin.simulate.scenario import Instrument, Scenario
+from jackettwin.simulate.sensing import flawed, readings
+from jackettwin.version import __version__
+
+FloatArray = npt.NDArray[np.float64]
+
+_UNITS = {"acceleration": "m/s^2", "velocity": "m/s", "displacement": "m"}
+_SIGNALS = {"wind_hub_x": ("wind speed", "m/s"), "wave_elevation": ("wave elevation", "m")}
+_START = datetime(2025, 1, 1, tzinfo=UTC)
+"""Simulated records need a start; it means nothing."""
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A record and what it took."""
+
+    record: Record
+    seconds_simulated: float
+    wall_s: float
+
+    def document(self) -> dict[str, Any]:
+        """Return the document of ``jackettwin simulate``."""
+        return {
+            "channels": list(self.record.channel_names),
+            "conditions": dict(self.record.conditions),
+            "sample_rate_hz": self.record.sample_rate_hz,
+            "seconds_simulated": self.seconds_simulated,
+            "wall_s": self.wall_s,
+            "true_modes": self.record.metadata["true_modes"],
+        }
+
+
+def simulate(scenario: Scenario) -> Simulation:
+    """Return the record of a scenario.
+
+    Raises
+    ------
+    InputError
+        If parts of the scenario do not fit each other, or a sensor has no place.
+    NumericalError
+        If the motion grows without bound.
+    """
+    start = perf_counter()
+    motion = simulate_motion(scenario)
+    clean = readings(motion, scenario)
+    step = scenario.clock.step_s
+    data = flawed(clean, scenario.instruments, step_s=step, seed=scenario.sensor_seed)
+    signals = _signals(motion, scenario, clean.shape[1])
+    record = Record(
+        data=np.vstack([data, *(row[None] for row in signals.values())]),
+        sample_rate_hz=1.0 / step,
+        channels=(*(_channel(i) for i in scenario.instruments), *map(_signal_channel, signals)),
+        start_utc=_START,
+        conditions=conditions(scenario),
+        metadata={
+            "source": f"jackettwin {__version__} simulate",
+            "scenario": scenario.name,
+            "true_modes": [
+                {"label": m.label, "frequency_hz": m.frequency_hz, "damping_ratio": m.damping_ratio}
+                for m in motion.modes
+            ],
+        },
+        name=scenario.name,
+    )
+    return Simulation(record, scenario.clock.total_s, perf_counter() - start)
+
+
+def conditions(scenario: Scenario) -> dict[str, Any]:
+    """Return wind, sea and state as a record states them; None is not there."""
+    air, sea, turbine = scenario.air, scenario.sea, scenario.turbine
+    return {
+        "mean_wind_speed_m_s": None if air is None else air.wind.speed_m_s,
+        "turbulence": None if air is None else air.wind.turbulence,
+        "wind_direction": "+x",
+        "yaw_deg": 0.0 if air is None else degrees(air.yaw),
+        "wind_seed": None if air is None else air.seed,
+        "state": None if turbine is None else turbine.state,
+        "pitch_deg": None if turbine is None or turbine.state == "operating" else degrees(turbine.pitch),
+        "waves": None if sea is None else sea.waves,
+        "wave_height_m": None if sea is None or sea.waves is None else sea.height_m,
+        "wave_period_s": None if sea is None or sea.waves is None else sea.period_s,
+        "wave_direction_deg": None if sea is None or sea.waves is None else degrees(sea.direction),
+        "wave_seed": None if sea is None or sea.waves is None else sea.seed,
+    }
+
+
+def _channel(instrument: Instrument) -> Channel:
+    sensor = instrument.sensor
+    length = float(np.linalg.norm(sensor.direction))
+    x, y, z = (float(v) / length for v in sensor.direction)
+    return Channel(
+        name=sensor.channel,
+        quantity=instrument.quantity,
+        unit=_UNITS[instrument.quantity],
+        height_m=sensor.height_m,
+        node=sensor.node,
+        direction=(x, y, z),
+    )
+
+
+def _signal_channel(name: str) -> Channel:
+    quantity, unit = _SIGNALS[name]
+    along = (1.0, 0.0, 0.0) if name == "wind_hub_x" else (0.0, 0.0, 0.0)
+    return Channel(name=name, quantity=quantity, unit=unit, direction=along)
+
+
+def _signals(motion: Motion, scenario: Scenario, n_samples: int) -> dict[str, FloatArray]:
+    """Return the environment's channels at the sample rate, unless a sensor has taken their name."""
+    clock = scenario.clock
+    taken = {instrument.sensor.channel for instrument in scenario.instruments}
+    t = clock.discard_s + np.arange(n_samples) * clock.step_s
+    known = np.arange(motion.states.shape[0]) * motion.step_s
+    return {name: np.interp(t, known, values) for name, values in motion.signals.items() if name not in taken}

@@ -1,0 +1,101 @@
+"""Wave and wind loads alone: force, and moment about the still water's origin."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.loads.wave_series import resultant_columns
+from jackettwin.simulate.model import aerodynamics
+from jackettwin.simulate.scenario import Scenario
+from jackettwin.simulate.water import water_loads, water_points
+from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
+from jackettwin.structure import assemble
+
+FloatArray = npt.NDArray[np.float64]
+
+_FINE_M = 0.5
+"""Longest piece of a member: the loads themselves are the result."""
+
+
+def resultants(scenario: Scenario) -> dict[str, FloatArray]:
+    """Return force and moment about the origin at still water level, (n_times, 6) [N, N·m].
+
+    Keys are ``water`` (waves and current, without buoyancy) and ``wind`` (rotor and tower), each on an asset
+    that stands still, each with its own times: a regular wave over one period.
+
+    Raises
+    ------
+    InputError
+        If there is neither wave, current nor wind.
+    """
+    assembly = assemble(scenario.asset.structure, subdivide=scenario.asset.subdivide)
+    parts: dict[str, FloatArray] = {}
+    total_s = scenario.clock.total_s
+    if scenario.sea is not None:
+        grid = water_points(assembly, scenario.sea, spacing=_FINE_M)
+        water = water_loads(scenario.sea, grid, resultant_columns(grid), duration=total_s)
+        if water is not None:
+            parts["water"] = water.series.loads
+    if scenario.air is not None and scenario.turbine is not None:
+        air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
+        field = wind_field(air, aero, duration=total_s, step=scenario.clock.load_step_s)
+        still = rotor_loads_in(field, air, aero).still
+        top = np.array(assembly.structure.nodes[assembly.structure.top_node])
+        arm = top - [0.0, 0.0, assembly.structure.sea_level_z_m]
+        total = np.hstack([still[:, :3], still[:, 3:] + np.cross(arm, still[:, :3])])
+        tower = tower_points(assembly, air)
+        if tower is not None:
+            total = total + tower_loads(field, tower, resultant_columns(tower))
+        parts["wind"] = total
+    if not parts:
+        raise InputError(
+            "nothing loads the asset",
+            file=scenario.path,
+            field="waves",
+            remedy="add waves, current or wind",
+        )
+    return parts
+
+
+def loads_document(scenario: Scenario) -> dict[str, Any]:
+    """Return the document of ``jackettwin loads``: extremes and spread of the total and of its parts."""
+    parts = resultants(scenario)
+    total = parts[next(iter(parts))]
+    if len(parts) == 2:
+        total = _together(scenario, parts)
+    return {
+        **_statistics(total),
+        "parts": {name: _statistics(loads) for name, loads in parts.items()},
+        "reference_point_m": [0.0, 0.0, scenario.asset.structure.sea_level_z_m],
+    }
+
+
+def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
+    """Return the sum at the wind's times; waves that repeat sooner are carried on."""
+    wind, water = parts["wind"], parts["water"]
+    clock, sea = scenario.clock, scenario.sea
+    assert sea is not None
+    random = sea.waves in ("jonswap", "pierson-moskowitz")
+    period = clock.total_s if random else sea.period_s or clock.total_s
+    t = np.arange(wind.shape[0]) * clock.load_step_s
+    at = np.arange(water.shape[0]) * (period / water.shape[0])
+    carried = np.stack([np.interp(t, at, column, period=period) for column in water.T], axis=1)
+    return np.asarray(wind + carried)
+
+
+def _statistics(loads: FloatArray) -> dict[str, Any]:
+    def of(column: FloatArray) -> dict[str, float]:
+        return {
+            "max": float(column.max()),
+            "min": float(column.min()),
+            "std": float(column.std()),
+            "mean": float(column.mean()),
+        }
+
+    force = {axis: of(loads[:, i]) for i, axis in enumerate("xyz")}
+    moment = {axis: of(loads[:, 3 + i]) for i, axis in enumerate("xyz")}
+    return {"force_n": force, "moment_msl_n_m": moment}

@@ -1,0 +1,133 @@
+"""What is simulated: the asset, the sea, the wind, the turbine's state, the clock and the sensors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+
+from jackettwin.loads.bem import Control
+from jackettwin.loads.current import Current
+from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.rotor import Rotor
+from jackettwin.loads.water import Water
+from jackettwin.loads.wind import Wind
+from jackettwin.response.sensors import Sensor
+from jackettwin.soil.support import Support
+from jackettwin.structure import Rayleigh, Structure
+
+
+@dataclass(frozen=True)
+class Asset:
+    """The structure on its supports."""
+
+    structure: Structure
+    support: Support
+    beam: str | None = None
+    rotary_inertia: bool | None = None
+    subdivide: int | None = None
+    gravity: bool = False
+    rayleigh: Rayleigh = Rayleigh()
+    coupled_damping: float | None = None
+    """Damping ratio to which the tower is tuned: that of the first modes of the whole asset in still air."""
+
+
+@dataclass(frozen=True)
+class Sea:
+    """Still water about the asset, its waves and current.
+
+    ``height_m`` and ``period_s`` are H and T of a regular wave, Hs and Tp of a random sea.
+    """
+
+    depth_m: float
+    coefficients: Coefficients
+    water: Water | None = None
+    """What moves with the structure, if its mass does not hold it already."""
+    waves: str | None = None
+    height_m: float = 0.0
+    period_s: float = 0.0
+    direction: float = 0.0
+    seed: int = 0
+    stretching: str = "none"
+    gamma: float | None = None
+    spreading: float | None = None
+    relative_velocity: str = "linearised"
+    """How drag knows the motion of the structure: ``none`` or ``linearised``."""
+    current: Current | None = None
+
+
+@dataclass(frozen=True)
+class Air:
+    """Wind along +x; ``yaw`` is the nacelle's heading, anticlockwise from +x seen from above [rad]."""
+
+    wind: Wind
+    seed: int = 0
+    yaw: float = 0.0
+    tower_drag: float = 0.65
+
+
+@dataclass(frozen=True)
+class Turbine:
+    """The rotor and what it does: parked (shaft locked), idling (shaft free) or operating."""
+
+    rotor: Rotor
+    control: Control
+    state: str = "parked"
+    pitch: float = 0.5 * pi
+    azimuth: float = 0.0
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Length of the record, what is thrown away before it, and both steps [s]."""
+
+    duration_s: float = 600.0
+    step_s: float = 0.01
+    discard_s: float = 0.0
+    load_step_s: float = 0.05
+    """Loads are evaluated this often and run straight between; a multiple of ``step_s``."""
+
+    @property
+    def total_s(self) -> float:
+        """Simulated time [s]; wind and waves repeat after it."""
+        return self.duration_s + self.discard_s
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """A sensor and its flaws.
+
+    Attributes
+    ----------
+    sensor : Sensor
+        ``direction`` is in global axes, or in the nacelle's if ``on_nacelle``.
+    quantity : ``acceleration``, ``velocity`` or ``displacement``
+    noise : standard deviation of white noise, in SI units of the quantity
+    bias : constant error
+    limit : readings are clipped at ± this
+    dropouts_per_hour, dropout_s : how often readings are missing, and for how long on average
+    """
+
+    sensor: Sensor
+    quantity: str = "acceleration"
+    on_nacelle: bool = False
+    noise: float = 0.0
+    bias: float = 0.0
+    limit: float | None = None
+    dropouts_per_hour: float = 0.0
+    dropout_s: float = 1.0
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One simulation, checked and in SI units; None is calm."""
+
+    name: str
+    path: Path
+    asset: Asset
+    sea: Sea | None
+    air: Air | None
+    turbine: Turbine | None
+    clock: Clock
+    instruments: tuple[Instrument, ...]
+    sensor_seed: int = 0

@@ -1,0 +1,176 @@
+"""The keys of a scenario file."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jackettwin.files import Schema
+from jackettwin.loads.morison import SEA_WATER_KG_M3
+from jackettwin.loads.water import GROWTH_KG_M3
+from jackettwin.soil.foundation import (
+    CurvesSchema,
+    DampingSchema,
+    LayerSchema,
+    LinearSchema,
+    PileSchema,
+    ScourSchema,
+)
+from jackettwin.soil.law_files import LawSchema
+from jackettwin.structure.files import BodySchema
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
+Seed = Annotated[int, Field(ge=0)]
+Vector = tuple[float, float, float]
+
+
+class StructureChoice(Schema):
+    """A structure with overrides."""
+
+    source: str
+    rna: BodySchema | None = None
+
+
+class RayleighSchema(Schema):
+    """Steel damping: a least ratio and where it stands."""
+
+    ratio: Ratio
+    frequency_hz: Positive
+
+
+class SteelDampingSchema(Schema):
+    """``damping``: of the steel, and the ratio to which the tower is tuned in the coupled first modes."""
+
+    rayleigh: RayleighSchema | None = None
+    coupled: Annotated[float, Field(gt=0.0, lt=0.2)] | None = None
+
+
+class GroundSchema(Schema):
+    """``soil``: layers or linear ground, scour, which curves, and the ground's damping or law."""
+
+    layers: list[LayerSchema] | None = Field(default=None, min_length=1)
+    linear: LinearSchema | None = None
+    scour: ScourSchema | None = None
+    curves: CurvesSchema = CurvesSchema()
+    damping: DampingSchema | None = None
+    law: LawSchema | None = None
+
+
+class GrowthSchema(Schema):
+    """A band of marine growth; heights above still water."""
+
+    top_z_m: float
+    bottom_z_m: float
+    thickness_m: NotNegative
+
+
+class WaterSchema(Schema):
+    """``water``: one drag and one added-mass coefficient for all members (C_M = 1 + C_a)."""
+
+    depth_m: Positive | None = None
+    density: Positive = SEA_WATER_KG_M3
+    drag: NotNegative = 1.0
+    added_mass: NotNegative = 1.0
+    marine_growth: list[GrowthSchema] = []
+    growth_density: Positive = GROWTH_KG_M3
+    flooded: bool | list[str] = []
+    adds_mass: bool | None = None
+
+
+class WavesSchema(Schema):
+    """``waves``: height and period of a regular wave, or Hs and Tp of a random sea."""
+
+    type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz"]
+    height_m: Positive | None = None
+    period_s: Positive | None = None
+    hs_m: Positive | None = None
+    tp_s: Positive | None = None
+    gamma: Annotated[float, Field(ge=1.0, le=10.0)] | None = None
+    spreading: Positive | None = None
+    direction_deg: float = 0.0
+    seed: Seed = 0
+    stretching: Literal["none", "wheeler"] | None = None
+    relative_velocity: Literal["none", "linearised"] = "linearised"
+
+
+class CurrentSchema(Schema):
+    """``current``."""
+
+    subsurface_m_s: NotNegative = 0.0
+    wind_driven_m_s: NotNegative = 0.0
+    direction_deg: float = 0.0
+
+
+class WindSchema(Schema):
+    """``wind``: along +x; ``yaw_deg`` turns the nacelle anticlockwise from there."""
+
+    speed_m_s: Positive
+    turbulence: Literal["A+", "A", "B", "C", "none"] | Annotated[float, Field(ge=0.0, le=1.0)] = "B"
+    shear: Annotated[float, Field(ge=0.0, le=1.0)] = 0.14
+    seed: Seed = 0
+    yaw_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 0.0
+    tower_drag: NotNegative = 0.65
+
+
+class RotorSchema(Schema):
+    """``rotor``: a shipped windIO turbine or a file."""
+
+    data: str = "iea15"
+    state: Literal["parked", "idling", "operating"] = "parked"
+    pitch_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 90.0
+    azimuth_deg: float = 0.0
+
+
+class TimeSchema(Schema):
+    """``time``."""
+
+    duration_s: Annotated[float, Field(gt=0.0, le=86400.0)] = 600.0
+    step_s: Annotated[float, Field(gt=0.0, le=1.0)] = 0.01
+    discard_s: Annotated[float, Field(ge=0.0, le=86400.0)] = 0.0
+    load_step_s: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+
+
+class SensorSchema(Schema):
+    """A sensor of the record, with its flaws in SI units."""
+
+    channel: str
+    node: str | None = None
+    height_m: float | None = None
+    direction: Vector
+    quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration"
+    frame: Literal["global", "nacelle"] = "global"
+    noise: NotNegative = 0.0
+    bias: float = 0.0
+    limit: Positive | None = None
+    dropouts_per_hour: NotNegative = 0.0
+    dropout_s: Positive = 1.0
+
+
+class ScenarioSchema(Schema):
+    """A scenario file: the asset, then what happens to it.
+
+    The ground is ``soil`` with ``piles``, or ``foundation`` (a file or a shipped name), or ``support``.
+    """
+
+    structure: str | StructureChoice
+    rna: BodySchema | None = None
+    beam: Literal["euler-bernoulli", "timoshenko"] | None = None
+    rotary_inertia: bool | None = None
+    subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
+    gravity: bool = False
+    damping: SteelDampingSchema = SteelDampingSchema()
+    soil: GroundSchema | None = None
+    piles: PileSchema | None = None
+    foundation: str | None = None
+    support: str | None = None
+    water: WaterSchema | None = None
+    waves: WavesSchema | None = None
+    current: CurrentSchema | None = None
+    wind: WindSchema | None = None
+    rotor: RotorSchema | None = None
+    time: TimeSchema = TimeSchema()
+    sensors: list[SensorSchema] = []
+    sensor_seed: Seed = 0

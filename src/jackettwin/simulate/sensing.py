@@ -1,0 +1,86 @@
+"""What the sensors make of a motion: readings at the sample rate, with their flaws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.time import first_order_hold
+from jackettwin.simulate.motion import Motion
+from jackettwin.simulate.scenario import Instrument, Scenario
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def readings(motion: Motion, scenario: Scenario) -> FloatArray:
+    """Return what the instruments read (n_instruments, n_samples), without flaws, after what is discarded.
+
+    Between load steps the motion is exact for the forces that were straight there.
+    """
+    clock, space = scenario.clock, motion.space
+    C, D = _observation(motion, scenario)
+    per_load = round(clock.load_step_s / clock.step_s)
+    x, f0, f1 = motion.states[:-1], motion.force[:-1], motion.force[1:]
+    out = np.empty((C.shape[0], x.shape[0], per_load))
+    for j in range(per_load):
+        share = j / per_load
+        fs = f0 + share * (f1 - f0)
+        if j == 0:
+            out[:, :, 0] = C @ x.T + D @ fs.T
+            continue
+        hold = first_order_hold(space.A, space.B, j * clock.step_s)
+        out[:, :, j] = (C @ hold.E) @ x.T + (C @ hold.P0) @ f0.T + (C @ hold.P1 + D) @ fs.T
+    first = round(clock.discard_s / clock.step_s)
+    return out.reshape(C.shape[0], -1)[:, first:]
+
+
+def _observation(motion: Motion, scenario: Scenario) -> tuple[FloatArray, FloatArray]:
+    """Return C, D with readings = C x + D f."""
+    space, n = motion.space, motion.space.n
+    sensors = tuple(_in_global_axes(i, scenario) for i in scenario.instruments)
+    rows = np.asarray(observation_matrix(motion.model.assembly, sensors) @ motion.model.reduced.basis)
+    C, D = np.zeros((rows.shape[0], space.A.shape[0])), np.zeros((rows.shape[0], n))
+    for k, (row, instrument) in enumerate(zip(rows, scenario.instruments, strict=True)):
+        if instrument.quantity == "displacement":
+            C[k, :n] = row
+        elif instrument.quantity == "velocity":
+            C[k, n : 2 * n] = row
+        else:
+            C[k], D[k] = row @ space.A[n : 2 * n], row @ space.B[n : 2 * n]
+    return C, D
+
+
+def _in_global_axes(instrument: Instrument, scenario: Scenario) -> Sensor:
+    """Return the sensor with its direction turned with the nacelle, if it sits there."""
+    if not instrument.on_nacelle or scenario.air is None:
+        return instrument.sensor
+    cos, sin = np.cos(scenario.air.yaw), np.sin(scenario.air.yaw)
+    x, y, z = instrument.sensor.direction
+    return replace(instrument.sensor, direction=(cos * x - sin * y, sin * x + cos * y, z))
+
+
+def flawed(clean: FloatArray, instruments: tuple[Instrument, ...], *, step_s: float, seed: int) -> FloatArray:
+    """Return readings with bias, noise, clipping and drop-outs (NaN), each channel from its own stream."""
+    read = clean.copy()
+    streams = np.random.default_rng(seed).spawn(len(instruments))
+    for row, instrument, rng in zip(read, instruments, streams, strict=True):
+        row += instrument.bias
+        if instrument.noise > 0.0:
+            row += instrument.noise * rng.standard_normal(row.size)
+        if instrument.limit is not None:
+            np.clip(row, -instrument.limit, instrument.limit, out=row)
+        if instrument.dropouts_per_hour > 0.0:
+            _drop(row, instrument, rng, step_s)
+    return read
+
+
+def _drop(row: FloatArray, instrument: Instrument, rng: np.random.Generator, step_s: float) -> None:
+    """Take readings away: a Poisson process of gaps of exponential length."""
+    hours = row.size * step_s / 3600.0
+    for _ in range(rng.poisson(instrument.dropouts_per_hour * hours)):
+        start = int(rng.integers(row.size))
+        length = max(1, round(rng.exponential(instrument.dropout_s) / step_s))
+        row[start : start + length] = np.nan

@@ -1,0 +1,133 @@
+"""Waves and current on the asset: time series of loads, and drag on its own motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline
+
+from jackettwin.errors import InputError
+from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
+from jackettwin.loads.regular_waves import regular_wave
+from jackettwin.loads.wave_series import WaveSeries, wave_series
+from jackettwin.loads.waves import Waves, airy_wave, irregular_sea
+from jackettwin.simulate.scenario import Sea
+from jackettwin.structure import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+
+SPACING_M = 8.0
+"""Longest piece of a member under a random sea: 0.2 % of the force's spread on the reference jacket."""
+THEORIES = {"stokes5": "stokes-5", "stream": "stream-function"}
+
+
+@dataclass(frozen=True)
+class WaterLoads:
+    """Loads of waves and current, (n_times, n_columns), that repeat; and where they act."""
+
+    series: WaveSeries
+    grid: MorisonPoints
+    waves: Waves | None
+
+    def at(self, t: FloatArray) -> FloatArray:
+        """Return the loads at times ``t`` [s]."""
+        return self._between(self.series.loads, t)
+
+    def elevation(self, t: FloatArray) -> FloatArray:
+        """Return the elevation of the waves at the origin at times ``t`` [s]."""
+        if self.waves is None:
+            return np.zeros_like(t)
+        samples = np.arange(self.series.loads.shape[0], dtype=np.float64) * self.series.step_s
+        return self._between(self.waves.elevation(np.zeros((1, 3)), samples), t)[:, 0]
+
+    def _between(self, samples: FloatArray, t: FloatArray) -> FloatArray:
+        """Return samples (n_times, n) at times ``t``, by a periodic cubic spline."""
+        knots = np.arange(samples.shape[0] + 1) * self.series.step_s
+        spline = CubicSpline(knots, np.vstack([samples, samples[:1]]), bc_type="periodic")
+        return np.asarray(spline(np.mod(t, self.series.period_s)))
+
+
+def wave_field(sea: Sea, *, duration: float) -> Waves | None:
+    """Return the waves of a sea; a random one repeats after ``duration`` [s].
+
+    Raises
+    ------
+    InputError
+        If height, period and depth do not fit each other.
+    """
+    if sea.waves is None:
+        return None
+    if sea.waves == "airy":
+        return airy_wave(
+            height=sea.height_m,
+            period=sea.period_s,
+            depth=sea.depth_m,
+            direction=sea.direction,
+            stretching=sea.stretching,
+        )
+    if sea.waves in THEORIES:
+        return regular_wave(
+            THEORIES[sea.waves],
+            height=sea.height_m,
+            period=sea.period_s,
+            depth=sea.depth_m,
+            direction=sea.direction,
+        )
+    if duration < 2.0 * sea.period_s:
+        raise InputError(
+            "too short for a random sea",
+            field="time.duration_s",
+            value=duration,
+            allowed=f"≥ {2.0 * sea.period_s:g} s, two peak periods",
+        )
+    return irregular_sea(
+        Hs=sea.height_m,
+        Tp=sea.period_s,
+        depth=sea.depth_m,
+        duration=duration,
+        seed=sea.seed,
+        gamma=sea.gamma,
+        direction=sea.direction,
+        spreading=sea.spreading,
+        stretching=sea.stretching,
+    )
+
+
+def water_points(assembly: Assembly, sea: Sea, *, spacing: float = SPACING_M) -> MorisonPoints:
+    """Return the points of the members that waves can reach."""
+    crest = 0.0 if sea.waves is None else 1.2 * sea.height_m
+    return morison_points(
+        assembly,
+        highest_z=crest,
+        lowest_z=-sea.depth_m,
+        coefficients=sea.coefficients,
+        spacing=spacing,
+    )
+
+
+def water_loads(sea: Sea, grid: MorisonPoints, columns: FloatArray, *, duration: float) -> WaterLoads | None:
+    """Return loads on ``columns`` (3n, n_columns) of motion of the points; None in still water.
+
+    A regular wave repeats after its own period, a random sea after ``duration`` [s].
+    """
+    waves = wave_field(sea, duration=duration)
+    if waves is None and sea.current is None:
+        return None
+    regular = sea.waves in ("airy", *THEORIES)
+    calm = airy_wave(height=0.0, period=10.0, depth=sea.depth_m)
+    series = wave_series(
+        grid,
+        waves or calm,
+        columns,
+        depth=sea.depth_m,
+        period=sea.period_s if regular else duration if waves is not None else 10.0,
+        current=sea.current,
+    )
+    return WaterLoads(series, grid, waves)
+
+
+def relative_drag(grid: MorisonPoints, loads: WaterLoads, basis: FloatArray) -> FloatArray:
+    """Return Borgman's damping (n, n) of drag on the structure's own motion, for the sea's own spread."""
+    return np.asarray(basis.T @ (drag_damping(grid, loads.series.sigma) @ basis))

@@ -1,0 +1,102 @@
+"""Wind on rotor and tower: time series of loads on an asset at rest, and what its motion changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.loads.morison import Coefficients, MorisonPoints, morison_points
+from jackettwin.loads.rotor import AIR_KG_M3, CompiledRotor, compiled_rotor, rotation
+from jackettwin.loads.rotor_wind import RotorWind, rotor_wind
+from jackettwin.loads.wind import tower_drag, tower_drag_damping
+from jackettwin.simulate.model import Aerodynamics
+from jackettwin.simulate.scenario import Air
+from jackettwin.structure import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+
+_TOWER_SPACING_M = 4.0
+
+
+@dataclass(frozen=True)
+class RotorLoads:
+    """Loads at the tower top in global axes.
+
+    Attributes
+    ----------
+    still : (n_times, 6) with the tower at rest
+    on_blades : (n_times, n_elements, 3) wind in the nacelle's axes
+    azimuth : (n_times,)
+    turn : (6, 6) global from nacelle's axes
+    """
+
+    rotor: CompiledRotor
+    still: FloatArray
+    on_blades: FloatArray
+    azimuth: FloatArray
+    turn: FloatArray
+
+    def change(self, damping: FloatArray) -> Callable[[int, FloatArray], FloatArray]:
+        """Return F(v) − F(0) + C v at step k for a velocity v (6,) of the top: what C does not know."""
+        turn, back = self.turn, np.ascontiguousarray(self.turn.T)
+
+        def at(k: int, velocity: FloatArray) -> FloatArray:
+            moving = self.rotor.loads(
+                self.on_blades[k : k + 1], (back @ velocity)[None], self.azimuth[k : k + 1]
+            )[0]
+            return np.asarray(turn @ moving - self.still[k] + damping @ velocity)
+
+        return at
+
+
+def wind_field(air: Air, aero: Aerodynamics, *, duration: float, step: float) -> RotorWind:
+    """Return turbulent wind that repeats after ``duration`` [s]."""
+    return rotor_wind(air.wind, radius=aero.turbine.rotor.radius, duration=duration, step=step, seed=air.seed)
+
+
+def rotor_loads_in(field: RotorWind, air: Air, aero: Aerodynamics) -> RotorLoads:
+    """Return the rotor's loads in turbulent wind."""
+    turbine, operation = aero.turbine, aero.operation
+    speed = 0.0 if operation is None else operation.rotor_speed
+    rotor = compiled_rotor(
+        turbine.rotor,
+        pitch=turbine.pitch,
+        rotor_speed=speed,
+        shaft="free" if turbine.state == "idling" else "locked",
+        induced=None if operation is None else operation.induced,
+    )
+    azimuth = turbine.azimuth + speed * field.step_s * np.arange(field.n_times, dtype=np.float64)
+    on_blades = field.on_blades(turbine.rotor, azimuth, yaw=air.yaw)
+    turn = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), air.yaw))
+    still = rotor.loads(on_blades, np.zeros((field.n_times, 6)), azimuth) @ turn.T
+    return RotorLoads(rotor, still, on_blades, azimuth, np.asarray(turn, dtype=np.float64))
+
+
+def tower_points(assembly: Assembly, air: Air) -> MorisonPoints | None:
+    """Return the points of the tower that wind pushes; None if nothing of it is called tower."""
+    others = tuple({m.part for m in assembly.structure.members} - {"tower"})
+    if air.tower_drag == 0.0 or not any(m.part == "tower" for m in assembly.structure.members):
+        return None
+    return morison_points(
+        assembly,
+        lowest_z=0.0,
+        coefficients=Coefficients(drag=air.tower_drag, inertia=0.0, density_kg_m3=AIR_KG_M3),
+        spacing=_TOWER_SPACING_M,
+        exclude_parts=others,
+    )
+
+
+def tower_loads(field: RotorWind, grid: MorisonPoints, columns: FloatArray) -> FloatArray:
+    """Return drag on the tower (n_times, n_columns)."""
+    forces = tower_drag(grid, field.at_heights(grid.points[:, 2]))
+    return np.asarray(forces.reshape(field.n_times, -1) @ columns)
+
+
+def tower_damping(air: Air, grid: MorisonPoints, basis: FloatArray) -> FloatArray:
+    """Return the damping (n, n) of the mean wind on the tower."""
+    mean = np.zeros_like(grid.points)
+    mean[:, 0] = air.wind.mean(grid.points[:, 2])
+    return np.asarray(basis.T @ (tower_drag_damping(grid, mean) @ basis))

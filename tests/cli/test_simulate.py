@@ -1,0 +1,64 @@
+"""``jackettwin simulate`` and ``loads``: the contract's keys and refusals."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+from jackettwin.records import read_record
+
+CASE = """
+structure: jacket15
+foundation: jacket15_records
+waves: {type: airy, height_m: 6.0, period_s: 10.0}
+wind: {speed_m_s: 9.0, seed: 1}
+time: {duration_s: 30, step_s: 0.05}
+"""
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.yaml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def test_simulate_writes_a_record(case: Path) -> None:
+    out = case.with_name("record")
+    result = CliRunner().invoke(main, ["simulate", str(case), "--out", str(out), "--json"])
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert {"channels", "conditions", "seconds_simulated", "wall_s"} <= set(document)
+    assert document["seconds_simulated"] == 30.0
+    record = read_record(out.with_suffix(".parquet"))
+    assert list(record.channel_names) == document["channels"]
+    assert record.sample_rate_hz == pytest.approx(20.0)
+
+
+def test_people_get_a_table(case: Path) -> None:
+    result = CliRunner().invoke(main, ["simulate", str(case), "--out", str(case.with_name("r.parquet"))])
+    assert result.exit_code == 0, result.stderr
+    assert "acc_top_x" in result.stdout and "times real time" in result.stdout
+
+
+def test_loads_have_the_keys_of_the_contract(case: Path) -> None:
+    result = CliRunner().invoke(main, ["loads", str(case), "--json"])
+    assert result.exit_code == 0, result.stderr
+    document = json.loads(result.stdout)
+    for key in ("force_n", "moment_msl_n_m"):
+        assert set(document[key]) == {"x", "y", "z"}
+        assert {"max", "min", "std"} <= set(document[key]["x"])
+    assert "Fx" in CliRunner().invoke(main, ["loads", str(case)]).stdout
+
+
+def test_bad_scenarios_end_with_two(case: Path) -> None:
+    case.write_text(CASE.replace("height_m", "hieght_m"), encoding="utf-8")
+    for command in (["simulate", str(case), "--out", "x"], ["loads", str(case)]):
+        result = CliRunner().invoke(main, command)
+        assert result.exit_code == 2
+        assert "waves.hieght_m" in result.stderr and "did you mean" in result.stderr
+        assert "Traceback" not in result.stderr
+    result = CliRunner().invoke(main, ["simulate", "--out", str(case.parent)])
+    assert result.exit_code == 2 and "folder" in result.stderr

@@ -1,0 +1,84 @@
+"""Wind over the rotor: mean profile, frames, rotational sampling, and the compiled blade elements in it."""
+
+import numpy as np
+import pytest
+
+from jackettwin.loads import read_rotor
+from jackettwin.loads.rotor import compiled_rotor, elements, linearise, rotation, rotor_loads
+from jackettwin.loads.rotor_wind import RINGS, SPOKES, rotor_wind
+from jackettwin.loads.wind import Wind
+
+ROTOR, _ = read_rotor("iea15")
+HUB = 149.6
+
+
+def steady(shear: float = 0.14):
+    return rotor_wind(Wind(12.0, HUB, 0.0, shear), radius=ROTOR.radius, duration=10.0, step=0.5, seed=0)
+
+
+def test_shear_reaches_the_blades() -> None:
+    """The first blade points up, the others down: power law at their heights, to the rings' spacing."""
+    field = steady(0.2)
+    found = field.on_blades(ROTOR, np.zeros(field.n_times))[0].reshape(3, -1, 3)
+    z = HUB + elements(ROTOR, 0.5 * np.pi).arm[:, :, 2]
+    np.testing.assert_allclose(found[..., 0], 12.0 * (z / HUB) ** 0.2, rtol=0.01)
+    np.testing.assert_array_equal(found[..., 1:], 0.0)
+
+
+def test_blades_cut_through_the_wind_where_they_are() -> None:
+    """Element e at azimuth ψ: its place in the disc and the wind's, both in the disc's own coordinates."""
+    field = steady(0.2)
+    psi = np.linspace(0.0, 2.0 * np.pi, field.n_times)
+    found = field.on_blades(ROTOR, psi)[:, ROTOR.blade.z.size - 1, 0]
+    tip = HUB + (ROTOR.hub_radius + ROTOR.blade.z[-1]) * np.cos(psi)
+    # twelve spokes cut the circle short by up to 3.4 % of the radius, which tells most low down
+    np.testing.assert_allclose(found, 12.0 * (tip / HUB) ** 0.2, rtol=0.04)
+
+
+def test_a_yawed_nacelle_sees_the_wind_from_its_side() -> None:
+    """Turned anticlockwise by 30°: the wind heads 30° clockwise of its axis."""
+    field = steady(0.0)
+    seen = field.on_blades(ROTOR, np.zeros(field.n_times), yaw=np.radians(30.0))[0, 0]
+    np.testing.assert_allclose(
+        seen, 12.0 * np.array([np.cos(np.pi / 6), -np.sin(np.pi / 6), 0.0]), atol=1e-12
+    )
+
+
+def test_ring_points_have_the_spectrum_and_lose_coherence() -> None:
+    """σ of the samples within 10 %; neighbours on the inner ring are alike, tips across the disc are not."""
+    wind = Wind(12.0, HUB, "B")
+    field = rotor_wind(wind, radius=ROTOR.radius, duration=1200.0, step=0.25, seed=3)
+    u = field.fluctuation[:, : 1 + len(RINGS) * SPOKES, 0]
+    assert u.std(axis=0).mean() == pytest.approx(wind.sigma, rel=0.1)
+    R = np.corrcoef(u.T)
+    assert R[1, 2] > 0.6
+    assert R[-1, -1 - SPOKES // 2] < 0.5
+
+
+def test_tower_wind_follows_the_profile() -> None:
+    field, z = steady(0.14), np.array([5.0, 60.0, 140.0])
+    np.testing.assert_allclose(field.at_heights(z)[0, :, 0], 12.0 * (z / HUB) ** 0.14, rtol=1e-12)
+
+
+@pytest.mark.parametrize("shaft", ["locked", "free"])
+def test_loads_change_with_motion_as_the_linearisation_says(shaft: str) -> None:
+    """Small motions in uniform wind: F(v) − F(0) = −C v to second order in v."""
+    wind = np.array([15.0, 0.0, 0.0])
+    C = linearise(ROTOR, 15.0, pitch=0.5 * np.pi, azimuth=0.2, shaft=shaft).damping
+    rotor = compiled_rotor(ROTOR, pitch=0.5 * np.pi, shaft=shaft)
+    n = ROTOR.n_blades * ROTOR.blade.z.size
+    v = np.diag([0.02, 0.02, 0.02, 2e-4, 2e-4, 2e-4])
+    moving = rotor.loads(np.broadcast_to(wind, (6, n, 3)).copy(), v, np.full(6, 0.2))
+    still = rotor_loads(ROTOR, wind, pitch=0.5 * np.pi, azimuth=0.2, shaft=shaft)
+    np.testing.assert_allclose(moving - still, -(C @ v).T, atol=0.02 * np.abs(C @ v).max())
+
+
+def test_a_turned_rotor_carries_its_load_along() -> None:
+    """Reciprocity of frames: turning rotor, wind and load by a third of a turn changes nothing."""
+    wind = np.array([10.0, 2.0, -1.0])
+    d = ROTOR.shaft
+    third = 2.0 * np.pi / 3.0
+    first = rotor_loads(ROTOR, wind, pitch=1.2)
+    again = rotor_loads(ROTOR, wind, pitch=1.2, azimuth=third)
+    np.testing.assert_allclose(again, first, rtol=1e-9, atol=1e-6)
+    assert rotation(d, third) @ d == pytest.approx(d)
