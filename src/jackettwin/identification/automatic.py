@@ -10,7 +10,7 @@ import numpy.typing as npt
 from jackettwin.identification.clustering import clusters
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ResolvedSettings, Stabilisation
-from jackettwin.identification.resolve import resolve, usable_channels
+from jackettwin.identification.prepared import prepare
 from jackettwin.identification.selection import find_tones, select
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import welch
@@ -21,10 +21,11 @@ from jackettwin.identification.ssi_uncertainty import (
     propagation,
 )
 from jackettwin.identification.stabilisation import admissible, stabilisation
-from jackettwin.records import Record, detrend
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from jackettwin.records import Record
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -73,11 +74,8 @@ def identify(
     settings = settings or IdentificationSettings()
     say = progress or (lambda text: None)
     say("preparing")
-    usable, warnings = usable_channels(record)
-    usable = detrend(usable)
-    resolved, reduced = resolve(usable, settings)
-    scale = np.sqrt(np.nanmean(reduced.data**2, axis=1))
-    y = reduced.data / scale[:, None]
+    ready = prepare(record, settings)
+    y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
     poles = _poles(y, scale, resolved, settings)
     say("selection")
@@ -86,14 +84,14 @@ def identify(
     modes, rejected, poles = select(poles, found, tones, settings, record.duration_s)
     return Identification(
         records=(record.name,),
-        channels=usable.channels,
+        channels=ready.channels,
         modes=modes,
         rejected=rejected,
         stabilisation=poles,
-        spectrum=welch(reduced.data, resolved.sample_rate_hz),
+        spectrum=welch(y * scale[:, None], resolved.sample_rate_hz),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=warnings,
+        warnings=ready.warnings,
     )
 
 

@@ -18,10 +18,9 @@ from scipy import signal
 
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
-from jackettwin.identification.resolve import resolve, usable_channels
+from jackettwin.identification.prepared import prepare
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import CLEAR_PEAK, running_median, spectral_matrix, welch
-from jackettwin.records import detrend
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -48,25 +47,24 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         As ``identify``.
     """
     settings = settings or IdentificationSettings()
-    usable, warnings = usable_channels(record)
-    resolved, reduced = resolve(detrend(usable), settings)
-    scale = np.sqrt(np.nanmean(reduced.data**2, axis=1))
+    ready = prepare(record, settings)
+    y, scale, resolved = ready.y, ready.scale, ready.settings
     rate = resolved.sample_rate_hz
-    length = int(min(SEGMENT_CYCLES * rate / resolved.lowest_frequency_hz, reduced.data.shape[1] / 2))
-    f, matrix = spectral_matrix(reduced.data / scale[:, None], rate, length)
+    length = int(min(SEGMENT_CYCLES * rate / resolved.lowest_frequency_hz, y.shape[1] / 2))
+    f, matrix = spectral_matrix(y, rate, length)
     values, vectors = _principal(matrix)
     inside = (f > resolved.lowest_frequency_hz) & (f < resolved.highest_frequency_hz)
     modes = [_mode(f, values, vectors, k, scale) for k in _peaks(values, inside)]
     return Identification(
         records=(record.name,),
-        channels=usable.channels,
+        channels=ready.channels,
         modes=tuple(mode for mode in modes if mode is not None),
         rejected=(),
         stabilisation=_no_poles(len(scale)),
-        spectrum=welch(reduced.data, rate),
+        spectrum=welch(y * scale[:, None], rate),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=warnings,
+        warnings=ready.warnings,
     )
 
 

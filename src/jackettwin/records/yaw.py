@@ -37,13 +37,16 @@ LEAST_SINE = 0.5
 _ENDING = re.compile(r"[_ .\-]?(fore_aft|side_side|[xyXY])$")
 
 
-def to_rotor_axes(record: Record, *, yaw_rad: float | None = None) -> Record:
+def to_rotor_axes(
+    record: Record, *, yaw_rad: float | FloatArray | None = None, rename: bool = True
+) -> Record:
     """Return the record with each horizontal pair as ``…_fore_aft`` and ``…_side_side``.
 
-    The yaw is the argument, else the record's channel of quantity yaw, sample by sample, else
-    ``conditions["yaw_deg"]``. Two horizontal channels at one place need not lie along x and y. A
-    horizontal channel without a partner cannot be rotated and is left out; its name is kept in
+    The yaw is the argument (a number or one for every sample), else the record's channel of quantity
+    yaw, sample by sample, else ``conditions["yaw_deg"]``. Two horizontal channels at one place need not
+    lie along x and y. One without a partner cannot be rotated and is left out; its name is kept in
     ``metadata["without_partner"]``. Remove offsets first: a turning nacelle makes signals of them.
+    Without ``rename`` channels keep their names, the one nearer to x becoming the fore-aft one.
 
     Raises
     ------
@@ -54,7 +57,7 @@ def to_rotor_axes(record: Record, *, yaw_rad: float | None = None) -> Record:
         raise InputError(
             "is in rotor axes already", file=record.name, field="axes", remedy="use to_global_axes"
         )
-    rotated = _rotate(record, _yaw(record, yaw_rad), ROTOR)
+    rotated = _rotate(record, _yaw(record, yaw_rad), ROTOR if rename else None)
     return replace(rotated, metadata={**rotated.metadata, "axes": "rotor"})
 
 
@@ -74,7 +77,27 @@ def to_global_axes(record: Record, *, yaw_rad: float | None = None) -> Record:
     return replace(rotated, metadata={**rotated.metadata, "axes": "global"})
 
 
-def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str]) -> Record:
+def knows_yaw(record: Record) -> bool:
+    """Tell whether the record says how the nacelle stood."""
+    measured = any(
+        channel.quantity == "yaw" and np.isfinite(row).any()
+        for channel, row in zip(record.channels, record.data, strict=True)
+    )
+    return measured or record.conditions.get("yaw_deg") is not None
+
+
+def yaw_of(record: Record) -> FloatArray:
+    """Return the yaw [rad] of every sample: of the channel of quantity yaw, else of the conditions.
+
+    Raises
+    ------
+    InputError
+        If the yaw is not known.
+    """
+    return _yaw(record, None)
+
+
+def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str] | None) -> Record:
     """Rotate every pair by ``yaw``; what is not horizontal stays as it is."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     data, channels = record.data.copy(), list(record.channels)
@@ -83,8 +106,9 @@ def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str]) -> Record
         spanned = np.array([record.channels[i].direction[:2], record.channels[j].direction[:2]])
         x, y = np.linalg.solve(spanned, record.data[[i, j]])
         data[i], data[j] = cos * x + sin * y, cos * y - sin * x
-        channels[i] = _renamed(channels[i], endings[0], (1.0, 0.0, 0.0))
-        channels[j] = _renamed(channels[j], endings[1], (0.0, 1.0, 0.0))
+        names = endings or (None, None)
+        channels[i] = _turned(channels[i], names[0], (1.0, 0.0, 0.0))
+        channels[j] = _turned(channels[j], names[1], (0.0, 1.0, 0.0))
     paired = {i for pair in pairs for i in pair}
     alone = [i for i, channel in enumerate(channels) if _is_horizontal(channel) and i not in paired]
     kept = [i for i in range(len(channels)) if i not in alone]
@@ -124,13 +148,16 @@ def _sine(first: Channel, second: Channel) -> float:
     return a * d - b * c
 
 
-def _renamed(channel: Channel, ending: str, direction: tuple[float, float, float]) -> Channel:
-    return replace(channel, name=f"{_ENDING.sub('', channel.name)}_{ending}", direction=direction)
+def _turned(channel: Channel, ending: str | None, direction: tuple[float, float, float]) -> Channel:
+    name = channel.name if ending is None else f"{_ENDING.sub('', channel.name)}_{ending}"
+    return replace(channel, name=name, direction=direction)
 
 
-def _yaw(record: Record, yaw_rad: float | None) -> FloatArray:
+def _yaw(record: Record, yaw_rad: float | FloatArray | None) -> FloatArray:
     """Return the yaw [rad] of every sample."""
     n = record.data.shape[1]
+    if isinstance(yaw_rad, np.ndarray):
+        return np.broadcast_to(yaw_rad, (n,))
     if yaw_rad is not None:
         return np.full(n, _finite(record, yaw_rad, "yaw_rad"))
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity == "yaw"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -62,16 +62,15 @@ def measure(
     InputError
         If a record cannot be read or identified, or a sensor and a channel disagree; names file and field.
     """
-    channels = tuple(s.channel for s in config.sensors) or None
     observations = []
     for path in config.records:
         step(f"identify {path.name}")
-        observations.append(observe(path, config.identification, channels=channels))
+        observations.append(observe(path, config.identification, sensors=config.sensors))
     sightings: dict[int, list[Sighting]] = {}
     numbers = []
     for seen in observations:
         found = seen.identification
-        by_channel = {s.channel: s for s in (config.sensors or _sensors_of(seen.record))}
+        by_channel = {s.channel: s for s in _sensors(config, seen.record)}
         places = tuple(by_channel[c.name] for c in found.channels)
         with located(file=config.path):
             shapes = observation_matrix(assembly, places) @ numbered.shapes
@@ -84,7 +83,7 @@ def measure(
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
     return Measured(
         tuple(observations),
-        config.sensors or _sensors_of(observations[0].record),
+        _sensors(config, observations[0].record),
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
         tuple(numbers),
     )
@@ -129,5 +128,12 @@ def _pooled(values: FloatArray, std: FloatArray) -> tuple[float, float]:
     return mean, float(w.sum() ** -0.5)
 
 
-def _sensors_of(record: Record) -> tuple[Sensor, ...]:
-    return tuple(Sensor(c.name, c.direction, c.node, None if c.node else c.height_m) for c in record.channels)
+def _sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:
+    """Return the sensors behind the channels; they point as the record's channels do once turned."""
+    given = {s.channel: s for s in config.sensors}
+    return tuple(
+        replace(given[c.name], direction=c.direction)
+        if given
+        else Sensor(c.name, c.direction, c.node, None if c.node else c.height_m)
+        for c in record.channels
+    )

@@ -1,14 +1,20 @@
-"""From a file to an observation: quality, repair, identification. Stateless, for one record or a farm."""
+"""From a file to an observation: quality, repair, rotor axes, identification. Stateless."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.identification import Identification, IdentificationSettings, identify
-from jackettwin.records import Record, assess, read_record, repair
+from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.quality import Quality
+from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
+from jackettwin.response.sensors import Sensor
+
+MOTION = ("acceleration", "velocity", "displacement")
 
 
 @dataclass(frozen=True)
@@ -32,15 +38,15 @@ def observe(
     path: Path,
     settings: IdentificationSettings,
     *,
-    channels: tuple[str, ...] | None = None,
+    sensors: tuple[Sensor, ...] = (),
     drop_dead: bool = False,
 ) -> Observation:
-    """Read, judge, repair and identify one record.
+    """Read, judge, repair, turn to the rotor's axes and identify one record.
 
     Parameters
     ----------
-    channels : tuple of str, optional
-        Only these; default: all that measure motion.
+    sensors : tuple of Sensor, optional
+        Only these channels, at these places; default: all that measure motion, where the record says.
     drop_dead : bool
         Leave channels that carry nothing out instead of refusing the record.
 
@@ -51,15 +57,33 @@ def observe(
     """
     record = read_record(path)
     with located(file=path):
-        record = record.select(channels) if channels else moving_channels(record)
-        quality = assess(record)
+        chosen = _placed(record, sensors) if sensors else moving_channels(record)
+        quality = assess(chosen)
         if not drop_dead:
             _refuse_dead(quality)
-        repaired = repair(record, quality)
-        return Observation(repaired, quality, identify(repaired, settings))
+        ready, notes = in_rotor_axes(repair(chosen, quality), record)
+        found = identify(ready, settings)
+        return Observation(ready, quality, replace(found, warnings=(*notes, *found.warnings)))
 
 
-MOTION = ("acceleration", "velocity", "displacement")
+def in_rotor_axes(record: Record, source: Record) -> tuple[Record, tuple[str, ...]]:
+    """Return a record detrended and turned to the rotor's axes if ``source`` knows the yaw, and remarks.
+
+    Channels keep their names, so that records at different yaw compare and sensors find them: the one
+    nearer to global x is the fore-aft one. A yaw that is zero throughout changes nothing.
+    """
+    if record.metadata.get("axes") == "rotor" or not knows_yaw(source):
+        return record, ()
+    yaw = yaw_of(source)
+    if not np.any(yaw):
+        return record, ()
+    turned = to_rotor_axes(detrend(record), yaw_rad=yaw, rename=False)
+    lost = turned.metadata.get("without_partner", [])
+    if not turned.channels:
+        return record, ("not turned to the rotor's axes: no two horizontal channels sit at one place",)
+    if not lost:
+        return turned, ()
+    return turned, (f"left out, no second horizontal channel at the same place: {', '.join(lost)}",)
 
 
 def moving_channels(record: Record) -> Record:
@@ -80,6 +104,17 @@ def moving_channels(record: Record) -> Record:
             remedy="state the quantity of each channel",
         )
     return record.select(names)
+
+
+def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
+    """Return the channels of the sensors, where and which way these say they point."""
+    chosen = record.select([s.channel for s in sensors])
+    channels = []
+    for channel, s in zip(chosen.channels, sensors, strict=True):
+        length = float(np.linalg.norm(s.direction)) or 1.0
+        x, y, z = (float(v) / length for v in s.direction)
+        channels.append(replace(channel, node=s.node, height_m=s.height_m, direction=(x, y, z)))
+    return replace(chosen, channels=tuple(channels))
 
 
 def _refuse_dead(quality: Quality) -> None:

@@ -1,0 +1,119 @@
+r"""Missing samples of one channel, predicted from the others.
+
+Covariances of different pairs of channels, each over the samples that pair happens to have, do not form
+the covariance of any one process: the Hankel matrix loses its structure and weak modes with it. But
+sensors on one structure repeat each other. What a channel read while it was silent is its conditional mean
+
+.. math:: \hat y_{i,t} = \sum_{j \ne i} \sum_{|k| \le L} b_{ijk}\, y_{j,t+k}
+
+with :math:`b` by least squares over the instants at which every channel is there (regression imputation:
+Little & Rubin 2019, §4.2). Only where the others explain almost all of the channel; elsewhere, and where
+all channels are silent together, a gap stays a gap.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg, ndimage
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+REACH = (5, 2, 0)
+"""Samples before and after that take part; the longest for which there is data enough."""
+CASES_A_COEFFICIENT = 15
+"""Complete instants needed per coefficient."""
+LEAST_EXPLAINED = 0.9
+"""Share of a channel's variance the others must explain."""
+RIDGE = 1e-9
+"""Keeps sensors that repeat each other exactly apart; a share of the variance."""
+
+
+def fill(y: FloatArray) -> FloatArray:
+    """Return samples with the gaps of single channels filled from the channels that were there.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean; NaN marks a missing sample.
+
+    Returns
+    -------
+    (n_channels, n_samples)
+        NaN where the other channels were missing too, or say too little of this one.
+
+    Examples
+    --------
+    >>> t = np.arange(1000.0)
+    >>> y = np.array([np.sin(0.3 * t), np.cos(0.3 * t)])
+    >>> y[0, 400:450] = np.nan
+    >>> bool(np.allclose(fill(y)[0], np.sin(0.3 * t), atol=1e-6))
+    True
+    """
+    valid = np.isfinite(y)
+    if valid.all() or len(y) < 2:
+        return y
+    reach = _reach(valid)
+    if reach is None:
+        return y
+    whole = np.where(valid, y, 0.0)
+    covered = np.array([_around(row, reach) for row in valid])
+    gram = _gram(whole, np.asarray(covered.all(axis=0)), reach)
+    out = y.copy()
+    for i in range(len(y)):
+        for there in _patterns(covered[:, ~valid[i]], i):
+            at = np.flatnonzero(~valid[i] & (covered.T == there).all(axis=1))
+            weights = _weights(gram, i, there, reach)
+            if weights is not None:
+                out[i, at] = _predict(whole, weights, at, reach)
+    return out
+
+
+def _around(valid: BoolArray, reach: int) -> BoolArray:
+    """Return where a channel has this sample and ``reach`` more on either side."""
+    line = np.ones(2 * reach + 1, dtype=bool)
+    return np.asarray(ndimage.binary_erosion(valid, line, border_value=0))
+
+
+def _reach(valid: BoolArray) -> int | None:
+    for reach in REACH:
+        complete = np.count_nonzero(_around(np.asarray(valid.all(axis=0)), reach))
+        if complete >= CASES_A_COEFFICIENT * len(valid) * (2 * reach + 1):
+            return reach
+    return None
+
+
+def _patterns(covered: BoolArray, i: int) -> list[BoolArray]:
+    """Return the sets of channels that are there while channel ``i`` is not, empty sets left out."""
+    found = np.unique(covered, axis=1).T
+    return [there for there in found if there.any() and not there[i]]
+
+
+def _gram(y: FloatArray, complete: BoolArray, reach: int) -> FloatArray:
+    """Return the mean products of all channels and shifts, (n_channels, shifts, n_channels, shifts)."""
+    at = np.flatnonzero(complete)
+    x = y[:, at + np.arange(-reach, reach + 1)[:, None]].reshape(-1, len(at))
+    shape = (len(y), 2 * reach + 1)
+    return np.asarray((x @ x.T / len(at)).reshape(*shape, *shape))
+
+
+def _weights(gram: FloatArray, i: int, there: BoolArray, reach: int) -> FloatArray | None:
+    """Return b (n_channels, shifts), zero for what is not there; None if it explains too little."""
+    n_shifts = 2 * reach + 1
+    size = int(np.count_nonzero(there)) * n_shifts
+    a = gram[there][:, :, there].reshape(size, size)
+    b = gram[i, reach][there].ravel()
+    own = gram[i, reach, i, reach]
+    lift = RIDGE * float(np.trace(a)) / size
+    solved = linalg.solve(a + lift * np.eye(size), b, assume_a="pos", check_finite=False)
+    if own <= 0.0 or float(b @ solved) < LEAST_EXPLAINED * own:
+        return None
+    out = np.zeros((len(there), n_shifts))
+    out[there] = solved.reshape(-1, n_shifts)
+    return out
+
+
+def _predict(y: FloatArray, weights: FloatArray, at: npt.NDArray[np.intp], reach: int) -> FloatArray:
+    near = y[:, at + np.arange(-reach, reach + 1)[:, None]]
+    return np.asarray(np.einsum("jk,jkt->t", weights, near))

@@ -1,0 +1,69 @@
+"""What every method of identification starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.gaps import fill
+from jackettwin.identification.resolve import resolve, usable_channels
+from jackettwin.records import detrend
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import ResolvedSettings
+    from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.records import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+
+WORTH_SAYING = 0.005
+"""Share of filled samples below which nothing is said."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The usable channels of a record at the rate of the identification.
+
+    Attributes
+    ----------
+    channels : tuple of Channel
+    y : (n_channels, n_samples)
+        Zero mean, unit variance; NaN where nothing is known.
+    scale : (n_channels,)
+        Standard deviations by which the channels were divided.
+    settings : ResolvedSettings
+    duration_s : float
+    warnings : tuple of str
+    """
+
+    channels: tuple[Channel, ...]
+    y: FloatArray
+    scale: FloatArray
+    settings: ResolvedSettings
+    duration_s: float
+    warnings: tuple[str, ...]
+
+
+def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
+    """Keep the live vibration channels, detrend, decimate, fill gaps from other channels, scale.
+
+    Channels are scaled to unit variance, else the loudest direction hides the other.
+
+    Raises
+    ------
+    InputError
+        If no usable channel is left, the band lies outside the record's, or the record is shorter than
+        its lag window needs.
+    """
+    usable, warnings = usable_channels(record)
+    resolved, reduced = resolve(detrend(usable), settings)
+    y = fill(reduced.data)
+    filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
+    for channel, share in zip(usable.channels, filled, strict=True):
+        if share > WORTH_SAYING:
+            warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
+    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    return Prepared(usable.channels, y / scale[:, None], scale, resolved, record.duration_s, warnings)
