@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -73,8 +74,12 @@ def _summary(rows: tuple[Row, ...]) -> str:
 
 def _table(rows: tuple[Row, ...]) -> Table:
     failed = frozenset(i for i, row in enumerate(rows) if row.ok is False)
-    cells = tuple((*_cells(row), row.note) for row in rows)
-    return Table(_summary(rows) + ".", (*COLUMNS, "note"), cells, text_columns=2, marked=failed)
+    cells = tuple(_cells(replace(row, quantity=_with_note(row))) for row in rows)
+    return Table(_summary(rows) + ".", COLUMNS, cells, text_columns=2, marked=failed)
+
+
+def _with_note(row: Row) -> str:
+    return f"{row.quantity} ({row.note})" if row.note else row.quantity
 
 
 def _print(rows: tuple[Row, ...], gallery: Path | None) -> None:
