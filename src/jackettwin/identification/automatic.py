@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.identification.choice import chosen_modes
 from jackettwin.identification.clustering import clusters
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ResolvedSettings, Stabilisation
 from jackettwin.identification.prepared import prepare
-from jackettwin.identification.selection import find_tones, select
+from jackettwin.identification.resolve import guarded_band_hz
+from jackettwin.identification.selection import candidates, find_tones
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import welch
 from jackettwin.identification.ssi_cov import order_poles, ssi_cov
@@ -42,7 +45,8 @@ def identify(
     """Identify the modes of a record.
 
     Vibration channels only; others are left aside. Detrended, decimated and scaled to unit variance,
-    then SSI-cov over a sweep of model orders, clustering of the poles, hard criteria.
+    then SSI-cov over a sweep of model orders, clustering of the poles, hard criteria, refinement of the
+    modes by maximum likelihood.
 
     Parameters
     ----------
@@ -79,19 +83,26 @@ def identify(
     say("poles")
     poles = _poles(y, scale, resolved, settings)
     say("selection")
-    found = clusters(poles, distance=settings.cluster_distance, n_orders=len(resolved.orders), scale=scale)
+    found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
     tones = find_tones(poles, found, y / scale[:, None], resolved.sample_rate_hz, settings)
-    modes, rejected, poles = select(poles, found, tones, settings, record.duration_s)
+    judged = candidates(
+        poles, found, tones, settings, duration_s=record.duration_s, n_orders=len(resolved.orders)
+    )
+    say("refinement")
+    chosen = chosen_modes(judged, y, scale, ready.channels, tones.values(), resolved, settings)
+    label = poles.cluster.copy()
+    for number, index in enumerate(chosen.candidate):
+        label[judged[index].cluster.poles] = number
     return Identification(
         records=(record.name,),
         channels=ready.channels,
-        modes=modes,
-        rejected=rejected,
-        stabilisation=poles,
+        modes=chosen.modes,
+        rejected=chosen.rejected,
+        stabilisation=replace(poles, cluster=label),
         spectrum=welch(y * scale[:, None], resolved.sample_rate_hz),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=ready.warnings,
+        warnings=(*ready.warnings, *chosen.warnings),
     )
 
 
@@ -99,7 +110,7 @@ def _poles(
     y: FloatArray, scale: FloatArray, resolved: ResolvedSettings, settings: IdentificationSettings
 ) -> Stabilisation:
     """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
-    band = (resolved.lowest_frequency_hz, resolved.highest_frequency_hz)
+    band = guarded_band_hz(resolved)
     n_lags = 2 * resolved.block_rows
     subspace = ssi_cov(
         covariances(y, n_lags),

@@ -13,6 +13,8 @@ from scipy.spatial.distance import squareform
 from jackettwin.identification.mac import mac
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from jackettwin.identification.estimate import Stabilisation
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,11 +32,14 @@ class Cluster:
     core: IntArray
     """The half of the poles whose damping is known best; all of them where that is not known."""
     order_share: float
+    """Share of the model orders that hold the mode, from the first one on."""
     damping_cov: float
     """Standard deviation of ln ζ: of the representative pole and over the core together."""
 
 
-def clusters(poles: Stabilisation, *, distance: float, n_orders: int, scale: FloatArray) -> list[Cluster]:
+def clusters(
+    poles: Stabilisation, *, distance: float, orders: Sequence[int], scale: FloatArray
+) -> list[Cluster]:
     r"""Group poles by average-linkage clustering, frequency ascending.
 
     .. math:: d_{ij} = \frac{|\lambda_i-\lambda_j|}{\max(|\lambda_i|,|\lambda_j|)} + 1 - \mathrm{MAC}_{ij}
@@ -44,6 +49,8 @@ def clusters(poles: Stabilisation, *, distance: float, n_orders: int, scale: Flo
 
     Parameters
     ----------
+    orders : sequence of int
+        All model orders, ascending.
     scale : (n_channels,)
         Standard deviations of the channels; MAC is taken of shapes scaled by it, so that a channel in
         other units or at a quiet place counts.
@@ -54,7 +61,7 @@ def clusters(poles: Stabilisation, *, distance: float, n_orders: int, scale: Flo
     apart = _distances(poles, scale)
     tree = hierarchy.linkage(squareform(apart, checks=False), method="average")
     label = hierarchy.fcluster(tree, distance, criterion="distance")
-    found = [_cluster(poles, np.flatnonzero(label == k), n_orders) for k in np.unique(label)]
+    found = [_cluster(poles, np.flatnonzero(label == k), orders) for k in np.unique(label)]
     return sorted(found, key=lambda c: float(poles.frequency_hz[c.representative]))
 
 
@@ -69,7 +76,7 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
     return apart
 
 
-def _cluster(poles: Stabilisation, members: IntArray, n_orders: int) -> Cluster:
+def _cluster(poles: Stabilisation, members: IntArray, orders: Sequence[int]) -> Cluster:
     kept = _one_an_order(poles, members)
     core = kept
     own = np.zeros(len(poles.order))
@@ -82,7 +89,7 @@ def _cluster(poles: Stabilisation, members: IntArray, n_orders: int) -> Cluster:
         poles=kept,
         representative=representative,
         core=core,
-        order_share=len(kept) / n_orders,
+        order_share=len(kept) / int(np.sum(np.asarray(orders) >= poles.order[kept].min())),
         damping_cov=float(np.sqrt(own[representative] + scatter)),
     )
 

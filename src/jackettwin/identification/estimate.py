@@ -41,9 +41,13 @@ class ModalEstimate:
     mpc, mpd_rad : float
         Modal phase collinearity (1: real shape) and mean phase deviation of the SSI shape.
     order_share : float
-        Share of the model orders in which the mode appears.
+        Share of the model orders in which the mode appears, from the first one on.
     method : str
         Where the numbers come from.
+    unrefined : ModalEstimate or None
+        What the subspace method said of a mode whose numbers are of maximum likelihood.
+    cramer_rao_log_std : (2,) or None
+        Least standard deviations of ln f and ln ζ any unbiased method can have, of the fitted spectral model.
     status : str
         ``"ok"``, or a sentence on what to distrust.
     """
@@ -63,6 +67,8 @@ class ModalEstimate:
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
     damping_ratio_cov_limit: float | None = None
+    unrefined: ModalEstimate | None = None
+    cramer_rao_log_std: FloatArray | None = None
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,13 @@
 r"""One estimate from many records.
 
-Modes are tracked across records by shape and frequency, then averaged on the logarithms of frequency and
-damping, so that ratios are not biased. Weights hold the uncertainty of each record and the scatter
-between records (random effects; DerSimonian & Laird 1986):
+Modes are tracked across records by shape and frequency, then averaged. Weights hold the uncertainty of each
+record and the scatter between records (random effects; DerSimonian & Laird 1986):
 
-.. math:: \ln\hat\theta = \frac{\sum w_r \ln\theta_r}{\sum w_r}, \quad w_r = \frac{1}{s_r^2 + \tau^2}
+.. math:: \hat\theta = \frac{\sum w_r \theta_r}{\sum w_r}, \quad w_r = \frac{1}{s_r^2 + \tau^2}
 
-The variance s_r² of ln ζ is taken at the *fused* damping: an estimate that happens to be high also claims
-to be sharp, and weights taken from each record's own estimate would pull the mean up.
+θ is ln f, and ζ itself: estimates of a record are unbiased in ζ, so their logarithms are not, and the mean
+of many records would inherit it. The variance s_r² is taken at the *fused* damping: an estimate that
+happens to be high also claims to be sharp, and weights of its own would pull the mean up.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class FusedMode:
         Of (ln f, ln ζ).
     mode_shape : (n_channels,) complex
     scatter_frequency, scatter_damping_ratio : float
-        Between-record standard deviations of ln f and ln ζ beyond what the records' own uncertainty
+        Between-record standard deviations of f and ζ, relative, beyond what the records' own uncertainty
         explains: wind, tide and temperature show here.
     records : tuple of int
         Positions of the records that hold the mode.
@@ -208,17 +208,16 @@ def _fused_mode(
     order = sorted(track)
     members = [identifications[r].modes[track[r]] for r in order]
     log_f = np.log([mode.frequency_hz for mode in members])
-    log_zeta = np.log([mode.damping_ratio for mode in members])
+    own_zeta = np.array([mode.damping_ratio for mode in members])
     duration = np.array([identifications[r].duration_s for r in order])
-    ln_f, var_f, between_f = random_effects(
-        log_f, _variances(members, duration, 0, float(np.median(log_zeta)))
-    )
-    centre = float(np.median(log_zeta))
+    zeta = float(np.mean(own_zeta))
     for _ in range(3):
-        var = _variances(members, duration, 1, centre)
-        centre, var_zeta, between_zeta = random_effects(log_zeta, var)
+        relative = random_effects(own_zeta / zeta, _variances(members, duration, 1, zeta))
+        zeta *= relative[0]
+    _, var_zeta, between_zeta = relative
+    ln_f, var_f, between_f = random_effects(log_f, _variances(members, duration, 0, zeta))
     covariance = np.diag([var_f, var_zeta])
-    f, zeta = float(np.exp(ln_f)), float(np.exp(centre))
+    f = float(np.exp(ln_f))
     std_f, std_zeta = np.sqrt([var_f, var_zeta])
     shape = _mean_shape([mode.mode_shape[rows[r]] for r, mode in zip(order, members, strict=True)])
     return FusedMode(
@@ -241,7 +240,7 @@ def _fused_mode(
 
 
 def _variances(
-    members: Sequence[ModalEstimate], duration_s: FloatArray, which: int, log_zeta: float
+    members: Sequence[ModalEstimate], duration_s: FloatArray, which: int, zeta: float
 ) -> FloatArray:
     """Return the variance of ln f (0) or ln ζ (1) of each member, were its damping the common one.
 
@@ -250,7 +249,6 @@ def _variances(
     f = np.array([mode.frequency_hz for mode in members])
     own_zeta = np.array([mode.damping_ratio for mode in members])
     cycles = 2.0 * np.pi * f * duration_s
-    zeta = np.exp(log_zeta)
     limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
     own_limit = own_zeta / cycles if which == 0 else 1.0 / (own_zeta * cycles)
     claimed = [

@@ -24,6 +24,9 @@ SAMPLES_A_CYCLE = 2.5
 WINDOW_CYCLES = 1.0
 """Block rows in cycles of the lower edge. Twice that is the lag window: long enough to tell a pair of
 frequencies a few per cent apart, short enough that the covariances are still determined."""
+GUARD = 1.25
+"""Poles are sought, and spectra fitted, up to this multiple of the band's upper edge if the sample rate
+allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
 DEAD = 1e-9
@@ -72,6 +75,13 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
         range(min(settings.order_step, 2) if settings.order_step < 2 else 2, top + 1, settings.order_step)
     )
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def guarded_band_hz(resolved: ResolvedSettings) -> tuple[float, float]:
+    """Return the band in which poles are sought: that of the modes and a guard above it."""
+    passed = resolved.sample_rate_hz / SAMPLES_A_CYCLE
+    high = max(min(GUARD * resolved.highest_frequency_hz, passed), resolved.highest_frequency_hz)
+    return resolved.lowest_frequency_hz, high
 
 
 def _band(record: Record, settings: IdentificationSettings) -> tuple[float, float]:

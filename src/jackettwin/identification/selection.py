@@ -2,53 +2,83 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.identification.estimate import ModalEstimate, Rejected, Stabilisation
+from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.harmonics import is_tone
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from jackettwin.identification.clustering import Cluster
+    from jackettwin.identification.estimate import Stabilisation
     from jackettwin.identification.settings import IdentificationSettings
 
 FloatArray = npt.NDArray[np.float64]
 
+FEWEST_ORDERS = 5
+"""A mode appears in at least so many model orders (or 0.4 of them, if there are few)."""
 TONE_REACH = 6.0
 """A tone nearer than this many half bandwidths disturbs a mode …"""
 TONE_WIDENING = 2.0
 """… whose standard deviations are multiplied by this."""
 
 
-def select(
+@dataclass(frozen=True)
+class Candidate:
+    """A cluster of poles, the mode it would be, and what speaks against it.
+
+    Attributes
+    ----------
+    objection : str or None
+        Why it is not a mode.
+    doubt : str or None
+        Why it may not be one, unless the spectrum needs it.
+    """
+
+    cluster: Cluster
+    mode: ModalEstimate
+    objection: str | None
+    doubt: str | None
+
+    @property
+    def rejected(self) -> Rejected:
+        """The candidate with the reason it was left out."""
+        reason = self.objection or self.doubt or ""
+        return Rejected(self.mode.frequency_hz, self.mode.damping_ratio, reason)
+
+
+def candidates(
     poles: Stabilisation,
     found: list[Cluster],
-    tones: dict[int, float],
+    tones: Iterable[int],
     settings: IdentificationSettings,
+    *,
     duration_s: float,
-) -> tuple[tuple[ModalEstimate, ...], tuple[Rejected, ...], Stabilisation]:
-    """Apply the hard criteria to the clusters; label the poles of those that pass."""
-    modes: list[ModalEstimate] = []
-    rejected: list[Rejected] = []
-    label = poles.cluster.copy()
+    n_orders: int,
+) -> list[Candidate]:
+    """Judge every cluster by the hard criteria.
+
+    Parameters
+    ----------
+    tones : iterable of int
+        Representative poles of clusters that are steady tones.
+    """
+    steady = set(tones)
+    fewest = min(FEWEST_ORDERS, int(np.ceil(0.4 * n_orders)))
+    out = []
     for cluster in found:
-        f, zeta = (float(x[cluster.representative]) for x in (poles.frequency_hz, poles.damping_ratio))
-        shape = normalised(aligned(poles.mode_shape[cluster.representative]))
-        reason = _reason(cluster, float(mpc(shape)), float(mpd_rad(shape)), settings)
-        if cluster.representative in tones:
-            reason = "steady tone: its envelope does not wander as that of a mode"
-        if reason is not None:
-            rejected.append(Rejected(f, zeta, reason))
-            continue
-        label[cluster.poles] = len(modes)
-        bare = ModalEstimate(f, zeta, shape, float(mpc(shape)), float(mpd_rad(shape)), cluster.order_share)
-        mode = _with_uncertainty(bare, poles, cluster, duration_s)
-        modes.append(_beside_tones(mode, list(tones.values())))
-    return tuple(modes), tuple(rejected), replace(poles, cluster=label)
+        mode = _mode(poles, cluster, duration_s)
+        objection = _objection(cluster, mode, settings, fewest)
+        if cluster.representative in steady:
+            objection = "steady tone: its envelope does not wander as that of a mode"
+        out.append(Candidate(cluster, mode, objection, _doubt(cluster, mode, settings)))
+    return out
 
 
 def find_tones(
@@ -59,16 +89,16 @@ def find_tones(
     settings: IdentificationSettings,
 ) -> dict[int, float]:
     """Return the frequencies of steady tones among the clusters, by representative pole."""
-    candidates = [c.representative for c in found if c.order_share >= settings.min_order_share]
+    likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     return {
         k: float(poles.frequency_hz[k])
-        for k in candidates
+        for k in likely
         if is_tone(y, sample_rate_hz, float(poles.frequency_hz[k]), poles.mode_shape[k])
     }
 
 
-def _beside_tones(mode: ModalEstimate, tones_hz: list[float]) -> ModalEstimate:
-    """Flag a mode near a tone, and widen what is said of its damping."""
+def beside_tones(mode: ModalEstimate, tones_hz: Iterable[float]) -> ModalEstimate:
+    """Flag a mode near a tone, and widen what is said of it."""
     reach = TONE_REACH * mode.damping_ratio * mode.frequency_hz
     near = [f for f in tones_hz if abs(f - mode.frequency_hz) < reach]
     if not near:
@@ -76,7 +106,11 @@ def _beside_tones(mode: ModalEstimate, tones_hz: list[float]) -> ModalEstimate:
     mode = replace(mode, status=f"a steady tone at {near[0]:.4g} Hz is too near to trust the damping")
     if mode.log_covariance is None:
         return mode
-    covariance = TONE_WIDENING**2 * mode.log_covariance
+    return with_covariance(mode, TONE_WIDENING**2 * mode.log_covariance)
+
+
+def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimate:
+    """Return the mode with the covariance of (ln f, ln ζ) and what follows from it."""
     std_f, std_zeta = np.sqrt(np.diag(covariance))
     return replace(
         mode,
@@ -88,53 +122,74 @@ def _beside_tones(mode: ModalEstimate, tones_hz: list[float]) -> ModalEstimate:
     )
 
 
-def _with_uncertainty(
-    mode: ModalEstimate, poles: Stabilisation, cluster: Cluster, duration_s: float
-) -> ModalEstimate:
-    """Add the uncertainty of the representative pole and the scatter over the model orders.
-
-    Never below the long-data limits of Au 2014, ζ: 1/√(2πζfT), f: √(ζ/(2πfT)): blocks shorter than the
-    memory of a mode underestimate its scatter.
-    """
-    f, zeta = mode.frequency_hz, mode.damping_ratio
+def long_data_limits(f: float, zeta: float, duration_s: float) -> FloatArray:
+    """Return the least coefficients of variation of f and ζ: √(ζ/(2πfT)) and 1/√(2πζfT) (Au 2014)."""
     cycles = 2.0 * np.pi * f * duration_s
-    limit = 1.0 / np.sqrt(zeta * cycles)
-    mode = replace(mode, damping_ratio_cov_limit=float(limit))
+    return np.asarray(np.sqrt([zeta / cycles, 1.0 / (zeta * cycles)]))
+
+
+def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
+    """Return the representative pole; its uncertainty and the scatter over the model orders together.
+
+    Never below the long-data limits: blocks shorter than the memory of a mode underestimate its scatter.
+    """
+    k = cluster.representative
+    f, zeta = float(poles.frequency_hz[k]), float(poles.damping_ratio[k])
+    shape = normalised(aligned(poles.mode_shape[k]))
+    limits = long_data_limits(f, zeta, duration_s)
+    mode = ModalEstimate(
+        f,
+        zeta,
+        shape,
+        float(mpc(shape)),
+        float(mpd_rad(shape)),
+        cluster.order_share,
+        damping_ratio_cov_limit=float(limits[1]),
+    )
     if poles.log_covariance is None or poles.mode_shape_std is None:
         return mode
     both = np.log([poles.frequency_hz[cluster.core], poles.damping_ratio[cluster.core]])
-    covariance = poles.log_covariance[cluster.representative] + np.cov(both, bias=True)
-    lift = np.sqrt(np.maximum(np.array([zeta / cycles, limit**2]) / np.diag(covariance), 1.0))
-    covariance = covariance * np.outer(lift, lift)
-    std_f, std_zeta = np.sqrt(np.diag(covariance))
-    return replace(
-        mode,
-        log_covariance=covariance,
-        frequency_std_hz=float(f * std_f),
-        damping_ratio_std=float(zeta * std_zeta),
-        frequency_interval_95=_interval(f, std_f),
-        damping_ratio_interval_95=_interval(zeta, std_zeta),
-        mode_shape_std=poles.mode_shape_std[cluster.representative],
-    )
+    covariance = poles.log_covariance[k] + np.cov(both, bias=True)
+    lift = np.maximum(limits / np.sqrt(np.diag(covariance)), 1.0)
+    mode = replace(mode, mode_shape_std=poles.mode_shape_std[k])
+    return with_covariance(mode, covariance * np.outer(lift, lift))
 
 
 def _interval(centre: float, log_std: float) -> tuple[float, float]:
-    factor = float(np.exp(1.96 * log_std))
+    factor = float(np.exp(min(1.96 * log_std, 50.0)))
     return centre / factor, centre * factor
 
 
-def _reason(
-    cluster: Cluster, collinearity: float, deviation: float, settings: IdentificationSettings
+def _objection(
+    cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings, fewest: int
 ) -> str | None:
     """Return why a cluster is not a mode, or None."""
+    if len(cluster.poles) < fewest:
+        return f"in {len(cluster.poles)} model orders, {fewest} needed"
     if cluster.order_share < settings.min_order_share:
-        return f"in {cluster.order_share:.0%} of the model orders, {settings.min_order_share:.0%} needed"
+        return (
+            f"in {cluster.order_share:.0%} of the model orders since it first appeared, "
+            f"{settings.min_order_share:.0%} needed"
+        )
+    if mode.mpc < settings.min_mpc:
+        return f"modal phase collinearity {mode.mpc:.2f} below {settings.min_mpc:g}"
+    if mode.mpd_rad > settings.max_mpd_rad:
+        return f"mean phase deviation {mode.mpd_rad:.2f} rad above {settings.max_mpd_rad:g}"
+    return None
+
+
+def _doubt(cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings) -> str | None:
+    """Return why a cluster is doubtful: its damping is hardly known, or far worse than the record allows."""
     if cluster.damping_cov > settings.max_damping_cov:
         return (
             f"damping uncertain by {cluster.damping_cov:.0%}, at most {settings.max_damping_cov:.0%} allowed"
         )
-    if collinearity < settings.min_mpc:
-        return f"modal phase collinearity {collinearity:.2f} below {settings.min_mpc:g}"
-    if deviation > settings.max_mpd_rad:
-        return f"mean phase deviation {deviation:.2f} rad above {settings.max_mpd_rad:g}"
-    return None
+    if mode.damping_ratio_cov_limit is None:
+        return None
+    excess = cluster.damping_cov / mode.damping_ratio_cov_limit
+    if excess <= settings.max_damping_excess:
+        return None
+    return (
+        f"damping {excess:.0f} times as uncertain as the record allows, "
+        f"at most {settings.max_damping_excess:g} times accepted"
+    )

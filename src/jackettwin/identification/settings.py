@@ -30,12 +30,14 @@ _RANGES: dict[str, tuple[float, float]] = {
     "min_mpc": (0.0, 1.0),
     "max_mpd_rad": (0.0, np.pi),
     "max_damping_cov": (0.0, np.inf),
+    "max_damping_excess": (1.0, np.inf),
     "cluster_distance": (0.0, 2.0),
     "min_order_share": (0.0, 1.0),
     "blocks": (0, 1000),
 }
 _MAY_BE_ZERO = {"min_mpc", "min_order_share"}
 _WHOLE = {"block_rows", "max_order", "order_step", "blocks"}
+_SWITCHES = {"refine"}
 
 
 @dataclass(frozen=True)
@@ -72,10 +74,15 @@ class IdentificationSettings:
         shapes for close pairs of perfectly real modes.
     max_damping_cov : float
         Hard criterion: largest standard deviation of ln ζ. A pole that fits noise has far more.
+    max_damping_excess : float
+        The same in units of what a record can tell at best, 1/√(2πζfT). Above it a mode is doubtful: it
+        counts if the spectrum cannot be explained without it (``refine``), else it is dropped.
     cluster_distance : float
         Poles nearer than this, |Δλ|/|λ| + 1 − MAC on average, belong to one mode.
     min_order_share : float
-        A mode must appear in this share of the model orders (0 to 1).
+        A mode must appear in this share of the model orders, from the first that holds it on (0 to 1).
+    refine : bool
+        Whether the modes are refined by maximum likelihood.
     blocks : int
         Blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 leaves it out.
     """
@@ -95,9 +102,11 @@ class IdentificationSettings:
     min_mpc: float = 0.0
     max_mpd_rad: float = float(np.pi)
     max_damping_cov: float = 1.0
+    max_damping_excess: float = 6.0
     cluster_distance: float = 0.1
-    min_order_share: float = 0.4
+    min_order_share: float = 0.5
     blocks: int = 30
+    refine: bool = True
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -135,6 +144,10 @@ class IdentificationSettings:
 
 def _check(name: str, value: object, *, optional: bool) -> None:
     if value is None and optional:
+        return
+    if name in _SWITCHES:
+        if not isinstance(value, bool):
+            raise InputError("must be a switch", field=name, value=value, allowed="true or false")
         return
     if name in _CHOICES:
         if value not in _CHOICES[name]:

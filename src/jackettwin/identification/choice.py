@@ -1,0 +1,180 @@
+"""The modes that are reported: the candidates no one doubts, refined, and those the spectrum needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.estimate import Rejected
+from jackettwin.identification.mac import normalised
+from jackettwin.identification.periodogram import DERIVATIVES
+from jackettwin.identification.refinement import Refined, refine
+from jackettwin.identification.resolve import guarded_band_hz
+from jackettwin.identification.selection import beside_tones, long_data_limits, with_covariance
+from jackettwin.identification.tone_removal import without_tones
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
+    from jackettwin.identification.selection import Candidate
+    from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.records import Channel
+
+FloatArray = npt.NDArray[np.float64]
+
+MOST_MISSING = 0.01
+"""Share of missing samples in a channel up to which a periodogram is trusted."""
+
+MOST_LACK_OF_FIT = 1.4
+"""Mean square of the misfit over its expectation up to which the refinement is believed; records that are
+what the model says have 0.8 to 1.1."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Modes by ascending frequency, the candidate each came from, and what was left out."""
+
+    modes: tuple[ModalEstimate, ...]
+    candidate: tuple[int, ...]
+    rejected: tuple[Rejected, ...]
+    warnings: tuple[str, ...]
+
+
+def chosen_modes(
+    judged: Sequence[Candidate],
+    y: FloatArray,
+    scale: FloatArray,
+    channels: Sequence[Channel],
+    tones_hz: Collection[float],
+    resolved: ResolvedSettings,
+    settings: IdentificationSettings,
+) -> Choice:
+    """Refine the candidates and keep those that are modes inside the band.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Channels divided by ``scale``.
+    """
+    open_to = [i for i, c in enumerate(judged) if c.objection is None]
+    sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
+    warnings: tuple[str, ...] = ()
+    modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
+    if settings.refine and sure.any():
+        refined = None
+        if np.isnan(y).mean(axis=1).max() <= MOST_MISSING:
+            refined = _refined(judged, open_to, sure, y, scale, channels, tones_hz, resolved)
+        obstacle = _obstacle(refined)
+        if refined is None or obstacle is not None:
+            warnings = (f"modes not refined: {obstacle}",)
+        else:
+            modes = _numbers(judged, open_to, refined, scale, y.shape[1] / resolved.sample_rate_hz)
+    return _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+
+
+def _obstacle(refined: Refined | None) -> str | None:
+    """Return why the refined modes are not to be used, or None."""
+    if refined is None:
+        return "gaps remain in the record"
+    if not refined.converged:
+        return "the fit of the spectral model did not converge"
+    if refined.lack_of_fit > MOST_LACK_OF_FIT:
+        return (
+            f"the spectrum is not that of modes under smooth random forces "
+            f"(lack of fit {refined.lack_of_fit:.1f}, at most {MOST_LACK_OF_FIT:g})"
+        )
+    return None
+
+
+def _refined(
+    judged: Sequence[Candidate],
+    open_to: list[int],
+    sure: npt.NDArray[np.bool_],
+    y: FloatArray,
+    scale: FloatArray,
+    channels: Sequence[Channel],
+    tones_hz: Collection[float],
+    resolved: ResolvedSettings,
+) -> Refined:
+    modes = [judged[i].mode for i in open_to]
+    return refine(
+        without_tones(y, resolved.sample_rate_hz, tones_hz),
+        resolved.sample_rate_hz,
+        guarded_band_hz(resolved),
+        frequency_hz=np.array([m.frequency_hz for m in modes]),
+        damping_ratio=np.array([m.damping_ratio for m in modes]),
+        shapes=np.array([m.mode_shape.real for m in modes]) / scale,
+        sure=sure,
+        derivatives=[DERIVATIVES[c.quantity] for c in channels],
+    )
+
+
+def _numbers(
+    judged: Sequence[Candidate], open_to: list[int], refined: Refined, scale: FloatArray, duration_s: float
+) -> dict[int, ModalEstimate]:
+    """Return the refined modes by candidate."""
+    out = {}
+    for k, position in enumerate(refined.candidate):
+        index = open_to[position]
+        f, zeta = float(refined.frequency_hz[k]), float(refined.damping_ratio[k])
+        shape = refined.shapes[k] * scale
+        top = int(np.argmax(np.abs(shape)))
+        relative = shape / shape[top]
+        jacobian = np.diag(scale) - np.outer(relative, scale * (np.arange(len(shape)) == top))
+        spread = jacobian @ refined.shape_covariance[k] @ jacobian.T / shape[top] ** 2
+        mode = replace(
+            judged[index].mode,
+            frequency_hz=f,
+            damping_ratio=zeta,
+            mode_shape=normalised(shape.astype(complex)),
+            mode_shape_std=np.sqrt(np.maximum(np.diag(spread), 0.0)),
+            method="maximum likelihood",
+            unrefined=judged[index].mode,
+            cramer_rao_log_std=refined.cramer_rao[k],
+            damping_ratio_cov_limit=float(long_data_limits(f, zeta, duration_s)[1]),
+        )
+        out[index] = with_covariance(mode, refined.covariance[k])
+    return out
+
+
+def _sorted(
+    judged: Sequence[Candidate],
+    modes: dict[int, ModalEstimate],
+    tones_hz: Collection[float],
+    resolved: ResolvedSettings,
+    settings: IdentificationSettings,
+    warnings: tuple[str, ...],
+) -> Choice:
+    """Drop what is outside the band or hardly known; order by frequency."""
+    rejected = {i: c.rejected for i, c in enumerate(judged) if i not in modes}
+    kept = {}
+    for i, mode in modes.items():
+        reason = _late_objection(mode, resolved, settings)
+        if reason is None:
+            kept[i] = beside_tones(mode, tones_hz)
+        else:
+            rejected[i] = Rejected(mode.frequency_hz, mode.damping_ratio, reason)
+    order = sorted(kept, key=lambda i: kept[i].frequency_hz)
+    return Choice(
+        modes=tuple(kept[i] for i in order),
+        candidate=tuple(order),
+        rejected=tuple(rejected[i] for i in sorted(rejected)),
+        warnings=warnings,
+    )
+
+
+def _late_objection(
+    mode: ModalEstimate, resolved: ResolvedSettings, settings: IdentificationSettings
+) -> str | None:
+    if not resolved.lowest_frequency_hz < mode.frequency_hz < resolved.highest_frequency_hz:
+        return "outside the band"
+    if mode.log_covariance is not None and mode.log_covariance[1, 1] > settings.max_damping_cov**2:
+        return (
+            f"damping uncertain by {np.sqrt(mode.log_covariance[1, 1]):.0%}, "
+            f"at most {settings.max_damping_cov:.0%} allowed"
+        )
+    return None

@@ -1,0 +1,120 @@
+"""The periodogram of a record in a band, averaged where the spectrum is smooth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy import ndimage
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
+"""How often a quantity is differentiated in time to follow the acceleration of a mode."""
+
+LINES_IN_HALF_BANDWIDTH = 5
+"""Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
+FAR_LINES = 12.0
+"""… and may widen to this fraction of the distance to it."""
+MEDIAN_SHARE_OF_BAND = 0.25
+"""Width of the running median, as a share of the frequency it is taken at."""
+
+
+@dataclass(frozen=True)
+class Periodogram:
+    """Spectral matrices of groups of Fourier lines (two-sided density).
+
+    Attributes
+    ----------
+    omega : (n_groups,)
+        Mean angular frequency [rad/s].
+    count : (n_groups,)
+        Lines in each group.
+    density : (n_groups, n_channels, n_channels) complex
+        Mean of X Xᴴ / (duration), of the second time derivative of displacement-like channels.
+    floor : (n_groups, n_channels)
+        Local median of each channel's density, over a quarter of an octave.
+    duration_s : float
+    """
+
+    omega: FloatArray
+    count: FloatArray
+    density: ComplexArray
+    floor: FloatArray
+    duration_s: float
+
+    @property
+    def log_position(self) -> FloatArray:
+        """ln(f/f_0), with f_0 the middle of the band, (n_groups,)."""
+        log_f = np.log(self.omega)
+        return np.asarray(log_f - 0.5 * (log_f[0] + log_f[-1]))
+
+
+def periodogram(
+    y: FloatArray,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+    *,
+    modes: tuple[FloatArray, FloatArray],
+    derivatives: Sequence[int],
+) -> Periodogram:
+    """Return the grouped periodogram of the band, without a taper.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; a missing one (NaN) counts as zero and the power is scaled back.
+    modes : (frequency_hz, damping_ratio)
+        Rough modal parameters: lines are kept single where the spectrum bends.
+    derivatives : (n_channels,) int
+    """
+    n_channels, n_samples = y.shape
+    duration = n_samples / sample_rate_hz
+    present = np.isfinite(y)
+    x = np.fft.rfft(np.where(present, y, 0.0), axis=1) / sample_rate_hz / np.sqrt(duration)
+    x /= np.sqrt(present.mean(axis=1, keepdims=True))
+    first, last = int(np.ceil(band_hz[0] * duration)), int(np.floor(band_hz[1] * duration))
+    line = np.arange(max(first, 1), min(last, x.shape[1] - 1) + 1)
+    f = line / duration
+    x = x[:, line] * (2j * np.pi * f) ** np.asarray(derivatives)[:, None]
+    start = _group_starts(f, duration, *modes)
+    count = np.diff(np.append(start, len(f))).astype(float)
+    density = np.empty((len(start), n_channels, n_channels), dtype=complex)
+    for b in range(n_channels):
+        density[:, :, b] = np.add.reduceat(x * x[b].conj(), start, axis=1).T / count[:, None]
+    omega = 2.0 * np.pi * np.add.reduceat(f, start) / count
+    middle = start + (count // 2).astype(int)
+    power = np.abs(x) ** 2
+    floor = _local_median(power, line)[:, middle].T
+    return Periodogram(omega, count, density, floor, duration)
+
+
+def _group_starts(
+    f: FloatArray, duration: float, frequency_hz: FloatArray, damping_ratio: FloatArray
+) -> npt.NDArray[np.intp]:
+    half_bandwidth = frequency_hz * damping_ratio
+    distance = np.abs(f[:, None] - frequency_hz)
+    width = np.min(half_bandwidth / LINES_IN_HALF_BANDWIDTH + distance / FAR_LINES, axis=1)
+    lines = np.maximum(width * duration, 1.0)
+    return np.flatnonzero(np.diff(np.floor(np.cumsum(1.0 / lines) + 1e-9), prepend=-1.0) > 0.0)
+
+
+def _local_median(power: FloatArray, line: npt.NDArray[np.intp]) -> FloatArray:
+    """Return the running median over a window proportional to frequency, corrected to a mean.
+
+    Medians of fixed width on a logarithmic frequency axis; a periodogram line is exponentially
+    distributed, with a median of ln 2 times its mean.
+    """
+    n = 400
+    grid = np.exp(np.linspace(np.log(line[0]), np.log(line[-1]), n))
+    step = np.log(line[-1] / line[0]) / n
+    width = max(int(MEDIAN_SHARE_OF_BAND / step), 9) | 1
+    nearest = np.clip(np.round(grid).astype(int) - line[0], 0, len(line) - 1)
+    smooth = ndimage.median_filter(power[:, nearest], size=(1, width), mode="nearest") / np.log(2.0)
+    return np.asarray([np.interp(line, grid, row) for row in smooth])

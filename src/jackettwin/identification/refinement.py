@@ -1,0 +1,217 @@
+r"""From the modes of a subspace method to their maximum-likelihood estimates.
+
+Modes that the subspace method is sure of are fitted together; a doubtful one joins when it explains
+enough of what the others leave, by the gain of log-likelihood
+
+.. math:: g(s) = \sum_k n_k\left[\frac{s h_k\,b_k}{1+s h_k a_k} - \ln(1+s h_k a_k)\right], \quad
+          a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
+
+of adding power s with its shape and kernel h held. The maximum of a likelihood overestimates the damping
+of a short record, as the logarithm of ζ is the quantity that is nearly Gaussian: its mean is brought back
+by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize_scalar
+
+from jackettwin.identification import likelihood
+from jackettwin.identification.modal_spectrum import kernel, poles
+from jackettwin.identification.periodogram import periodogram
+from jackettwin.identification.spectral_model import expected
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.periodogram import Periodogram
+    from jackettwin.identification.spectral_model import Parameters
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+SUSPECT = 2.5
+"""A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
+APPROACH = 4
+"""Steps before the doubtful modes are judged."""
+MOST_ADDED = 6
+"""Doubtful modes admitted at most."""
+
+
+@dataclass(frozen=True)
+class Refined:
+    """Maximum-likelihood estimates of the modes of a band.
+
+    Attributes
+    ----------
+    candidate : (n_modes,) int
+        Position among the candidates.
+    frequency_hz, damping_ratio : (n_modes,)
+        Corrected for the small sample.
+    shapes : (n_modes, n_channels)
+        Real.
+    covariance : (n_modes, 2, 2)
+        Of (ln f, ln ζ).
+    shape_covariance : (n_modes, n_channels, n_channels)
+    cramer_rao : (n_modes, 2)
+        Least standard deviations of ln f and ln ζ of the fitted model.
+    gain : (n_candidates,)
+        Log-likelihood a doubtful candidate would add; infinite for modes that were sure.
+    lack_of_fit : float
+        ``likelihood.lack_of_fit``: near 1 where the record is what the model says.
+    converged : bool
+    """
+
+    candidate: IntArray
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    shapes: FloatArray
+    covariance: FloatArray
+    shape_covariance: FloatArray
+    cramer_rao: FloatArray
+    gain: FloatArray
+    lack_of_fit: float
+    converged: bool
+
+
+def refine(
+    y: FloatArray,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+    *,
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    shapes: FloatArray,
+    sure: BoolArray,
+    derivatives: Sequence[int],
+) -> Refined:
+    """Fit the sure candidates together, admit the doubtful ones that are needed.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean, of comparable size; NaN marks a missing sample.
+    frequency_hz, damping_ratio : (n_candidates,)
+    shapes : (n_candidates, n_channels)
+        Real, in the scaling of y.
+    sure : (n_candidates,) bool
+        At least one.
+    derivatives : (n_channels,) int
+        Derivatives in time by which a channel lags acceleration.
+    """
+    data = periodogram(
+        y, sample_rate_hz, band_hz, modes=(frequency_hz, damping_ratio), derivatives=derivatives
+    )
+    unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
+    chosen = np.flatnonzero(sure)
+    first = likelihood.start(data, frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
+    climb = likelihood.climbed(data, first, APPROACH)
+    climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
+    climb = likelihood.climbed(data, climb.parameters)
+    climb, chosen = _thinned(data, climb, chosen)
+    return _result(data, climb, chosen, gain)
+
+
+def _joined(
+    data: Periodogram,
+    climb: likelihood.Climb,
+    chosen: IntArray,
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    unit: FloatArray,
+) -> tuple[likelihood.Climb, IntArray, FloatArray]:
+    """Admit the doubtful candidate that explains most, again and again, while one explains enough."""
+    gain = np.full(len(frequency_hz), np.inf)
+    for _ in range(MOST_ADDED):
+        doubtful = np.setdiff1d(np.arange(len(frequency_hz)), chosen)
+        if not len(doubtful):
+            break
+        p = climb.parameters
+        tried = [gain_of(data, p, frequency_hz[i], damping_ratio[i], unit[i]) for i in doubtful]
+        gain[doubtful] = [g for g, _ in tried]
+        best = int(np.argmax(gain[doubtful]))
+        i = doubtful[best]
+        if gain[i] < needed_gain(data):
+            break
+        shape = unit[i] * np.sqrt(tried[best][1])
+        joined = p.joined(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
+        climb, chosen = likelihood.climbed(data, joined, APPROACH), np.append(chosen, i)
+    return climb, chosen, gain
+
+
+def _thinned(
+    data: Periodogram, climb: likelihood.Climb, chosen: IntArray
+) -> tuple[likelihood.Climb, IntArray]:
+    """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
+    kept: set[int] = set()
+    while len(chosen) > 1:
+        p = climb.parameters
+        n = len(chosen)
+        std = np.sqrt(np.diag(likelihood.covariance(data, p)[0]))[n : 2 * n]
+        limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta) * 2.0 * np.pi * data.duration_s)
+        suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
+        suspect = [k for k in suspect if int(chosen[k]) not in kept]
+        if not suspect:
+            break
+        fewer = likelihood.climbed(data, p.without(suspect[0]))
+        if climb.value - fewer.value < needed_gain(data):
+            climb, chosen = fewer, np.delete(chosen, suspect[0])
+        else:
+            kept.add(int(chosen[suspect[0]]))
+    return climb, chosen
+
+
+def needed_gain(data: Periodogram) -> float:
+    """Return the log-likelihood a mode must add: Schwarz's criterion for its f, ζ, colour and shape."""
+    n_parameters = 3 + data.floor.shape[1]
+    return float(0.5 * n_parameters * np.log(data.count.sum()))
+
+
+def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatArray) -> tuple[float, float]:
+    """Return the largest gain of log-likelihood by adding a mode, and the power at which it is reached."""
+    dither = likelihood.known_power(data)
+    model = expected(data, p, dither)
+    inverse = np.linalg.inv(model.matrix)
+    left = inverse @ phi
+    a = np.real(left @ phi)
+    b = np.einsum("ka,kab,kb->k", left.conj(), data.density, left, optimize=True).real
+    b += np.sum(np.abs(left) ** 2 * dither, axis=1)
+    lam = poles(np.array([f]), np.array([zeta]))
+    h = kernel(data.omega, data.duration_s, lam, lam)[:, 0, 0].real
+
+    def loss(log_s: float) -> float:
+        s = np.exp(log_s) * h
+        return float(-np.sum(data.count * (s * b / (1.0 + s * a) - np.log1p(s * a))))
+
+    middle = -np.log(np.max(h * a))
+    found = minimize_scalar(loss, bounds=(middle - 15.0, middle + 15.0), method="bounded")
+    return max(-float(found.fun), 0.0), float(np.exp(found.x))
+
+
+def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: FloatArray) -> Refined:
+    p = climb.parameters
+    n, n_channels = p.shapes.shape
+    covariance, bound = likelihood.covariance(data, p)
+    index = np.arange(n)
+    both = np.stack([index, index + n], axis=1)
+    shape = 3 * n + np.arange(n * n_channels).reshape(n, n_channels)
+    log_covariance = covariance[both[:, :, None], both[:, None, :]]
+    order = np.argsort(p.log_f)
+    zeta = np.exp(p.log_zeta) / (1.0 + log_covariance[:, 1, 1])
+    return Refined(
+        candidate=chosen[order],
+        frequency_hz=np.exp(p.log_f)[order],
+        damping_ratio=zeta[order],
+        shapes=p.shapes[order],
+        covariance=log_covariance[order],
+        shape_covariance=covariance[shape[:, :, None], shape[:, None, :]][order],
+        cramer_rao=bound[both][order],
+        gain=gain,
+        lack_of_fit=likelihood.lack_of_fit(data, p),
+        converged=climb.converged,
+    )

@@ -1,0 +1,70 @@
+"""What is reported: refined where the model fits, plain where it does not, and why."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import IdentificationSettings, identify
+from jackettwin.identification.synthetic import simulate
+
+
+def test_refined_modes_state_both_estimates_and_the_bound(tower, rng):
+    result = identify(simulate(tower, rng, sample_rate_hz=5.0))
+    assert len(result.modes) == 4
+    for mode in result.modes:
+        assert mode.method == "maximum likelihood"
+        assert mode.unrefined is not None
+        assert mode.unrefined.method == "ssi-cov"
+        assert mode.cramer_rao_log_std is not None
+        assert mode.cramer_rao_log_std[1] == pytest.approx(mode.damping_ratio_cov_limit, rel=0.5)
+        assert mode.mode_shape.imag == pytest.approx(0.0)
+        low, high = mode.damping_ratio_interval_95
+        assert low < mode.damping_ratio < high
+
+
+def test_refinement_can_be_switched_off(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    plain = identify(record, IdentificationSettings(refine=False))
+    assert {mode.method for mode in plain.modes} == {"ssi-cov"}
+    both = [mode.unrefined for mode in identify(record).modes]
+    np.testing.assert_array_equal(
+        [mode.frequency_hz for mode in plain.modes], [mode.frequency_hz for mode in both]
+    )
+
+
+def test_units_of_a_channel_change_nothing_but_its_shape(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    factor = np.ones((len(record.data), 1))
+    factor[2] = 1000.0
+    modes = identify(record).modes
+    for mode, other in zip(modes, identify(replace(record, data=record.data * factor)).modes, strict=True):
+        # rounding, and a climb that stops at 2 % of a standard deviation
+        assert other.damping_ratio == pytest.approx(mode.damping_ratio, rel=1e-3)
+        assert mode.mode_shape[2] / mode.mode_shape[0] == pytest.approx(
+            other.mode_shape[2] / other.mode_shape[0] / 1000.0, rel=1e-2, abs=1e-4
+        )
+
+
+def test_remaining_gaps_leave_the_modes_unrefined_and_say_so(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    data = record.data.copy()
+    data[:, 400:480] = np.nan
+    result = identify(replace(record, data=data))
+    assert any("gaps remain" in text for text in result.warnings)
+    assert {mode.method for mode in result.modes} == {"ssi-cov"}
+
+
+def test_a_steady_tone_is_taken_out_before_the_fit(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    plain = identify(record)
+    t = np.arange(record.data.shape[1]) / 5.0
+    tone = np.sqrt(2.0) * record.data.std(axis=1, keepdims=True) * np.sin(2.0 * np.pi * 0.7003 * t)
+    disturbed = identify(replace(record, data=record.data + tone))
+    assert any("steady tone" in r.reason for r in disturbed.rejected)
+    for mode in plain.modes:
+        other = min(disturbed.modes, key=lambda m: abs(m.frequency_hz - mode.frequency_hz))
+        # the tone is farther than 6 half bandwidths from every mode
+        assert other.damping_ratio == pytest.approx(mode.damping_ratio, rel=0.05)
