@@ -56,7 +56,7 @@ def check_command(
     held = read_support(
         support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
     )
-    load = nodal_load(assembly, dict(_force(text) for text in forces))
+    load = nodal_load(assembly, dict(nodal_force(text) for text in forces))
     if not no_weight:
         load = load + self_weight(assembly)
     u = static_displacement(build_system(assembly, held), load)
@@ -74,7 +74,14 @@ def check_command(
         _print(document)
 
 
-def _force(text: str) -> tuple[str, tuple[float, ...]]:
+def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
+    """Return node and components of ``NODE=FX,FY,FZ``.
+
+    Raises
+    ------
+    InputError
+        If the text is not that.
+    """
     node, _, numbers = text.partition("=")
     try:
         return node, tuple(float(part) for part in numbers.split(","))

@@ -17,6 +17,7 @@ from jackettwin.cli.stages import stages_command
 from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
 from jackettwin.cli.verify import verify_command
+from jackettwin.cli.view import view_command
 from jackettwin.version import __version__
 
 
@@ -43,5 +44,6 @@ for command in (
     check_command,
     simulate_command,
     loads_command,
+    view_command,
 ):
     main.add_command(command)

@@ -1,0 +1,185 @@
+"""``jackettwin view``: a page on which to turn a structure, colour it and set it in motion."""
+
+from __future__ import annotations
+
+from math import radians
+from pathlib import Path
+
+import click
+import numpy as np
+
+from jackettwin.cli.check import nodal_force
+from jackettwin.cli.console import output
+from jackettwin.cli.modes import rayleigh_option
+from jackettwin.errors import InputError
+from jackettwin.loads.morison import Coefficients
+from jackettwin.records import read_record
+from jackettwin.report.view import Quantity, View, thickness_quantities, write_view
+from jackettwin.report.view_motions import Motion, damped_motion, record_motion, undamped_motion, wave_motion
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.passage import wave_passage
+from jackettwin.response.playback import playback, record_sensors
+from jackettwin.response.sensors import Sensor
+from jackettwin.response.static import nodal_load, self_weight, static_displacement
+from jackettwin.response.system import System, build_system
+from jackettwin.soil import read_support
+from jackettwin.structure import Assembly, assemble, check, read_structure
+from jackettwin.structure.forces import section_forces, von_mises_stress
+from jackettwin.structure.member_check import member_uses
+from jackettwin.updating import numbered_modes
+
+_OVERDAMPED = 0.3
+"""More damped poles are motions of the supports: nothing to look at."""
+_MOST_USED = 1.5
+"""Members used more than this are drawn alike: they have failed, and others should still be told apart."""
+
+
+@click.command("view")
+@click.argument("structure")
+@click.option("--out", required=True, type=click.Path(dir_okay=False, path_type=Path), help="FILE.html")
+@click.option("--support", help="As for `jackettwin modes`.")
+@click.option(
+    "--modes", "number", default=8, show_default=True, type=click.IntRange(0, 40), help="How many modes."
+)
+@click.option("--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel.")
+@click.option(
+    "--subdivide",
+    default=3,
+    show_default=True,
+    type=click.IntRange(1, 20),
+    help="Pieces a member is drawn in.",
+)
+@click.option(
+    "--growth",
+    multiple=True,
+    metavar="TOP,BOTTOM,THICKNESS",
+    help="Marine growth [m], z from sea level; may be repeated.",
+)
+@click.option("--flooded", multiple=True, metavar="PART", help="A flooded part or member; may be repeated.")
+@click.option("--wave", metavar="HEIGHT,PERIOD[,DIRECTION_DEG]", help="A regular wave passing.")
+@click.option("--record", type=click.Path(dir_okay=False, path_type=Path), help="A record to play back.")
+@click.option(
+    "--force",
+    "forces",
+    multiple=True,
+    metavar="NODE=FX,FY,FZ",
+    help="Beside the self-weight, for utilisation.",
+)
+def view_command(
+    structure: str,
+    out: Path,
+    support: str | None,
+    number: int,
+    rayleigh: str | None,
+    subdivide: int,
+    growth: tuple[str, ...],
+    flooded: tuple[str, ...],
+    wave: str | None,
+    record: Path | None,
+    forces: tuple[str, ...],
+) -> None:
+    """Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record."""
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise InputError("unknown format of a page", field="--out", value=out.name, allowed=".html")
+    chosen = read_structure(structure)
+    assembly = assemble(chosen, subdivide=subdivide)
+    held = read_support(
+        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
+    )
+    system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
+    coefficients = Coefficients(growth=tuple(_band(text) for text in growth))
+    _require_parts(assembly, flooded)
+    motions = _modes(assembly, system, number)
+    sensors: tuple[Sensor, ...] = ()
+    if wave is not None:
+        H, T, *heading = _numbers(wave, "--wave", (2, 3))
+        passage = wave_passage(
+            system,
+            height_m=H,
+            period_s=T,
+            direction_rad=radians(*heading or [0.0]),
+            coefficients=coefficients,
+        )
+        motions.append(wave_motion(assembly, passage))
+    if record is not None:
+        measured = read_record(record)
+        sensors = record_sensors(measured)
+        found = playback(assembly, undamped_modes(system, 12), measured)
+        motions.append(record_motion(assembly, measured.name, found))
+    books = check(assembly)
+    view = View(
+        assembly,
+        (*thickness_quantities(assembly), *_uses(assembly, system, dict(nodal_force(f) for f in forces))),
+        tuple(motions),
+        sensors,
+        coefficients,
+        flooded,
+        (f"{books.mass_kg / 1e3:,.0f} t, {len(chosen.members)} members",),
+    )
+    output.print(f"wrote {write_view(view, out)}")
+
+
+def _band(text: str) -> tuple[float, float, float]:
+    top, bottom, thickness = _numbers(text, "--growth", (3,))
+    return (top, bottom, thickness)
+
+
+def _numbers(text: str, option: str, counts: tuple[int, ...]) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) not in counts or not np.isfinite(values).all():
+        raise InputError(
+            "not numbers joined by commas", field=option, value=text, allowed=f"{counts} of them"
+        )
+    return values
+
+
+def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
+    known = {m.name for m in assembly.structure.members} | {m.part for m in assembly.structure.members}
+    for name in names:
+        if name not in known:
+            raise InputError("no such member or part", field="--flooded", value=name)
+
+
+def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
+    """Return undamped modes, and damped ones if anything dissipates."""
+    if number == 0:
+        return []
+    still = undamped_modes(system, number)
+    labels = mode_labels(mode_kinds(assembly, still.shapes))
+    motions = [
+        undamped_motion(assembly, f"{k + 1} {label.replace('_', ' ')}", float(f), still.shapes[:, k])
+        for k, (f, label) in enumerate(zip(still.frequency_hz, labels, strict=True))
+    ]
+    damped = damped_modes(system, below_hz=1.02 * float(still.frequency_hz[-1]))
+    lively = np.flatnonzero((damped.damping_ratio < _OVERDAMPED) & (damped.damping_ratio > 1e-9))[:number]
+    labels = mode_labels(mode_kinds(assembly, damped.shapes[:, lively]))
+    return motions + [
+        damped_motion(
+            assembly,
+            f"{k + 1} {label.replace('_', ' ')}",
+            complex(damped.eigenvalues[i]),
+            damped.shapes[:, i],
+        )
+        for k, (i, label) in enumerate(zip(lively, labels, strict=True))
+    ]
+
+
+def _uses(assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]) -> tuple[Quantity, ...]:
+    """Return utilisation and stress at rest under the weight and the forces given."""
+    u = static_displacement(system, self_weight(assembly) + nodal_load(assembly, forces))
+    uses = np.array([use.utilisation for use in member_uses(assembly, u)])[assembly.mesh.member]
+    sections = section_forces(assembly, u)
+    return (
+        Quantity("utilisation, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
+        Quantity(
+            "von Mises stress",
+            "MPa",
+            von_mises_stress(assembly, sections).max(axis=1) / 1e6,
+            from_zero=True,
+        ),
+        Quantity("axial force", "MN", sections.axial.mean(axis=1) / 1e6),
+    )

@@ -1,0 +1,106 @@
+"""The page carries everything it draws, and nothing of it is wrong by more than its digits."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.loads.morison import Coefficients
+from jackettwin.report.view import Quantity, View, thickness_quantities, view_document, write_view
+from jackettwin.report.view_motions import damped_motion, undamped_motion, wave_motion
+from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.passage import wave_passage
+from jackettwin.response.sensors import Sensor
+from jackettwin.response.system import System, build_system
+from jackettwin.soil import on_translations
+from jackettwin.soil.viscoelastic import kelvin_voigt
+from jackettwin.structure import assemble, read_structure
+
+
+@pytest.fixture(scope="module")
+def system() -> System:
+    structure = read_structure("jacket15")
+    support = on_translations(structure, kelvin_voigt(2.5e9, 7.6e8))
+    return build_system(assemble(structure, subdivide=2), support)
+
+
+@pytest.fixture(scope="module")
+def view(system: System) -> View:
+    assembly = system.assembly
+    still = undamped_modes(system, 2)
+    damped = damped_modes(system, below_hz=0.3)
+    motions = (
+        undamped_motion(assembly, "1", float(still.frequency_hz[0]), still.shapes[:, 0]),
+        damped_motion(assembly, "1", complex(damped.eigenvalues[0]), damped.shapes[:, 0]),
+        wave_motion(assembly, wave_passage(system, height_m=8.0, period_s=9.0, n_phases=12)),
+    )
+    n_elements = assembly.mesh.start.size
+    return View(
+        assembly,
+        (
+            *thickness_quantities(assembly),
+            Quantity("unknown", "–", np.full(n_elements, np.nan)),
+        ),
+        motions,
+        (Sensor("top </script>", (0.0, 2.0, 0.0), "tower_top"),),
+        Coefficients(growth=((2.0, -40.0, 0.1),)),
+        ("jacket",),
+        ("a fact",),
+    )
+
+
+def test_geometry_and_quantities(view: View) -> None:
+    found = view_document(view)
+    mesh, structure = view.assembly.mesh, view.assembly.structure
+    nodes = np.reshape(found["nodes"], (-1, 3))
+    np.testing.assert_allclose(nodes, mesh.coordinates - [0.0, 0.0, 72.0], atol=6e-4)
+    assert found["mud_z"] == pytest.approx(-72.0)
+    walls, diameters = (np.array(q["values"]) for q in found["quantities"][:2])
+    member = [structure.members[k] for k in mesh.member]
+    legs = np.array([m.name.startswith("leg") for m in member])
+    np.testing.assert_allclose(
+        walls[legs],
+        [1e3 * m.section_start.thickness_m for m in member if m.name.startswith("leg")],
+        rtol=1e-4,
+    )
+    np.testing.assert_allclose(diameters[legs], 1.498065, rtol=1e-4)
+    growth, z = np.array(found["growth"]), 0.5 * (nodes[mesh.start, 2] + nodes[mesh.end, 2])
+    assert (growth[(z < 2.0) & (z > -40.0)] == 0.1).all()
+    assert (growth[z < -40.0] == 0.0).all()
+    assert sum(found["flooded"]) == 2 * sum(m.part == "jacket" for m in structure.members)
+    # the nacelle's mass hangs at its own centre of gravity
+    assert found["masses"][0]["at"] == pytest.approx([-3.5, 0.0, 148.0])
+
+
+def test_motions_are_scaled_and_closed(view: View, system: System) -> None:
+    still, damped, wave = (motion.document() for motion in view.motions)
+    for motion in (still, damped, wave):
+        drawn = np.array(motion["q"]) @ np.array(motion["shapes"])
+        assert np.abs(drawn).max() == pytest.approx(1.0, rel=2e-3)
+    # one cycle of the damped mode takes 1/f; it has two parts, the undamped one
+    assert len(still["shapes"]) == 1
+    assert len(damped["shapes"]) == 2
+    f = damped_modes(system, below_hz=0.3).frequency_hz[0]
+    assert damped["step_s"] * len(damped["q"]) == pytest.approx(1.0 / f)
+    # the few shapes of the wave give back its displacements
+    passage = wave_passage(system, height_m=8.0, period_s=9.0, n_phases=12)
+    top = view.assembly.mesh.node_names.index("tower_top")
+    exact = passage.displacement[:, view.assembly.dofs("tower_top")[0]]
+    drawn = np.array(wave["q"]) @ np.array(wave["shapes"])[:, 3 * top] * wave["largest_m"]
+    np.testing.assert_allclose(drawn, exact, atol=1e-3 * np.abs(exact).max())
+    assert len(wave["load"]) == 12
+
+
+def test_one_file_that_needs_no_network(view: View, tmp_path: Path) -> None:
+    page = write_view(view, tmp_path / "view.html").read_text(encoding="utf-8")
+    assert not re.search(r"(src|href)\s*=\s*[\"']?https?:", page)
+    data = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
+    assert data is not None
+    found = json.loads(data[1].replace("<\\/", "</"))
+    assert found["sensors"][0]["name"] == "top </script>"
+    assert found["sensors"][0]["direction"] == [0.0, 1.0, 0.0]
+    assert set(found["quantities"][-1]["values"]) == {None}
+    assert "NaN" not in data[1]
+    assert "marine growth" in page
