@@ -48,3 +48,10 @@ def test_a_three_leg_jacket_has_a_first_pair_by_symmetry() -> None:
 def test_examples_are_short_and_tested(path: Path) -> None:
     assert len(path.read_text().splitlines()) <= 60
     assert path.stem in Path(__file__).read_text()
+
+
+def test_the_superelement_keeps_the_damping() -> None:
+    """1 % where plain Craig–Bampton is twice off."""
+    ours, plain = load("07_superelement").main()
+    assert abs(ours) < 0.01
+    assert plain > 0.9

@@ -42,6 +42,19 @@ def test_strong_dashpots_beside_plain_craig_bampton(tmp_path: Path) -> None:
     assert (tmp_path / "se_ExtPtfm.dat").exists()
 
 
+def test_a_superelement_goes_from_format_to_format(tmp_path: Path) -> None:
+    """Deck to ExtPtfm to npz: the same interface stiffness to sixteen digits."""
+    dat, npz = tmp_path / "se.dat", tmp_path / "se.npz"
+    first = json.loads(run(str(DECK), "--modes", "4", "--out", str(dat), "--json").stdout)
+    result = run(str(dat), "--out", str(npz), "--json")
+    assert result.exit_code == 0, result.stderr
+    again = json.loads(result.stdout)
+    np.testing.assert_allclose(again["interface_stiffness"], first["interface_stiffness"], rtol=1e-14)
+    held = first["fixed_interface_frequency_hz"]
+    np.testing.assert_allclose(again["fixed_interface_frequency_hz"], held, rtol=1e-9)
+    assert "coordinates" in run(str(npz), "--out", str(tmp_path / "third.dat")).stdout
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -6,7 +6,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
-from jackettwin.updating.budget import damping_budget
+from jackettwin.updating.budget import beyond_literature, damping_budget
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.update import log_covariance, update
 
@@ -100,3 +100,19 @@ def test_the_first_pair_is_met_in_both_assignments(jacket15: Assembly, first: fl
 def test_unknown_dashpot() -> None:
     with pytest.raises(InputError, match="no such dashpot"):
         Extras(("c_yaw",))
+
+
+def test_shares_beyond_the_literature_are_named() -> None:
+    """Thesis section 2.1: steel 1–2 %, soil 0.5–1.5 %, water 0.1–0.4 % in first bending modes."""
+    usual = {"structure": 0.01, "soil": 0.015, "rotor": 0.05, "water": None}
+    assert beyond_literature("side_side_1", usual) == ()
+    high, low = beyond_literature("side_side_1", usual | {"structure": 0.0099, "soil": 0.03})
+    assert "structure" in high
+    assert "0.99 % damping, less than the 1 to 2 %" in high
+    assert "3 % damping, more than the 0.5 to 1.5 %" in low
+    # higher modes and unknown numbers are not judged
+    assert (
+        beyond_literature("fore_aft_2", {"soil": 0.2})
+        == beyond_literature("fore_aft_1", {"soil": np.nan})
+        == ()
+    )

@@ -28,7 +28,12 @@ from jackettwin.response.superelement_error import (
     hertz,
     reduced_modes,
 )
-from jackettwin.response.superelement_files import require_format, write_superelement
+from jackettwin.response.superelement_files import (
+    is_superelement,
+    read_superelement,
+    require_format,
+    write_superelement,
+)
 from jackettwin.response.system import build_system
 from jackettwin.soil import read_support
 from jackettwin.structure import Assembly, assemble, read_structure
@@ -96,8 +101,14 @@ def superelement_command(
     out: Path,
     as_json: bool,
 ) -> None:
-    """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is."""
+    """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is.
+
+    STRUCTURE may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
+    """
     require_format(out)
+    if is_superelement(Path(structure)):
+        _report(_rewritten(Path(structure), out), as_json)
+        return
     whole = read_structure(structure)
     foundation, rest = at_interface(whole)
     point = _point(reference)
@@ -126,6 +137,21 @@ def superelement_command(
         band,
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
+    _report(document, as_json)
+
+
+def _rewritten(source: Path, out: Path) -> dict[str, Any]:
+    element = read_superelement(source)
+    files = [str(path) for path in write_superelement(element, out)]
+    return _matrices(element, element.held_frequency_hz) | {
+        "structure": source.name,
+        "files": files,
+        "modes": [],
+        "warnings": [],
+    }
+
+
+def _report(document: dict[str, Any], as_json: bool) -> None:
     if as_json:
         print_json(document)
     else:
@@ -146,16 +172,8 @@ def _point(text: str | None) -> Vector | None:
     return (x, y, z)
 
 
-def _document(
-    element: Superelement,
-    fixed_hz: npt.NDArray[np.float64],
-    error: ReducedModes,
-    plain: ReducedModes,
-    band_hz: float,
-) -> dict[str, Any]:
+def _matrices(element: Superelement, fixed_hz: npt.NDArray[np.float64]) -> dict[str, Any]:
     fastest = element.fastest_pole_rad_s
-    step = RUNGE_KUTTA / fastest if fastest > 0.0 else None
-    columns = zip(error.full, error.reduced, plain.reduced, strict=True)
     return {
         "reference_m": element.reference_m,
         "n": element.n,
@@ -165,9 +183,22 @@ def _document(
         "interface_damping": element.C[:INTERFACE, :INTERFACE],
         "guyan_frequency_hz": element.guyan_frequency_hz,
         "fixed_interface_frequency_hz": fixed_hz,
-        "band_hz": band_hz,
         "fastest_pole_rad_s": fastest,
-        "largest_explicit_step_s": step,
+        "largest_explicit_step_s": RUNGE_KUTTA / fastest if fastest > 0.0 else None,
+    }
+
+
+def _document(
+    element: Superelement,
+    fixed_hz: npt.NDArray[np.float64],
+    error: ReducedModes,
+    plain: ReducedModes,
+    band_hz: float,
+) -> dict[str, Any]:
+    columns = zip(error.full, error.reduced, plain.reduced, strict=True)
+    matrices = _matrices(element, fixed_hz)
+    return matrices | {
+        "band_hz": band_hz,
         "modes": [
             {
                 "frequency_hz": float(hertz(f)),
@@ -181,7 +212,7 @@ def _document(
         ],
         "largest_frequency_error": float(np.abs(error.frequency_error).max(initial=0.0)),
         "largest_damping_error": float(np.abs(error.damping_error).max(initial=0.0)),
-        "warnings": _warnings(error, step),
+        "warnings": _warnings(error, matrices["largest_explicit_step_s"]),
     }
 
 
@@ -190,7 +221,7 @@ def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
     worst = float(np.abs(error.damping_error / np.maximum(damping_ratio(error.full), 1e-3)).max(initial=0.0))
     if worst > 0.05:
         found.append(
-            f"a damping ratio is {100 * worst:.0f} % off: keep more coordinates or shorten --time-step"
+            f"a damping ratio is {100 * worst:.0f} % off: keep more coordinates, or a shorter --time-step"
         )
     if step_s is not None and step_s < 1e-3:
         found.append(f"explicit integrators need steps below {step_s:.2g} s; --time-step slows fast poles")
@@ -208,6 +239,12 @@ def _print(document: dict[str, Any]) -> None:
         ("fixed_interface_frequency_hz", "interface held"),
     ):
         output.print(f"{name} [Hz]: " + " ".join(f"{f:.4f}" for f in document[key][:6]))
+    if document["modes"]:
+        output.print(_table(document))
+    output.print("wrote " + ", ".join(document["files"]))
+
+
+def _table(document: dict[str, Any]) -> Table:
     table = Table(
         "f [Hz]",
         "ζ [%]",
@@ -220,10 +257,13 @@ def _print(document: dict[str, Any]) -> None:
     for row in document["modes"]:
         table.add_row(
             f"{row['frequency_hz']:.5f}",
-            f"{100 * row['damping_ratio']:.4f}",
+            _percent(row["damping_ratio"]),
             f"{row['reduced_frequency_hz']:.5f}",
-            f"{100 * row['reduced_damping_ratio']:.4f}",
-            f"{100 * row['plain_craig_bampton_damping_ratio']:.4f}",
+            _percent(row["reduced_damping_ratio"]),
+            _percent(row["plain_craig_bampton_damping_ratio"]),
         )
-    output.print(table)
-    output.print("wrote " + ", ".join(document["files"]))
+    return table
+
+
+def _percent(ratio: float) -> str:
+    return f"{round(100 * ratio, 4) + 0.0:.4f}"  # no minus before a rounded zero

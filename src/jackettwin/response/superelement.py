@@ -96,6 +96,15 @@ class Superelement:
         return np.asarray(np.sqrt(np.maximum(w2, 0.0)) / (2.0 * pi))
 
     @property
+    def held_frequency_hz(self) -> FloatArray:
+        """Undamped frequencies of the internal coordinates, interface held."""
+        inner = slice(INTERFACE, None)
+        if self.n == INTERFACE:
+            return np.empty(0)
+        w2 = la.eigvalsh(self.K[inner, inner], self.M[inner, inner])
+        return np.asarray(np.sqrt(np.maximum(w2, 0.0)) / (2.0 * pi))
+
+    @property
     def fastest_pole_rad_s(self) -> float:
         """Largest |λ| with the interface held: what an explicit integrator must follow."""
         inner = slice(INTERFACE, None)

@@ -71,6 +71,13 @@ def require_format(path: Path) -> None:
         )
 
 
+def is_superelement(path: Path) -> bool:
+    """Return whether a file holds a superelement: ``.npz``, or a ``.dat`` that says so in its second line."""
+    if path.suffix.lower() != ".dat":
+        return path.suffix.lower() == ".npz"
+    return path.is_file() and "flex 5 format" in "".join(read_text(path).splitlines()[1:2]).lower()
+
+
 def read_superelement(path: Path) -> Superelement:
     """Read a superelement of either format. FlexASCII knows no shapes and no reference point.
 

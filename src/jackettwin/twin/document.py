@@ -8,7 +8,7 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.updating import Update
-from jackettwin.updating.budget import SOURCES, damping_budget
+from jackettwin.updating.budget import SOURCES, beyond_literature, damping_budget
 from jackettwin.updating.update import log_covariance
 from jackettwin.version import __version__
 
@@ -104,6 +104,9 @@ def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any
         {
             "label": m.label,
             "damping_ratio": {**dict(zip(SOURCES, budget.damping_ratio[i], strict=True)), "water": None},
+            "beyond_literature": beyond_literature(
+                m.label, dict(zip(SOURCES, map(float, budget.damping_ratio[i]), strict=True))
+            ),
             "share": {**dict(zip(SOURCES, budget.share[i], strict=True)), "water": None},
             "share_interval_90": None
             if intervals is None

@@ -12,6 +12,7 @@ exactly, for any law. Each term over :math:`2|λ|\,x^H M x` is that part's share
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,9 @@ from jackettwin.updating.model import SupportModel
 FloatArray = npt.NDArray[np.float64]
 
 SOURCES = ("structure", "soil", "rotor")
+
+LITERATURE = {"structure": (0.01, 0.02), "soil": (0.005, 0.015), "water": (0.001, 0.004)}
+"""Damping ratios of first bending modes that the literature reports by source, thesis section 2.1."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,29 @@ def damping_budget(
         around = _ratios(model, model.points(np.exp(z)), model.predict_many(np.exp(z), modes, near=near))
         interval = np.moveaxis(np.nanquantile(_shares(around), [0.05, 0.95], axis=0), 0, -1)
     return Budget(modes, ratio, _shares(ratio), interval)
+
+
+def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[str, ...]:
+    """Return a sentence for every source whose damping ratio leaves the range of ``LITERATURE``.
+
+    The ranges are those of first bending modes: other modes, and what is not known, are not judged.
+
+    >>> beyond_literature("fore_aft_1", {"structure": 0.012, "soil": 0.0002, "water": None})
+    ('soil gives fore_aft_1 0.02 % damping, less than the 0.5 to 1.5 % of the literature',)
+    """
+    if label not in ("fore_aft_1", "side_side_1"):
+        return ()
+    found = []
+    for source, (low, high) in LITERATURE.items():
+        zeta = ratios.get(source)
+        if zeta is None or low <= zeta <= high or zeta != zeta:
+            continue
+        side = "less" if zeta < low else "more"
+        found.append(
+            f"{source} gives {label} {100 * zeta:.2g} % damping, "
+            f"{side} than the {100 * low:g} to {100 * high:g} % of the literature"
+        )
+    return tuple(found)
 
 
 def _shares(ratio: FloatArray) -> FloatArray:
