@@ -11,6 +11,8 @@ from jackettwin.cli.console import output, print_json
 from jackettwin.errors import InputError
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
+from jackettwin.simulate import read_scenario
+from jackettwin.simulate.members import scenario_uses
 from jackettwin.soil import read_support
 from jackettwin.structure import assemble, read_structure
 from jackettwin.structure.forces import section_forces, von_mises_stress
@@ -20,7 +22,8 @@ from jackettwin.updating import numbered_modes
 
 
 @click.command("check")
-@click.argument("structure")
+@click.argument("structure", required=False)
+@click.option("--scenario", help="Check the worst instant of a simulated scenario instead.")
 @click.option("--support", help="As for `jackettwin modes`.")
 @click.option(
     "--force",
@@ -41,7 +44,8 @@ from jackettwin.updating import numbered_modes
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def check_command(
-    structure: str,
+    structure: str | None,
+    scenario: str | None,
     support: str | None,
     forces: tuple[str, ...],
     no_weight: bool,
@@ -50,7 +54,17 @@ def check_command(
     subdivide: int | None,
     as_json: bool,
 ) -> None:
-    """Check every member of STRUCTURE at rest under its weight and the forces given."""
+    """Check every member of STRUCTURE at rest under its weight and the forces given, or of a scenario."""
+    basis = DesignBasis(yield_strength, edition)
+    if (structure is None) == (scenario is None):
+        raise InputError(
+            "give a structure or --scenario", field="STRUCTURE", remedy="keep exactly one of them"
+        )
+    if scenario is not None:
+        chosen_scenario = read_scenario(scenario)
+        _report(chosen_scenario.name, scenario_uses(chosen_scenario, basis), None, as_json)
+        return
+    assert structure is not None
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
     held = read_support(
@@ -60,11 +74,14 @@ def check_command(
     if not no_weight:
         load = load + self_weight(assembly)
     u = static_displacement(build_system(assembly, held), load)
-    uses = member_uses(assembly, u, DesignBasis(yield_strength, edition))
     stress = von_mises_stress(assembly, section_forces(assembly, u))
+    _report(chosen.name, member_uses(assembly, u, basis), float(stress.max()), as_json)
+
+
+def _report(name: str, uses: tuple[MemberUse, ...], stress_pa: float | None, as_json: bool) -> None:
     document = {
-        "structure": chosen.name,
-        "largest_von_mises_stress_pa": float(stress.max()),
+        "structure": name,
+        "largest_von_mises_stress_pa": stress_pa,
         "members": [_row(use) for use in sorted(uses, key=lambda use: -use.utilisation)],
         "warnings": _warnings(uses),
     }
@@ -123,6 +140,7 @@ def _print(document: dict[str, Any]) -> None:
     output.print(table)
     if len(document["members"]) > 15:
         output.print(f"and {len(document['members']) - 15} more members")
-    output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
+    if document["largest_von_mises_stress_pa"] is not None:
+        output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")

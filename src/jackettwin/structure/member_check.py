@@ -25,6 +25,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _STRAIGHT = 0.9998
 """Cosine of the angle (about 1°) up to which two members in a row are one column."""
+_BLOCK = 512
+"""Instants checked at a time."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +79,12 @@ def member_uses(
     """
     basis = DesignBasis() if basis is None else basis
     tube = _tubes(assembly, basis)
-    U = utilisation(
-        strength(tube), section_stress(assembly, displacement), C_m=basis.C_m, edition=basis.edition
-    )
-    # (n_checks, n_elements): the worst of both ends and all load cases
-    worst = np.stack([u.max(axis=-1).reshape(-1, tube.D.size).max(axis=0) for u in U])
+    cases = displacement.reshape(-1, assembly.n_dof)
+    worst = np.zeros((len(CHECKS), tube.D.size))
+    for first in range(0, len(cases), _BLOCK):  # records are long
+        stress = section_stress(assembly, cases[first : first + _BLOCK])
+        U = utilisation(strength(tube), stress, C_m=basis.C_m, edition=basis.edition)
+        worst = np.maximum(worst, np.stack([u.max(axis=(0, 2)) for u in U]))
     slender = (tube.D / tube.t)[:, 0]
     uses = []
     for index, member in enumerate(assembly.structure.members):
