@@ -1,53 +1,117 @@
-"""``jackettwin identify``: modes of records, with uncertainty."""
+"""``jackettwin identify``: modes of one record, or of many fused, with uncertainty."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import number, output, print_json, progress
-from jackettwin.errors import located
+from jackettwin.cli.console import messages, number, output, print_json, progress
+from jackettwin.errors import InputError, located
 from jackettwin.files import read_yaml
 from jackettwin.identification import IdentificationSettings
-from jackettwin.twin import Observation, observation_document, observe
+from jackettwin.twin import observation_document, observe
+from jackettwin.twin.export import WRITERS, export_modes
+from jackettwin.twin.many import observe_many, record_files
+from jackettwin.twin.many_document import many_document
+
+_SHOWN = 5
+"""Lines of a kind printed at most; the rest is in the JSON."""
 
 
 @click.command("identify")
 @click.argument("records", nargs=-1, required=True)
 @click.option("--settings", "settings_file", help="YAML file with identification settings.")
 @click.option(
+    "--method",
+    type=click.Choice(["ssi-cov", "ssi-dat", "plscf", "efdd"]),
+    help="How poles are found; default ssi-cov.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="File to write (.json, .csv or .nc), or a folder for all three; a folder also keeps the result of "
+    "every record, so that a run that was stopped goes on where it was.",
+)
+@click.option(
     "--drop-dead", is_flag=True, help="Leave channels that carry nothing out instead of refusing the record."
 )
+@click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def identify_command(
-    records: tuple[str, ...], settings_file: str | None, drop_dead: bool, as_json: bool
+    records: tuple[str, ...],
+    settings_file: str | None,
+    method: str | None,
+    out: Path | None,
+    drop_dead: bool,
+    workers: int | None,
+    as_json: bool,
 ) -> None:
-    """Identify the modes of each of RECORDS."""
-    settings = _settings(settings_file)
-    found: list[Observation] = []
-    with progress(len(records), "identify") as step:
-        for name in records:
-            step(f"identify {Path(name).name}")
-            found.append(observe(Path(name), settings, drop_dead=drop_dead))
-    documents = [observation_document(seen) for seen in found]
+    """Identify the modes of RECORDS: files, or folders of files.
+
+    Several records are fused: over all of them and by wind speed, yaw and state.
+    """
+    settings = _settings(settings_file, method)
+    _refuse_format(out)
+    files = record_files(records)
+    if len(files) == 1:
+        with progress(1, "identify") as step:
+            step(f"identify {files[0].name}")
+            document = observation_document(observe(files[0], settings, drop_dead=drop_dead))
+    else:
+        document = _many(files, settings, drop_dead, _folder(out), workers)
+    if out is not None:
+        for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
+            export_modes(document, path)
+            messages.print(f"wrote {path}")
     if as_json:
-        print_json(documents[0] if len(documents) == 1 else {"records": documents})
-        return
-    for seen in found:
-        _print(seen)
+        print_json(document)
+    elif len(files) == 1:
+        _print_one(document)
+    else:
+        _print_many(document)
 
 
-def _settings(path: str | None) -> IdentificationSettings:
-    if path is None:
-        return IdentificationSettings()
-    with located(file=path):
-        return IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
+def _many(
+    files: Sequence[Path],
+    settings: IdentificationSettings,
+    drop_dead: bool,
+    folder: Path | None,
+    workers: int | None,
+) -> dict[str, Any]:
+    cache = None if folder is None else folder / "records"
+    with progress(len(files), "identify") as step:
+        seen, failed = observe_many(
+            files, settings, drop_dead=drop_dead, cache=cache, workers=workers, step=step
+        )
+    if not seen:
+        raise InputError(f"no record could be identified; the first: {failed[0].problem}")
+    return many_document(seen, failed)
 
 
-def _print(seen: Observation) -> None:
-    found = seen.identification
+def _settings(path: str | None, method: str | None) -> IdentificationSettings:
+    settings = IdentificationSettings()
+    if path is not None:
+        with located(file=path):
+            settings = IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
+    return settings if method is None else settings.with_method(method)
+
+
+def _folder(out: Path | None) -> Path | None:
+    return out if out is not None and (out.is_dir() or not out.suffix) else None
+
+
+def _refuse_format(out: Path | None) -> None:
+    """Refuse an extension we do not write before the work, not after it."""
+    if out is not None and _folder(out) is None and out.suffix.lower() not in WRITERS:
+        export_modes({}, out)
+
+
+def _print_one(document: Mapping[str, Any]) -> None:
     table = Table(
         "f [Hz]",
         "± f [Hz]",
@@ -55,22 +119,71 @@ def _print(seen: Observation) -> None:
         "95 % interval of ζ [%]",
         "MPC",
         "status",
-        title=", ".join(found.records),
+        title=", ".join(document["records"]),
     )
-    for m in found.modes:
-        interval = m.damping_ratio_interval_95
-        table.add_row(
-            f"{m.frequency_hz:.4f}",
-            number(m.frequency_std_hz, 2),
-            f"{100 * m.damping_ratio:.2f}",
-            "–" if interval is None else f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}",
-            f"{m.mpc:.3f}",
-            m.status,
-        )
+    for m in document["modes"]:
+        table.add_row(*_numbers(m), f"{m['mpc']:.3f}", m["status"])
     output.print(table)
-    for r in found.rejected:
-        output.print(f"rejected {r.frequency_hz:.4f} Hz: {r.reason}")
-    for finding in seen.quality.findings:
-        output.print(f"quality: {finding.channel or 'record'}: {finding.text}")
-    for warning in found.warnings:
+    _print_rejected(document["rejected"])
+    for finding in document["quality"]["findings"]:
+        output.print(f"quality: {finding['channel'] or 'record'}: {finding['text']}")
+    for warning in document["warnings"]:
         output.print(f"warning: {warning}")
+
+
+def _print_many(document: Mapping[str, Any]) -> None:
+    n = len(document["records"])
+    _print_fused(f"{n} records fused, {document['duration_s'] / 3600:.3g} h", document["modes"], n)
+    groups = document["groups"]
+    for group in groups if len(groups) > 1 else ():
+        wind, yaw, state = group["wind_speed_m_s"], group["yaw_deg"], group["state"]
+        title = ", ".join(
+            ([] if wind is None else [f"wind {wind[0]:g}–{wind[1]:g} m/s"])
+            + ([] if yaw is None else [f"yaw {yaw[0]:g}–{yaw[1]:g}°"])
+            + ([state] if state else [])
+        )
+        _print_fused(title or "conditions not known", group["modes"], len(group["records"]))
+    failed = document["failed"]
+    for one in failed[:_SHOWN]:
+        output.print(f"failed: {one['record']}: {one['problem']}", soft_wrap=True)
+    if len(failed) > _SHOWN:
+        output.print(f"failed: {len(failed) - _SHOWN} more (--json lists them)")
+    _print_rejected(document["rejected"])
+    for warning in document["warnings"]:
+        output.print(f"warning: {warning}")
+
+
+def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int) -> None:
+    table = Table(
+        "f [Hz]",
+        "± f [Hz]",
+        "ζ [%]",
+        "95 % interval of ζ [%]",
+        "scatter of ζ between records [%]",
+        "in records",
+        title=title,
+    )
+    for m in modes:
+        scatter = f"{100 * m['relative_scatter_damping_ratio']:.0f}"
+        table.add_row(*_numbers(m), scatter, f"{m['records_with_mode']} of {n_records}")
+    output.print(table)
+
+
+def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
+    interval = m["damping_ratio_interval_95"]
+    return (
+        f"{m['frequency_hz']:.4f}",
+        number(m["frequency_std_hz"], 2),
+        f"{100 * m['damping_ratio']:.2f}",
+        "–" if interval is None else f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}",
+    )
+
+
+def _print_rejected(rejected: Sequence[Mapping[str, Any]]) -> None:
+    """Print how many candidates were rejected for each reason; the JSON names them all."""
+    kinds: dict[str, list[float]] = {}
+    for r in rejected:
+        kinds.setdefault(re.sub(r"\d[\d.]*", "…", r["reason"]), []).append(r["frequency_hz"])
+    for reason, f in sorted(kinds.items(), key=lambda item: -len(item[1])):
+        where = f"{f[0]:.4g} Hz" if len(f) == 1 else f"{min(f):.3g} to {max(f):.3g} Hz"
+        output.print(f"rejected: {len(f)} × {reason} ({where})")

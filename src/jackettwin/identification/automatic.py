@@ -11,13 +11,16 @@ import numpy.typing as npt
 from jackettwin.identification.choice import chosen_modes
 from jackettwin.identification.clustering import clusters
 from jackettwin.identification.covariances import block_covariances, covariances
-from jackettwin.identification.estimate import Identification, ResolvedSettings, Stabilisation
-from jackettwin.identification.prepared import prepare
+from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
+from jackettwin.identification.fdd import fdd
+from jackettwin.identification.plscf import plscf_poles
+from jackettwin.identification.prepared import Prepared, prepare
 from jackettwin.identification.resolve import guarded_band_hz
 from jackettwin.identification.selection import candidates, find_tones
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import welch
-from jackettwin.identification.ssi_cov import order_poles, ssi_cov
+from jackettwin.identification.ssi_cov import OrderPoles, order_poles, ssi_cov
+from jackettwin.identification.ssi_dat import ssi_dat
 from jackettwin.identification.ssi_uncertainty import (
     block_deviations,
     order_poles_with_uncertainty,
@@ -32,8 +35,15 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+
 FEWEST_BLOCKS = 5
 """Fewer blocks give no standard deviation worth printing."""
+STEADFAST = 0.8
+"""Share of the orders in which a mode must appear where no uncertainty speaks for it."""
+PLSCF_WINDOWS = 2
+"""Lags of the half spectra, in lag windows of SSI: a resolution of half a line of the lowest mode."""
 
 
 def identify(
@@ -76,12 +86,18 @@ def identify(
     [1.0]
     """
     settings = settings or IdentificationSettings()
+    if settings.method == "efdd":
+        return fdd(record, settings)
+    if settings.method != "ssi-cov":
+        # what is compared is the method; without uncertainties, persistence alone tells modes from noise
+        share = max(settings.min_order_share, STEADFAST)
+        settings = replace(settings, refine=False, min_order_share=share)
     say = progress or (lambda text: None)
     say("preparing")
     ready = prepare(record, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
-    poles = _poles(y, scale, resolved, settings)
+    poles = _poles(ready, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
     tones = find_tones(poles, found, y / scale[:, None], resolved.sample_rate_hz, settings)
@@ -96,7 +112,7 @@ def identify(
     return Identification(
         records=(record.name,),
         channels=ready.channels,
-        modes=chosen.modes,
+        modes=tuple(_named(mode, settings) for mode in chosen.modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
         spectrum=welch(y * scale[:, None], resolved.sample_rate_hz),
@@ -106,26 +122,46 @@ def identify(
     )
 
 
-def _poles(
-    y: FloatArray, scale: FloatArray, resolved: ResolvedSettings, settings: IdentificationSettings
-) -> Stabilisation:
+def _named(mode: ModalEstimate, settings: IdentificationSettings) -> ModalEstimate:
+    return mode if settings.method == "ssi-cov" else replace(mode, method=settings.method)
+
+
+def _poles(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
     """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
+    resolved = ready.settings
     band = guarded_band_hz(resolved)
+    rate = resolved.sample_rate_hz
+    if settings.method == "plscf":
+        lags = covariances(ready.y, PLSCF_WINDOWS * 2 * resolved.block_rows)[:, :, ready.references]
+        poles = plscf_poles(lags, resolved.orders, band=(band[0] / rate, band[1] / rate))
+    elif settings.method == "ssi-dat":
+        subspace = ssi_dat(
+            ready.y,
+            block_rows=resolved.block_rows,
+            max_order=resolved.orders[-1],
+            references=ready.references,
+        )
+        poles = order_poles(subspace, subspace.orders(resolved.orders))
+    else:
+        poles = _ssi_cov_poles(ready, settings, lambda mu: admissible(mu, settings, rate, band))
+    return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
+
+
+def _ssi_cov_poles(
+    ready: Prepared, settings: IdentificationSettings, keep: Callable[[ComplexArray], BoolArray]
+) -> list[OrderPoles]:
+    resolved = ready.settings
     n_lags = 2 * resolved.block_rows
     subspace = ssi_cov(
-        covariances(y, n_lags),
+        covariances(ready.y, n_lags)[:, :, ready.references],
         block_rows=resolved.block_rows,
         max_order=resolved.orders[-1],
         weighting=settings.weighting,
         state_matrix=settings.state_matrix,
     )
-    if settings.blocks >= FEWEST_BLOCKS and (settings.weighting, settings.state_matrix) == ("br", "shift"):
-        blocks = block_covariances(y, n_lags, settings.blocks)
-        poles = order_poles_with_uncertainty(
-            propagation(subspace, block_deviations(blocks, resolved.block_rows)),
-            resolved.orders,
-            keep=lambda mu: admissible(mu, settings, resolved.sample_rate_hz, band),
-        )
-    else:
-        poles = order_poles(subspace, resolved.orders)
-    return stabilisation(poles, settings, sample_rate_hz=resolved.sample_rate_hz, band_hz=band, scale=scale)
+    orders = subspace.orders(resolved.orders)
+    if settings.blocks < FEWEST_BLOCKS or (settings.weighting, settings.state_matrix) != ("br", "shift"):
+        return order_poles(subspace, orders)
+    blocks = block_covariances(ready.y, n_lags, settings.blocks)[..., ready.references]
+    shared = propagation(subspace, block_deviations(blocks, resolved.block_rows))
+    return order_poles_with_uncertainty(shared, orders, keep=keep)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import InputError
 from jackettwin.identification.gaps import fill
 from jackettwin.identification.resolve import resolve, usable_channels
 from jackettwin.records import detrend
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+FEWEST_DEGREES = 10
+"""pLSCF goes up to this degree at least."""
 WORTH_SAYING = 0.005
 """Share of filled samples below which nothing is said."""
 
@@ -34,6 +37,8 @@ class Prepared:
         Zero mean, unit variance; NaN where nothing is known.
     scale : (n_channels,)
         Standard deviations by which the channels were divided.
+    references : list of int
+        Rows of the reference channels.
     settings : ResolvedSettings
     duration_s : float
     warnings : tuple of str
@@ -42,6 +47,7 @@ class Prepared:
     channels: tuple[Channel, ...]
     y: FloatArray
     scale: FloatArray
+    references: list[int]
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...]
@@ -66,4 +72,32 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         if share > WORTH_SAYING:
             warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
     scale = np.sqrt(np.nanmean(y**2, axis=1))
-    return Prepared(usable.channels, y / scale[:, None], scale, resolved, record.duration_s, warnings)
+    references = _references(record, usable, settings)
+    if settings.method == "plscf":
+        resolved = replace(resolved, orders=_degrees(settings, len(references)))
+    return Prepared(
+        usable.channels, y / scale[:, None], scale, references, resolved, record.duration_s, warnings
+    )
+
+
+def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
+    """Return degrees of polynomials with as many poles as SSI's model orders, and twice that at most."""
+    top = max(2 * (settings.max_order or 60) // n_references, FEWEST_DEGREES)
+    return tuple(range(2, top + 1))
+
+
+def _references(record: Record, usable: Record, settings: IdentificationSettings) -> list[int]:
+    """Return the rows of the reference channels among the usable ones; all of them by default."""
+    if settings.reference_channels is None:
+        return list(range(len(usable.channels)))
+    record.select(settings.reference_channels)
+    names = [name for name in settings.reference_channels if name in usable.channel_names]
+    if not names:
+        raise InputError(
+            "no reference channel is usable",
+            file=record.name,
+            field="reference_channels",
+            value=settings.reference_channels,
+            allowed=", ".join(usable.channel_names),
+        )
+    return [usable.channel_names.index(name) for name in names]

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _CHOICES: dict[str, tuple[str, ...]] = {
+    "method": ("ssi-cov", "ssi-dat", "plscf", "efdd"),
     "weighting": ("br", "cva"),
     "state_matrix": ("shift", "one-lag"),
 }
@@ -46,6 +47,12 @@ class IdentificationSettings:
 
     Attributes
     ----------
+    method : "ssi-cov", "ssi-dat", "plscf" or "efdd"
+        How poles are found. Only SSI-cov states the uncertainty of every pole; the others are there to
+        compare with.
+    reference_channels : tuple of str or None
+        Channels whose past the covariances are taken with (a few good ones: less work, less noise);
+        default all.
     lowest_frequency_hz : float or None
         Lower edge of the band of interest (> 0); default 0.65 of the lowest clear spectral peak. Sample
         rate and lag window follow from it.
@@ -87,6 +94,8 @@ class IdentificationSettings:
         Blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 leaves it out.
     """
 
+    method: Literal["ssi-cov", "ssi-dat", "plscf", "efdd"] = "ssi-cov"
+    reference_channels: tuple[str, ...] | None = None
     lowest_frequency_hz: float | None = None
     highest_frequency_hz: float | None = None
     sample_rate_hz: float | None = None
@@ -111,6 +120,13 @@ class IdentificationSettings:
     def __post_init__(self) -> None:
         for item in fields(self):
             _check(item.name, getattr(self, item.name), optional=item.default is None)
+        if self.weighting == "cva" and self.reference_channels is not None:
+            raise InputError(
+                "canonical variate analysis takes all channels as references",
+                field="reference_channels",
+                value=self.reference_channels,
+                remedy="leave reference_channels out, or set weighting to br",
+            )
         low, high = self.lowest_frequency_hz, self.highest_frequency_hz
         if low is not None and high is not None and low >= high:
             raise InputError(
@@ -120,6 +136,10 @@ class IdentificationSettings:
                 allowed=f"> lowest_frequency_hz = {low:g}",
                 remedy="swap the two frequencies",
             )
+
+    def with_method(self, method: str) -> IdentificationSettings:
+        """Return the settings with another method, checked like one from a file."""
+        return self.from_mapping({**vars(self), "method": method})
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, Any]) -> IdentificationSettings:
@@ -139,7 +159,14 @@ class IdentificationSettings:
                     allowed=", ".join(known),
                     remedy=did_you_mean(str(key), known),
                 )
-        return cls(**dict(values))
+        listed = values.get("reference_channels")
+        names = {"reference_channels": tuple(listed)} if isinstance(listed, list) else {}
+        return cls(**{**values, **names})
+
+
+def _check_names(field: str, value: object) -> None:
+    if not isinstance(value, tuple) or not value or not all(isinstance(name, str) for name in value):
+        raise InputError("must be a list of names", field=field, value=value, allowed="channel names")
 
 
 def _check(name: str, value: object, *, optional: bool) -> None:
@@ -148,6 +175,9 @@ def _check(name: str, value: object, *, optional: bool) -> None:
     if name in _SWITCHES:
         if not isinstance(value, bool):
             raise InputError("must be a switch", field=name, value=value, allowed="true or false")
+        return
+    if name == "reference_channels":
+        _check_names(name, value)
         return
     if name in _CHOICES:
         if value not in _CHOICES[name]:

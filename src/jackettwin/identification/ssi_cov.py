@@ -59,6 +59,10 @@ class Subspace:
             )
         )
 
+    def orders(self, wanted: Sequence[int]) -> list[int]:
+        """Return the orders among the wanted that the factorisation has columns for."""
+        return [order for order in wanted if order <= self.observability.shape[1]]
+
     def output_matrix(self, order: int) -> FloatArray:
         """Return C of the given order, (n_channels, order)."""
         return self.observability[: self.n_channels, :order]

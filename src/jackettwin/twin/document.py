@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from jackettwin.identification import ModalEstimate
+from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.updating import Update
@@ -135,15 +135,20 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
 
 def observation_document(seen: Observation, labels: tuple[str, ...] | None = None) -> dict[str, Any]:
     """Return the document of one record of ``jackettwin identify``, with the model's labels if given."""
-    found = seen.identification
+    document = identification_document(seen.identification, seen.quality.summary())
+    if labels is not None:
+        for mode, label in zip(document["modes"], labels, strict=True):
+            mode["label"] = label or None
+    return document | {"conditions": dict(seen.record.conditions)}
+
+
+def identification_document(found: Identification, quality: dict[str, Any]) -> dict[str, Any]:
+    """Return the modes of one record, what was rejected, the settings used and the record's quality."""
     names = [channel.name for channel in found.channels]
     s = found.settings
     return {
         "records": list(found.records),
-        "modes": [
-            mode_document(m, names) | ({} if labels is None else {"label": labels[i] or None})
-            for i, m in enumerate(found.modes)
-        ],
+        "modes": [mode_document(m, names) for m in found.modes],
         "rejected": [
             {"frequency_hz": r.frequency_hz, "damping_ratio": r.damping_ratio, "reason": r.reason}
             for r in found.rejected
@@ -157,7 +162,7 @@ def observation_document(seen: Observation, labels: tuple[str, ...] | None = Non
             "orders": list(s.orders),
         },
         "duration_s": found.duration_s,
-        "quality": seen.quality.summary(),
+        "quality": quality,
         "warnings": list(found.warnings),
     }
 

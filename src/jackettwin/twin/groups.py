@@ -1,0 +1,75 @@
+"""Records of like conditions together: damping of a turbine depends on wind, yaw and state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import floor
+from typing import Any
+
+from jackettwin.identification import FusedIdentification, fuse
+from jackettwin.twin.many import Seen
+
+WIND_BIN_M_S = 2.0
+"""Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
+YAW_BIN_DEG = 30.0
+"""Width of a yaw sector, centred on north, 30°, …"""
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Records of one bin of wind speed, one yaw sector and one state; None where records do not say.
+
+    ``records`` are positions among all records.
+    """
+
+    wind_speed_m_s: Interval | None
+    yaw_deg: Interval | None
+    state: str | None
+    records: tuple[int, ...]
+    fused: FusedIdentification
+
+
+def grouped(seen: Sequence[Seen]) -> tuple[Group, ...]:
+    """Return the groups of the records, each fused; sorted by state, wind speed and yaw."""
+    members: dict[tuple[Interval | None, Interval | None, str | None], list[int]] = {}
+    for i, one in enumerate(seen):
+        members.setdefault(_key(one.conditions), []).append(i)
+    groups = [
+        Group(wind, yaw, state, tuple(rows), fuse([seen[i].identification for i in rows]))
+        for (wind, yaw, state), rows in members.items()
+    ]
+    return tuple(sorted(groups, key=lambda g: (g.state or "", g.wind_speed_m_s or (), g.yaw_deg or ())))
+
+
+def _key(conditions: Mapping[str, Any]) -> tuple[Interval | None, Interval | None, str | None]:
+    wind = _number(conditions, "mean_wind_speed_m_s", "wind_speed_m_s")
+    yaw = _number(conditions, "yaw_deg")
+    state = conditions.get("state")
+    return (
+        None if wind is None else _bin(wind, WIND_BIN_M_S),
+        None
+        if yaw is None
+        else _bin(yaw % 360.0 if yaw % 360.0 < 345.0 else yaw % 360.0 - 360.0, YAW_BIN_DEG),
+        None if state is None else str(state),
+    )
+
+
+def _number(conditions: Mapping[str, Any], *names: str) -> float | None:
+    for name in names:
+        value = conditions.get(name)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return float(value)
+    return None
+
+
+def _bin(value: float, width: float) -> Interval:
+    """Return the bin centred on a multiple of its width.
+
+    >>> _bin(12.9, 2.0)
+    (11.0, 13.0)
+    """
+    centre = width * floor(value / width + 0.5)
+    return centre - 0.5 * width, centre + 0.5 * width

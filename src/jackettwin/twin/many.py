@@ -1,0 +1,207 @@
+"""Many records: every core at work, memory flat, nothing done twice.
+
+Each record becomes a few kilobytes of JSON in a folder, under a name that holds a hash of the file's
+size and time, its description and the settings: what is there already is not computed again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import asdict, dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from jackettwin.errors import InputError, JackettwinError
+from jackettwin.files import write_json
+from jackettwin.identification import Identification, IdentificationSettings
+from jackettwin.identification.storage import from_plain, slim, to_plain
+from jackettwin.records.readers import FORMATS
+from jackettwin.twin.observe import Observation, observe
+from jackettwin.version import __version__
+
+FEWEST_FOR_PROCESSES = 6
+"""Fewer records are done sooner than other processes are started."""
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_AHEAD = 2
+"""Records handed out for every worker: the others are not even opened."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What is kept of an observed record.
+
+    Attributes
+    ----------
+    identification : Identification
+        Without poles and spectrum.
+    quality : dict
+        ``Quality.summary()``.
+    conditions : dict
+        What the record says of wind, yaw and state.
+    """
+
+    identification: Identification
+    quality: dict[str, Any]
+    conditions: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A record that could not be identified, and why."""
+
+    record: str
+    problem: str
+
+
+def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
+    """Return the files meant by paths of records and of folders of records, folders in the order of names.
+
+    Raises
+    ------
+    InputError
+        If a path does not exist or a folder holds no record.
+    """
+    known = {extension for form in FORMATS for extension in form.extensions}
+    files: list[Path] = []
+    for source in map(Path, sources):
+        if not source.is_dir():
+            files.append(source)
+            continue
+        inside = sorted(p for p in source.iterdir() if p.suffix.lower() in known)
+        if not inside:
+            raise InputError("folder holds no record", file=source, allowed=", ".join(sorted(known)))
+        files += inside
+    if len(files) > 1:
+        for file in files:
+            if not file.exists():
+                raise InputError("no such file", file=file, remedy="check the path")
+    return tuple(files)
+
+
+def observe_many(
+    files: Sequence[Path],
+    settings: IdentificationSettings,
+    *,
+    drop_dead: bool = False,
+    cache: Path | None = None,
+    workers: int | None = None,
+    step: Callable[[str], None] = lambda _: None,
+) -> tuple[tuple[Seen, ...], tuple[Failed, ...]]:
+    """Observe records on all cores; one that cannot be identified is listed and stops nothing.
+
+    Parameters
+    ----------
+    cache : Path, optional
+        Folder of results so far: they are taken from there, and new ones put there as they come.
+    workers : int, optional
+        Processes; default one a core. One works in this process.
+    step : callable
+        Told the name of every record that is done.
+
+    Returns
+    -------
+    (seen, failed)
+        Both in the order of the files.
+    """
+    done: dict[int, Seen | Failed] = {}
+    left = []
+    for i, file in enumerate(files):
+        kept = None if cache is None else _from_cache(_cache_path(cache, file, settings, drop_dead))
+        if kept is None:
+            left.append(i)
+        else:
+            done[i] = kept
+            step(file.name)
+    for i, result in _computed(files, left, settings, drop_dead, workers):
+        done[i] = result
+        if cache is not None and isinstance(result, Seen):
+            write_json(_plain(result), _cache_path(cache, files[i], settings, drop_dead))
+        step(files[i].name)
+    in_order = [done[i] for i in range(len(files))]
+    return (
+        tuple(r for r in in_order if isinstance(r, Seen)),
+        tuple(r for r in in_order if isinstance(r, Failed)),
+    )
+
+
+def kept(seen: Observation) -> Seen:
+    """Return what is kept of an observation."""
+    return Seen(slim(seen.identification), seen.quality.summary(), dict(seen.record.conditions))
+
+
+def _computed(
+    files: Sequence[Path],
+    left: list[int],
+    settings: IdentificationSettings,
+    drop_dead: bool,
+    workers: int | None,
+) -> Iterator[tuple[int, Seen | Failed]]:
+    """Yield results as they come, with a bounded number of records under way."""
+    n_workers = min(workers or os.cpu_count() or 1, len(left))
+    if n_workers < 2 or (workers is None and len(left) < FEWEST_FOR_PROCESSES):
+        for i in left:
+            yield i, _one(files[i], settings, drop_dead)
+        return
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
+    # spawned, not forked: a forked child shares locks and BLAS threads it cannot use
+    pool = ProcessPoolExecutor(n_workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt)
+    under_way: dict[Future[Seen | Failed], int] = {}
+    waiting = iter(left)
+    try:
+        while True:
+            for i in waiting:
+                under_way[pool.submit(_one, files[i], settings, drop_dead)] = i
+                if len(under_way) >= _AHEAD * n_workers:
+                    break
+            if not under_way:
+                return
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                yield under_way.pop(future), future.result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _ignore_interrupt() -> None:
+    """Leave Ctrl-C to the parent, which lets every worker finish its record."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _one(file: Path, settings: IdentificationSettings, drop_dead: bool) -> Seen | Failed:
+    try:
+        return kept(observe(file, settings, drop_dead=drop_dead))
+    except JackettwinError as error:
+        return Failed(str(file), str(error))
+
+
+def _cache_path(cache: Path, file: Path, settings: IdentificationSettings, drop_dead: bool) -> Path:
+    stamps = [
+        (p.name, p.stat().st_size, p.stat().st_mtime_ns)
+        for p in (file, file.with_suffix(".json"))
+        if p.exists()
+    ]
+    key = json.dumps([str(file.resolve()), stamps, asdict(settings), drop_dead, __version__], default=str)
+    return cache / f"{file.stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
+
+
+def _plain(seen: Seen) -> dict[str, Any]:
+    return {
+        "identification": to_plain(seen.identification),
+        "quality": seen.quality,
+        "conditions": seen.conditions,
+    }
+
+
+def _from_cache(path: Path) -> Seen | None:
+    """Return a result kept earlier; None if there is none, or none that this version can read."""
+    try:
+        plain = json.loads(path.read_text(encoding="utf-8"))
+        return Seen(from_plain(plain["identification"]), plain["quality"], plain["conditions"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None

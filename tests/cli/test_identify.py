@@ -1,0 +1,70 @@
+"""``jackettwin identify``: JSON on stdout, files where asked, one clear message for bad input."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+
+RECORDS = Path(str(files("jackettwin") / "data" / "records"))
+
+
+def run(*arguments: str) -> tuple[int, str, str]:
+    result = CliRunner().invoke(main, ["identify", *arguments])
+    return result.exit_code, result.stdout, result.stderr
+
+
+def test_one_record_as_json() -> None:
+    code, out, _ = run(str(RECORDS / "pile_U12_s301.parquet"), "--json")
+    document = json.loads(out)
+    assert code == 0
+    assert document["records"] == ["pile_U12_s301"]
+    assert set(document["modes"][0]["mode_shape"]) == {
+        f"acc_{place}_{axis}" for place in ("top", "g77", "g41", "tp") for axis in "xy"
+    }
+    assert all(set(r) == {"frequency_hz", "damping_ratio", "reason"} for r in document["rejected"])
+
+
+def test_another_method_prints_a_table_and_few_lines() -> None:
+    code, out, _ = run(str(RECORDS / "pile_U12_s301.parquet"), "--method", "plscf")
+    assert code == 0
+    assert "0.17" in out
+    # rejected candidates are counted by reason, not listed
+    assert sum(line.startswith("rejected") for line in out.splitlines()) < 5
+
+
+def test_two_records_are_fused_and_kept(tmp_path: Path) -> None:
+    paths = [str(RECORDS / f"{name}.parquet") for name in ("pile_U12_s301", "pile_U12_s308")]
+    code, out, _ = run(*paths, "--out", str(tmp_path / "day"), "--json")
+    assert code == 0
+    document = json.loads(out)
+    assert document["groups"][0]["wind_speed_m_s"] == [11.0, 13.0]
+    assert document["modes"][0]["records_with_mode"] == 2
+    assert sorted(p.name for p in (tmp_path / "day").iterdir()) == [
+        "modes.csv", "modes.json", "modes.nc", "records",
+    ]  # fmt: skip
+    assert len(list((tmp_path / "day" / "records").iterdir())) == 2
+    code, out, _ = run(*paths, "--out", str(tmp_path / "day"))
+    assert code == 0
+    assert "2 records fused" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["gone.parquet"], "no such file"),
+        (["gone.parquet", "--out", "m.xlsx"], "cannot export to this format"),
+        (["gone.parquet", "--method", "fft"], "Invalid value for '--method'"),
+        (["gone.parquet", "gone2.parquet"], "no such file"),
+    ],
+)
+def test_bad_input_is_one_message(arguments: list[str], message: str) -> None:
+    code, out, err = run(*arguments)
+    assert code == 2
+    assert out == ""
+    assert message in err

@@ -1,0 +1,177 @@
+"""Many records: the same as one by one, on several cores, with what is broken listed, resumable."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import netcdf_file
+
+from jackettwin.errors import InputError
+from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.storage import to_plain
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import write_record
+from jackettwin.twin import many
+from jackettwin.twin.export import export_modes
+from jackettwin.twin.groups import grouped
+from jackettwin.twin.many import Failed, Seen, observe_many, record_files
+from jackettwin.twin.many_document import many_document
+
+SETTINGS = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
+WIND = (7.2, 8.4, 12.1, 8.1)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four records of one system at 8 and 12 m/s, and one that is no record at all."""
+    folder = tmp_path_factory.mktemp("records")
+    rng = np.random.default_rng(5)
+    system = ModalSystem(
+        np.array([0.5, 1.3]),
+        np.array([0.02, 0.015]),
+        np.array([[1.0, 0.6, 0.3], [-0.4, 0.5, 1.0]]),
+        np.eye(2),
+    )
+    for i, wind in enumerate(WIND):
+        record = simulate(system, rng, duration_s=300.0, sample_rate_hz=10.0)
+        conditions = {"mean_wind_speed_m_s": wind, "yaw_deg": 0.0, "state": "idling"}
+        write_record(replace(record, conditions=conditions), folder / f"r{i}.parquet")
+    (folder / "r9.parquet").write_bytes(b"not a parquet file")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def seen_and_failed(folder: Path) -> tuple[tuple[Seen, ...], tuple[Failed, ...]]:
+    return observe_many(record_files([folder]), SETTINGS, workers=1)
+
+
+@pytest.fixture(scope="module")
+def document(seen_and_failed: tuple[tuple[Seen, ...], tuple[Failed, ...]]) -> dict:
+    return many_document(*seen_and_failed)
+
+
+def test_a_broken_record_stops_nothing(seen_and_failed: tuple) -> None:
+    seen, failed = seen_and_failed
+    assert [s.identification.records[0] for s in seen] == ["r0", "r1", "r2", "r3"]
+    assert len(failed) == 1
+    assert "r9.parquet" in failed[0].problem
+
+
+def test_processes_give_the_same_as_one(folder: Path, seen_and_failed: tuple) -> None:
+    files = [folder / "r0.parquet", folder / "r9.parquet", folder / "r1.parquet"]
+    seen, failed = observe_many(files, SETTINGS, workers=2)
+    for one, before in zip(seen, seen_and_failed[0], strict=False):
+        assert one.identification.records == before.identification.records
+        a, b = one.identification.modes[0], before.identification.modes[0]
+        # another number of BLAS threads rounds differently, and may pick the pole of another model order
+        assert abs(a.frequency_hz - b.frequency_hz) < b.frequency_std_hz
+    assert failed == seen_and_failed[1]
+
+
+def test_what_was_done_before_an_interruption_is_not_done_again(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seen_and_failed: tuple
+) -> None:
+    files = record_files([folder])[:3]
+    started: list[str] = []
+    monkeypatch.setattr(many, "_one", counted(many._one, started))
+
+    def interrupt(name: str) -> None:
+        if name == "r1.parquet":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        observe_many(files, SETTINGS, cache=tmp_path, workers=1, step=interrupt)
+    seen, _ = observe_many(files, SETTINGS, cache=tmp_path, workers=1)
+    assert started == ["r0.parquet", "r1.parquet", "r2.parquet"]
+    assert [to_plain(s.identification) for s in seen] == [
+        to_plain(s.identification) for s in seen_and_failed[0][:3]
+    ]
+    assert [s.conditions for s in seen] == [s.conditions for s in seen_and_failed[0][:3]]
+    # other settings are another result
+    observe_many(files[:1], replace(SETTINGS, max_order=20), cache=tmp_path, workers=1)
+    assert started[3:] == ["r0.parquet"]
+    # a result that is damaged is computed again
+    for file in tmp_path.iterdir():
+        file.write_text('{"identification": {')
+    observe_many(files[:1], SETTINGS, cache=tmp_path, workers=1)
+    assert started[4:] == ["r0.parquet"]
+
+
+def counted(function, started: list[str]):
+    def one(file: Path, *rest):
+        started.append(file.name)
+        return function(file, *rest)
+
+    return one
+
+
+def test_groups_are_bins_of_wind(seen_and_failed: tuple) -> None:
+    groups = grouped(seen_and_failed[0])
+    assert [(g.wind_speed_m_s, g.records) for g in groups] == [((7.0, 9.0), (0, 1, 3)), ((11.0, 13.0), (2,))]
+    assert all(g.yaw_deg == (-15.0, 15.0) and g.state == "idling" for g in groups)
+
+
+def test_the_document_is_json_and_complete(document: dict) -> None:
+    text = json.dumps(document, allow_nan=False)
+    assert len(json.loads(text)["records"]) == 4
+    first = document["modes"][0]
+    assert first["records_with_mode"] == 4
+    assert [step["n_records"] for step in first["convergence"]] == [1, 2, 4]
+    last = first["convergence"][-1]
+    assert last["damping_ratio"] == pytest.approx(first["damping_ratio"])
+    assert last["damping_ratio_interval_95"] == pytest.approx(first["damping_ratio_interval_95"])
+    for mode, f in zip(document["modes"], (0.5, 1.3), strict=False):
+        # five standard deviations of the best estimate from 1200 s
+        assert mode["frequency_hz"] == pytest.approx(f, rel=5 * np.sqrt(0.02 / (2 * np.pi * f * 1200)))
+    assert document["failed"][0]["record"].endswith("r9.parquet")
+
+
+def test_records_of_other_sensors_stand_for_themselves(seen_and_failed: tuple) -> None:
+    one, other = seen_and_failed[0][:2]
+    channels = tuple(replace(c, name=f"b{i}") for i, c in enumerate(other.identification.channels))
+    other = replace(other, identification=replace(other.identification, channels=channels))
+    document = many_document([one, other], [])
+    assert document["modes"] == []
+    assert "records share no channel" in document["warnings"][0]
+    assert len(document["records"]) == 2
+
+
+def test_tables_hold_every_mode_of_every_set(document: dict, tmp_path: Path) -> None:
+    export_modes(document, tmp_path / "m.csv")
+    with (tmp_path / "m.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    sets = list(dict.fromkeys(row["set"] for row in rows))
+    assert sets[:3] == [
+        "fused",
+        "wind 7 to 9 m/s, yaw -15 to 15 deg, idling",
+        "wind 11 to 13 m/s, yaw -15 to 15 deg, idling",
+    ]
+    assert sets[3:] == ["r0", "r1", "r2", "r3"]
+    assert float(rows[0]["damping_ratio"]) == document["modes"][0]["damping_ratio"]
+    assert float(rows[0]["shape_real_a1"]) == document["modes"][0]["mode_shape"]["a1"][0]
+
+    export_modes(document, tmp_path / "m.nc")
+    with netcdf_file(str(tmp_path / "m.nc"), mmap=False) as file:
+        f = file.variables["frequency_hz"]
+        assert f.units == b"Hz"
+        assert f[:].tolist() == [float(row["frequency_hz"]) for row in rows]
+        names = [b"".join(text).decode().strip() for text in file.variables["channel_name"][:]]
+        assert names == ["a0", "a1", "a2"]
+        assert file.variables["mode_shape_real"][0, 1] == document["modes"][0]["mode_shape"]["a1"][0]
+
+    export_modes(document, tmp_path / "m.json")
+    assert json.loads((tmp_path / "m.json").read_text(encoding="utf-8"))["duration_s"] == 1200.0
+
+
+def test_bad_sources_and_formats_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="folder holds no record"):
+        record_files([tmp_path])
+    with pytest.raises(InputError, match=r"gone.parquet.*no such file"):
+        record_files([tmp_path / "gone.parquet", tmp_path / "also.parquet"])
+    with pytest.raises(InputError, match=r"cannot export to this format.*\.csv"):
+        export_modes({}, tmp_path / "m.xlsx")
