@@ -13,6 +13,7 @@ from jackettwin.cli.modes import modes_command
 from jackettwin.cli.refine import refine_command
 from jackettwin.cli.run import run_command
 from jackettwin.cli.simulate import simulate_command
+from jackettwin.cli.simulate_set import simulate_set_command
 from jackettwin.cli.stages import stages_command
 from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
@@ -43,6 +44,7 @@ for command in (
     stages_command,
     check_command,
     simulate_command,
+    simulate_set_command,
     loads_command,
     view_command,
 ):

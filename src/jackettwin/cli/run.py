@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -10,23 +11,33 @@ from jackettwin.cli.console import output, print_json, progress
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.report import build_report
+from jackettwin.simulate.batch import pending_cases, record_path, run_set
+from jackettwin.simulate.sets import read_set
 from jackettwin.twin import count_steps, read_twin, run_document, run_twin
+from jackettwin.twin.truth import true_parameters
+
+SIMULATED_TWIN = "simulated"
 
 
 @click.command("run")
-@click.argument("twin", default=DEFAULT_TWIN)
+@click.argument("twin", required=False)
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), help="Folder to write; default out/NAME."
 )
+@click.option("--simulate", is_flag=True, help="Simulate the records first: an asset whose truth is known.")
+@click.option("--set", "set_file", default="demo", show_default=True, help="What to simulate.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def run_command(twin: str, out: Path | None, as_json: bool) -> None:
+def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: str, as_json: bool) -> None:
     """Go from records to modes to updated supports: report.html, result.json, figures.
 
     TWIN is a twin file or the name of a shipped twin: openfast_pile (the default: the reference jacket with
-    records that OpenFAST produced) or thesis_table_6_1.
+    records that OpenFAST produced) or thesis_table_6_1. With --simulate the records come from
+    `jackettwin simulate-set`, by default those of a known asset; the report compares with its truth.
     """
-    config = read_twin(twin)
+    config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN))
     folder = out or Path("out") / config.name
+    if simulate:
+        config = replace(config, records=_simulated(set_file, folder / "records"), targets=())
     with progress(count_steps(config) + 1, config.name) as step:
         result = run_twin(config, step=step)
         step("write the report")
@@ -38,4 +49,15 @@ def run_command(twin: str, out: Path | None, as_json: bool) -> None:
         print_json(document)
         return
     print_updates(result)
+    for p in true_parameters(result):
+        verdict = {None: "no interval", True: "inside its 90 % interval", False: "outside its 90 % interval"}
+        output.print(f"  true {p.name} = {p.true:.4g}, updated {p.value:.4g}: {verdict[p.covered]}")
     output.print(f"report: {folder / 'report.html'}")
+
+
+def _simulated(set_file: str, folder: Path) -> tuple[Path, ...]:
+    """Simulate what is pending of a set; return its records."""
+    chosen = read_set(set_file)
+    with progress(len(pending_cases(chosen, folder)), f"simulate {chosen.name}") as step:
+        run_set(chosen, folder, step=step)
+    return tuple(record_path(case, folder) for case in chosen.cases)

@@ -20,6 +20,7 @@ from jackettwin.report.numbers import fixed, frequency, percent, words
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_figures, write_page
 from jackettwin.report.summary import headline, shown_update
 from jackettwin.twin import TwinResult
+from jackettwin.twin.truth import true_modes, true_parameters
 from jackettwin.updating import Update
 from jackettwin.version import __version__
 
@@ -52,6 +53,7 @@ def report_sections(result: TwinResult) -> list[Section]:
         ("Record", _record),
         ("Identification", _identification),
         ("Identified against updated", _comparison),
+        ("Against the known truth", _truth),
         ("Damped and undamped", _damped_undamped),
         ("Mode shapes", _mode_shapes),
         ("Solutions", _solutions),
@@ -77,6 +79,12 @@ def _summary(result: TwinResult) -> list[Block]:
     if result.warnings:
         blocks.append(Text(result.warnings[:3], "warnings"))
     return blocks
+
+
+def _truth(result: TwinResult) -> list[Block]:
+    known, parameters = true_modes(result), true_parameters(result)
+    blocks: list[Block] = [tables.truth_table(result, known)] if known else []
+    return [*blocks, tables.true_parameters_table(parameters)] if parameters else blocks
 
 
 def _structure(result: TwinResult) -> list[Block]:

@@ -23,6 +23,7 @@ from jackettwin.report.numbers import (
 from jackettwin.report.page import Table
 from jackettwin.twin import Observation, TwinResult
 from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
 
 
@@ -45,6 +46,41 @@ def key_table(result: TwinResult) -> Table:
 
 def _mark(text: str, fitted: bool) -> str:
     return text if fitted or text == UNKNOWN else f"({text})"
+
+
+def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
+    """Return the true modes that the records state beside the measured and the updated ones."""
+    columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
+    columns += ["true\nζ [%]", "measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
+    place = {m.label: i for i, m in enumerate(result.measured)}
+    rows = []
+    for true in stated:
+        i = place[true.label]
+        m = result.measured[i]
+        row = [words(true.label), frequency(true.frequency_hz), frequency(m.frequency_hz, m.frequency_std_hz)]
+        row += [frequency(float(u.modes.frequency_hz[i])) for u in result.updates]
+        row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
+        row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
+        rows.append(tuple(row))
+    caption = "What is known to be true of these records, the mean over them, beside what was found."
+    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
+
+
+def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
+    """Return the true parameters of the support beside the updated ones."""
+    rows = [
+        (
+            p.law,
+            p.name,
+            f"{p.true:.4g}",
+            f"{p.value:.4g}",
+            UNKNOWN if p.interval_90 is None else f"{p.interval_90[0]:.4g} – {p.interval_90[1]:.4g}",
+            UNKNOWN if p.covered is None else "yes" if p.covered else "no",
+        )
+        for p in parameters
+    ]
+    columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
+    return Table("True parameters of the support, SI units.", columns, tuple(rows), text_columns=2)
 
 
 def structure_table(result: TwinResult) -> Table:

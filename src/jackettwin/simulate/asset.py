@@ -38,6 +38,7 @@ def build_asset(schema: ScenarioSchema, folder: Path) -> Asset:
         subdivide=schema.subdivide,
         gravity=schema.gravity,
         rayleigh=Rayleigh() if steel is None else Rayleigh.minimum(steel.ratio, steel.frequency_hz),
+        support_text=schema.support,
         coupled_damping=schema.damping.coupled,
     )
 

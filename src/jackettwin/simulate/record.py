@@ -70,6 +70,7 @@ def simulate(scenario: Scenario) -> Simulation:
         metadata={
             "source": f"jackettwin {__version__} simulate",
             "scenario": scenario.name,
+            "true_support": scenario.asset.support_text,
             "true_modes": [
                 {"label": m.label, "frequency_hz": m.frequency_hz, "damping_ratio": m.damping_ratio}
                 for m in motion.modes

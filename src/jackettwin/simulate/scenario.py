@@ -28,6 +28,8 @@ class Asset:
     subdivide: int | None = None
     gravity: bool = False
     rayleigh: Rayleigh = Rayleigh()
+    support_text: str | None = None
+    """The support as a short form, if it was given so: parameters that an update should find again."""
     coupled_damping: float | None = None
     """Damping ratio to which the tower is tuned: that of the first modes of the whole asset in still air."""
 

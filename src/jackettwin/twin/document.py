@@ -7,6 +7,7 @@ from typing import Any
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
+from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update
 from jackettwin.updating.budget import SOURCES, beyond_literature, damping_budget
 from jackettwin.updating.update import log_covariance
@@ -26,6 +27,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "unpaired_modes": [mode_document(e, None) for e in result.unpaired],
         "assumptions": list(result.assumptions),
         "warnings": list(result.warnings),
+        "truth": truth_document(result),
         "report": report,
         "code_version": __version__,
     }

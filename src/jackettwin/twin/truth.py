@@ -1,0 +1,111 @@
+"""What a run found beside what is known to be true, where its records say so (simulated ones do)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.twin.result import TwinResult
+
+
+@dataclass(frozen=True)
+class TrueMode:
+    """A mode as the records state it: the mean over them; None is not stated."""
+
+    label: str
+    frequency_hz: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True)
+class TrueParameter:
+    """A parameter of the support as the records state it, and what an update made of it."""
+
+    law: str
+    name: str
+    true: float
+    value: float
+    interval_90: tuple[float, float] | None
+
+    @property
+    def covered(self) -> bool | None:
+        """Whether the 90 % interval holds the truth; None without an interval."""
+        if self.interval_90 is None:
+            return None
+        low, high = self.interval_90
+        return low <= self.true <= high
+
+
+def true_modes(result: TwinResult) -> tuple[TrueMode, ...]:
+    """Return the true modes of the measured ones, averaged over all records that state them."""
+    stated: dict[str, list[tuple[float, float]]] = {}
+    for metadata in _metadata(result):
+        for mode in metadata.get("true_modes") or []:
+            stated.setdefault(mode["label"], []).append((mode["frequency_hz"], mode["damping_ratio"]))
+    found = []
+    for measured in result.measured:
+        if measured.label in stated:
+            f, zeta = np.mean(stated[measured.label], axis=0)
+            found.append(TrueMode(measured.label, float(f), float(zeta)))
+    return tuple(found)
+
+
+def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
+    """Return the support's true parameters beside the update under the same law.
+
+    Only supports given as a short form, ``kelvin-voigt:k=…,c=…``, have parameters to compare.
+    """
+    texts = {metadata.get("true_support") for metadata in _metadata(result)} - {None}
+    if len(texts) != 1:
+        return ()
+    law, _, arguments = str(texts.pop()).partition(":")
+    true = _numbers(arguments)
+    found = []
+    for update in result.updates:
+        if update.law != law:
+            continue
+        for parameter, value, interval in zip(
+            update.model.parameters, update.best.theta, update.interval_90(), strict=True
+        ):
+            if parameter.name in true:
+                found.append(TrueParameter(law, parameter.name, true[parameter.name], float(value), interval))
+    return tuple(found)
+
+
+def truth_document(result: TwinResult) -> dict[str, Any] | None:
+    """Return the comparison as plain data; None if nothing is known."""
+    modes = true_modes(result)
+    if not modes:
+        return None
+    return {
+        "modes": [
+            {"label": m.label, "frequency_hz": m.frequency_hz, "damping_ratio": m.damping_ratio}
+            for m in modes
+        ],
+        "parameters": [
+            {
+                "law": p.law,
+                "name": p.name,
+                "true": p.true,
+                "value": p.value,
+                "interval_90": p.interval_90,
+                "covered": p.covered,
+            }
+            for p in true_parameters(result)
+        ],
+    }
+
+
+def _metadata(result: TwinResult) -> list[dict[str, Any]]:
+    return [dict(seen.record.metadata) for seen in result.observations]
+
+
+def _numbers(arguments: str) -> dict[str, float]:
+    pairs = [part.partition("=") for part in arguments.split(",") if part]
+    try:
+        return {key: float(value) for key, _, value in pairs}
+    except ValueError:
+        raise InputError("true_support is not a short form", field="true_support", value=arguments) from None
