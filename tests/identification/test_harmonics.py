@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification import identify
-from jackettwin.identification.harmonics import envelope_variance
+from jackettwin.identification import IdentificationSettings, identify
+from jackettwin.identification.harmonics import envelope_variance, is_drifting_tone
 from jackettwin.identification.synthetic import simulate
 
 RATE = 10.0
@@ -37,3 +37,24 @@ def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
         nearest = min(loud_modes, key=lambda other: abs(other.frequency_hz - mode.frequency_hz))
         # one standard deviation of a ten-minute record
         assert abs(np.log(nearest.damping_ratio / mode.damping_ratio)) < np.sqrt(mode.log_covariance[1, 1])
+
+
+@pytest.mark.parametrize("drift", [0.03, 0.08])
+def test_a_tone_that_drifts_with_the_rotor_is_not_a_mode(tower, rng, drift):
+    """A blade-passing tone at 0.5 Hz whose speed goes up and down in five minutes."""
+    record = simulate(tower, rng, sample_rate_hz=RATE)
+    t = np.arange(record.data.shape[1]) / RATE
+    f = 0.5 * (1.0 + drift * np.sin(2 * np.pi * t / 300.0))
+    wave = np.sqrt(2.0) * np.sin(2 * np.pi * np.cumsum(f) / RATE + 0.1 * np.arange(8)[:, None])
+    loud = replace(record, data=record.data + record.data.std(axis=1, keepdims=True) * wave)
+    modes = identify(loud, IdentificationSettings(refine=False)).modes
+    assert not [m.frequency_hz for m in modes if 0.45 < m.frequency_hz < 0.55]
+    assert sum(0.28 < m.frequency_hz < 0.34 for m in modes) == 2
+
+
+def test_a_mode_beside_a_steady_tone_is_no_drifting_tone(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=RATE)
+    t = np.arange(record.data.shape[1]) / RATE
+    loud = record.data + record.data.std() * np.sin(2 * np.pi * 0.275 * t)
+    one = np.ones(8, dtype=complex)
+    assert not is_drifting_tone(loud, RATE, 0.30, one)

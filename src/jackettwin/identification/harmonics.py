@@ -17,6 +17,10 @@ HALF_WIDTH = 0.02
 """Half width of the band around a candidate, as a share of its frequency …"""
 FEWEST_LINES = 4.0
 """… and at least this many Fourier lines."""
+DRIFT = 0.2
+"""Half width of the band in which a drifting tone is looked for, as a share of its frequency."""
+SMOOTH_CYCLES = 4.0
+"""Cycles over which the instantaneous frequency is averaged."""
 STEADY = 0.25
 """Largest relative variance of the squared envelope of a tone; 1 for a Gaussian process."""
 
@@ -37,15 +41,44 @@ def envelope_variance(
         Zero mean; NaN marks a missing sample and counts as zero.
     shape : (n_channels,) complex
     """
-    n_samples = y.shape[1]
-    modal = shape.conj() @ np.where(np.isfinite(y), y, 0.0)
-    lines = fft.fft(modal)
-    f = fft.fftfreq(n_samples, 1.0 / sample_rate_hz)
-    half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES * sample_rate_hz / n_samples)
-    power = np.abs(fft.ifft(np.where(np.abs(f - frequency_hz) <= half, lines, 0.0))) ** 2
-    return float(np.var(power) / np.mean(power) ** 2)
+    half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES * sample_rate_hz / y.shape[1])
+    return _relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape))
 
 
 def is_tone(y: FloatArray, sample_rate_hz: float, frequency_hz: float, shape: ComplexArray) -> bool:
-    """Return whether a candidate is a steady tone rather than a mode."""
-    return envelope_variance(y, sample_rate_hz, frequency_hz, shape) < STEADY
+    """Return whether a candidate is a tone, steady or drifting, rather than a mode."""
+    if envelope_variance(y, sample_rate_hz, frequency_hz, shape) < STEADY:
+        return True
+    return is_drifting_tone(y, sample_rate_hz, frequency_hz, shape)
+
+
+def is_drifting_tone(y: FloatArray, sample_rate_hz: float, frequency_hz: float, shape: ComplexArray) -> bool:
+    """Return whether a candidate is what is left of a tone that passed it, as the rotor's speed drifted.
+
+    In a band wide enough for the drift such a tone has a steady envelope, and its instantaneous frequency,
+    smoothed over a few cycles, takes the candidate's on the way. A steady tone beside a mode makes the
+    envelope steady as well, but never comes near the mode's frequency.
+    """
+    a = _analytic(y, sample_rate_hz, frequency_hz, DRIFT * frequency_hz, shape)
+    if _relative_variance(a) >= STEADY:
+        return False
+    turn = a[1:] * a[:-1].conj()
+    length = max(round(SMOOTH_CYCLES * sample_rate_hz / frequency_hz), 1)
+    smooth = np.convolve(turn, np.full(length, 1.0 / length), mode="valid")
+    f = np.angle(smooth) * sample_rate_hz / (2.0 * np.pi)
+    low, high = np.percentile(f, [1.0, 99.0])
+    return bool(low <= frequency_hz <= high)
+
+
+def _analytic(
+    y: FloatArray, sample_rate_hz: float, frequency_hz: float, half_hz: float, shape: ComplexArray
+) -> ComplexArray:
+    """Return the analytic signal of the channels projected on a shape, in a band around a frequency."""
+    lines = fft.fft(shape.conj() @ np.where(np.isfinite(y), y, 0.0))
+    f = fft.fftfreq(y.shape[1], 1.0 / sample_rate_hz)
+    return np.asarray(fft.ifft(np.where(np.abs(f - frequency_hz) <= half_hz, lines, 0.0)))
+
+
+def _relative_variance(analytic: ComplexArray) -> float:
+    power = np.abs(analytic) ** 2
+    return float(np.var(power) / np.mean(power) ** 2)

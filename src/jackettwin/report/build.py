@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from jackettwin.identification import Identification
+from jackettwin.identification import Identification, fuse
+from jackettwin.identification.convergence import convergence
 from jackettwin.report import (
     explore,
     figures_identification,
     figures_landscape,
+    figures_likeness,
     figures_record,
     figures_structure,
     tables,
@@ -127,6 +129,7 @@ def _identification(result: TwinResult) -> list[Block]:
         first = result.identifications[0]
         if first.rejected:
             blocks.append(tables.rejected_table(first))
+        blocks += _history(result)
         blocks.append(tables.pairing_table(result.measured, result.unpaired))
     return blocks
 
@@ -155,7 +158,43 @@ def _diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
     if any(figures_identification.damping_interval(mode) for _, mode in modes):
         caption = "Identified modes with their 95 % intervals."
         blocks.append(Plot("intervals", caption, figures_identification.intervals(modes)))
+    if modes:
+        blocks += _likeness(found, names)
     return blocks
+
+
+def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
+    caption = (
+        "MAC between the identified modes. Off the diagonal, above about 0.2: shapes that the sensors hardly "
+        "tell apart, or a pair whose shapes one record leaves mixed."
+    )
+    needles = (
+        "Mode shapes in the complex plane, one needle a sensor. The needles of a real mode lie on a line; "
+        "a fan is mostly a close pair that one record does not separate."
+    )
+    return [
+        Plot("mac", caption, figures_likeness.mac_matrix(found, names)),
+        Plot("complexity", needles, figures_likeness.complexity(found, names)),
+    ]
+
+
+def _history(result: TwinResult) -> list[Block]:
+    """Return how intervals shrink with records, for the modes the model knows."""
+    if len(result.identifications) < 2:
+        return []
+    histories = []
+    for mode in fuse(result.identifications).modes:
+        seen = [
+            result.names[r][result.identifications[r].modes.index(member)]
+            for r, member in zip(mode.records, mode.members, strict=True)
+        ]
+        label = max(set(seen), key=seen.count)
+        if label:
+            histories.append((label, convergence(result.identifications, mode)))
+    if not histories:
+        return []
+    caption = "Damping ratios with 95 % intervals as records are fused, in their order."
+    return [Plot("interval_history", caption, figures_likeness.interval_history(histories))]
 
 
 def _comparison(result: TwinResult) -> list[Block]:
