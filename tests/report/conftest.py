@@ -15,7 +15,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.twin import Observation, TwinResult
 from jackettwin.twin.result import DampingExcess, MeasuredMode
-from jackettwin.updating import Residuals, Target, family, numbered_modes, support_model, update
+from jackettwin.updating import Residuals, Target, family, numbered_modes, single, support_model, update
 
 PLACES = (("top", 144.0), ("mid", 77.0))
 
@@ -29,7 +29,7 @@ def targets_only() -> TwinResult:
     targets = (Target(1, 0.1819, damping_ratio=0.0127), Target(2, 0.1838), Target(4, 0.7362))
     steel = Rayleigh.minimum(0.01, 0.1832)
     model = support_model(assembly, family=family("kelvin-voigt"), rayleigh=steel)
-    fitted = update(model, Residuals(targets, relative=True), starts=4)
+    fitted = update(single(model, Residuals(targets, relative=True)), starts=4)
     measured = tuple(
         MeasuredMode(
             t.mode, labels[t.mode - 1], t.frequency_hz, None, t.damping_ratio, None, None, None, True,

@@ -6,9 +6,9 @@ from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
+from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.posterior import Posterior, sample_posterior
-from jackettwin.updating.update import log_covariance
 
 TRUTH = np.array([3e9, 0.15])
 MODES = (1, 2, 4)
@@ -37,7 +37,7 @@ def record_of(model: SupportModel, seconds: float) -> Residuals:
 
 @pytest.fixture(scope="module")
 def posterior(model: SupportModel) -> Posterior:
-    return sample_posterior(model, record_of(model, 600.0), particles=200, islands=4)
+    return sample_posterior(single(model, record_of(model, 600.0)), particles=200, islands=4)
 
 
 def test_log_evidence_is_that_of_quadrature(model: SupportModel, posterior: Posterior) -> None:
@@ -67,8 +67,8 @@ def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
 
 def test_with_much_data_it_is_the_laplace_approximation(model: SupportModel) -> None:
     residuals = record_of(model, 1e5)
-    posterior = sample_posterior(model, residuals, particles=120, islands=3, seed=1)
-    laplace = np.sqrt(np.diag(log_covariance(model, residuals, TRUTH)))
+    posterior = sample_posterior(single(model, residuals), particles=120, islands=3, seed=1)
+    laplace = np.sqrt(np.diag(log_covariance(single(model, residuals), TRUTH)))
     # 360 draws know a standard deviation to 4 %, correlated ones to about 10 %
     np.testing.assert_allclose(posterior.log_theta.std(axis=0), laplace, rtol=0.25)
     np.testing.assert_allclose(posterior.log_theta.mean(axis=0), np.log(TRUTH), atol=0.5 * laplace.max())
@@ -76,15 +76,17 @@ def test_with_much_data_it_is_the_laplace_approximation(model: SupportModel) -> 
 
 def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
     residuals = record_of(model, 600.0)
-    first, second = (sample_posterior(model, residuals, particles=100, islands=2, seed=4) for _ in range(2))
+    first, second = (
+        sample_posterior(single(model, residuals), particles=100, islands=2, seed=4) for _ in range(2)
+    )
     np.testing.assert_array_equal(first.log_theta, second.log_theta)
 
 
 def test_islands_that_disagree_are_no_posterior(model: SupportModel) -> None:
     with pytest.raises(NumericalError, match="did not converge: R-hat"):
-        sample_posterior(model, record_of(model, 6e5), particles=6, islands=4)
+        sample_posterior(single(model, record_of(model, 6e5)), particles=6, islands=4)
 
 
 def test_without_standard_deviations_there_is_no_likelihood(model: SupportModel) -> None:
     with pytest.raises(InputError, match="no likelihood"):
-        sample_posterior(model, Residuals((Target(1, 0.18),), relative=False))
+        sample_posterior(single(model, Residuals((Target(1, 0.18),), relative=False)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.updating import Residuals, SupportModel, Target
+from jackettwin.updating import Residuals, SupportModel, Target, single
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 from jackettwin.updating.solutions import cost, search
 
@@ -23,7 +23,7 @@ def errors(residuals: Residuals, solution) -> tuple[float, float]:
 def test_table_6_1_is_met_from_every_seed(
     models: dict[str, SupportModel], table_6_1: Residuals, law: str, seed: int
 ) -> None:
-    found = search(models[law], table_6_1, starts=8, seed=seed)
+    found = search(single(models[law], table_6_1), starts=8, seed=seed)
     good = [s for s in found if errors(table_6_1, s)[0] <= F_BAR and errors(table_6_1, s)[1] <= ZETA_BAR]
     assert any(not s.locked_damper for s in good)
 
@@ -32,8 +32,8 @@ def test_nelder_mead_ends_where_least_squares_does(
     models: dict[str, SupportModel], table_6_1: Residuals
 ) -> None:
     model = models["kelvin-voigt"]
-    simplex = search(model, table_6_1, method="nelder-mead", starts=2, seed=3)[0]
-    gradient = search(model, table_6_1, starts=4, seed=3)[0]
+    simplex = search(single(model, table_6_1), method="nelder-mead", starts=2, seed=3)[0]
+    gradient = search(single(model, table_6_1), starts=4, seed=3)[0]
     # the valley is flat: 1e-3 in the parameters is 1e-6 in the cost
     np.testing.assert_allclose(simplex.theta, gradient.theta, rtol=5e-3)
     assert simplex.cost == pytest.approx(gradient.cost, rel=1e-4)
@@ -46,7 +46,7 @@ def test_a_planted_truth_comes_back(models: dict[str, SupportModel]) -> None:
         Target(m, abs(p) / (2 * np.pi), damping_ratio=-p.real / abs(p))
         for m, p in zip((1, 2, 4), poles, strict=True)
     )
-    best = search(model, Residuals(targets, relative=True), starts=4)[0]
+    best = search(single(model, Residuals(targets, relative=True)), starts=4)[0]
     np.testing.assert_allclose(best.theta, theta, rtol=1e-6)
 
 
@@ -55,7 +55,7 @@ def test_locked_dampers_are_flagged(models: dict[str, SupportModel]) -> None:
     model, theta = models["kelvin-voigt"], np.array([1.1e8, 1e12])
     poles = model.predict(theta, (1, 2, 4)).poles
     targets = tuple(Target(m, abs(p) / (2 * np.pi)) for m, p in zip((1, 2, 4), poles, strict=True))
-    found = search(model, Residuals(targets, relative=True), starts=16)
+    found = search(single(model, Residuals(targets, relative=True)), starts=16)
     undamped = model.undamped_hz(theta, (1, 2, 4))
     np.testing.assert_allclose(undamped[:2], [0.1507, 0.1520], rtol=1e-3)
     assert all(s.locked_damper for s in found if s.theta[0] < 3e8)
@@ -65,20 +65,20 @@ def test_a_solution_is_the_bottom_of_its_sensitivity_curves(
     models: dict[str, SupportModel], table_6_1: Residuals
 ) -> None:
     model = models["kelvin-voigt"]
-    best = search(model, table_6_1, starts=4)[0]
+    best = search(single(model, table_6_1), starts=4)[0]
     for j in range(2):
-        factors, values = sensitivity_curve(model, table_6_1, best.theta, j, n=11)
+        factors, values = sensitivity_curve(single(model, table_6_1), best.theta, j, n=11)
         assert factors[np.argmin(values)] == pytest.approx(1.0)
         assert values.min() == pytest.approx(best.cost, rel=1e-9)
-    surface = cost_surface(model, table_6_1, best.theta, (0, 1), best.theta[[0]], best.theta[[1]])
-    assert surface[0, 0] == pytest.approx(cost(model, table_6_1, best.theta))
+    surface = cost_surface(single(model, table_6_1), best.theta, (0, 1), best.theta[[0]], best.theta[[1]])
+    assert surface[0, 0] == pytest.approx(cost(single(model, table_6_1), best.theta))
 
 
 def test_the_same_seed_gives_the_same_list(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
-    first, second = (search(models["zener"], table_6_1, starts=3, seed=5) for _ in range(2))
+    first, second = (search(single(models["zener"], table_6_1), starts=3, seed=5) for _ in range(2))
     assert [s.cost for s in first] == [s.cost for s in second]
 
 
 def test_unknown_method(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
     with pytest.raises(InputError, match="unknown method"):
-        search(models["zener"], table_6_1, method="newton")  # type: ignore[arg-type]
+        search(single(models["zener"], table_6_1), method="newton")  # type: ignore[arg-type]

@@ -262,7 +262,7 @@ def _solutions(result: TwinResult) -> list[Block]:
 def _landscape(result: TwinResult) -> list[Block]:
     if not result.updates:
         return []
-    curves = [c for u in result.updates for c in explore.sensitivities(u.model, u.residuals, u.best.theta)]
+    curves = [c for u in result.updates for c in explore.sensitivities(u.problem, u.best.theta)]
     caption = "Cost as one parameter moves by ±50 % about the solution, the others held."
     blocks: list[Block] = [Plot("sensitivity", caption, figures_landscape.sensitivity(curves))]
     blocks += [

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from jackettwin.report.figures_landscape import Curve, Locus
 from jackettwin.response.follow import follow
 from jackettwin.response.modal import undamped_modes
-from jackettwin.updating import Residuals, SupportModel, Update, numbered_modes
+from jackettwin.updating import Problem, SupportModel, Update, numbered_modes
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,12 +20,12 @@ _LOSSY = 1
 """Position of the parameter that damps in every family: c, loss_factor, alpha."""
 
 
-def sensitivities(model: SupportModel, residuals: Residuals, theta: FloatArray) -> list[Curve]:
+def sensitivities(problem: Problem, theta: FloatArray) -> list[Curve]:
     """Return the cost as each parameter moves by ±50 % (thesis figures 8.5 and 8.6)."""
     curves = []
-    for j, p in enumerate(model.parameters):
-        factor, cost = sensitivity_curve(model, residuals, theta, j)
-        curves.append(Curve(model.family.name, p.name, float(theta[j]), p.unit, factor, cost))
+    for j, p in enumerate(problem.parameters):
+        factor, cost = sensitivity_curve(problem, theta, j)
+        curves.append(Curve(problem.model.family.name, p.name, float(theta[j]), p.unit, factor, cost))
     return curves
 
 
@@ -33,7 +33,7 @@ def surface(update: Update, *, n: int = 36) -> tuple[FloatArray, FloatArray, Flo
     """Return (x, y, cost) over the bounds of a law with two parameters."""
     first, second = update.model.parameters
     x, y = np.geomspace(first.low, first.high, n), np.geomspace(second.low, second.high, n)
-    return x, y, cost_surface(update.model, update.residuals, update.best.theta, (0, 1), x, y)
+    return x, y, cost_surface(update.problem, update.best.theta, (0, 1), x, y)
 
 
 def locus(

@@ -33,7 +33,7 @@ from jackettwin.response.time import free_decay
 from jackettwin.soil import on_translations
 from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import SupportModel, family, numbered_modes, support_model
+from jackettwin.updating import SupportModel, family, numbered_modes, single, support_model
 from jackettwin.updating.landscape import cost_surface
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
@@ -313,7 +313,7 @@ def _surfaces(model: SupportModel) -> list[Plot]:
     names, units = ("k", "c"), ("N/m", "N·s/m")
     x, y, wide = explore.surface(result, n=48)
     zoom_x, zoom_y = np.geomspace(0.5 * k, 2.0 * k, 36), np.geomspace(0.5 * c, 2.0 * c, 36)
-    close = cost_surface(model, residuals, np.array(_KV_1), (0, 1), zoom_x, zoom_y)
+    close = cost_surface(result.problem, np.array(_KV_1), (0, 1), zoom_x, zoom_y)
     near = [p for p in points if 0.5 * k < p[1] < 2.0 * k and 0.5 * c < p[2] < 2.0 * c]
     return [
         Plot(
@@ -339,7 +339,7 @@ def _locus(model: SupportModel, theta: tuple[float, ...], name: str, title: str)
 
 
 def _sensitivity(model: SupportModel, theta: tuple[float, ...], number: str) -> Plot:
-    curves = explore.sensitivities(model, supports.table_6_1(), np.array(theta))
+    curves = explore.sensitivities(single(model, supports.table_6_1()), np.array(theta))
     values = ", ".join(f"{p.name} {scientific(v)}" for p, v in zip(model.parameters, theta, strict=True))
     caption = f"Figure {number}: cost as one parameter moves by ±50 %, Zener at {values}."
     return Plot(f"figure_{number.replace('.', '_')}", caption, figures_landscape.sensitivity(curves))

@@ -250,10 +250,13 @@ def parameter_table(updates: Sequence[Update]) -> Table:
     """Return the updated support parameters."""
     rows = []
     for u in updates:
-        verdicts = zip(u.model.parameters, u.best.theta, u.interval_90(), u.identifiability(), strict=True)
-        for p, value, low_high, verdict in verdicts:
-            span = UNKNOWN if low_high is None else f"{scientific(low_high[0])} … {scientific(low_high[1])}"
-            text = f"{verdict or UNKNOWN}{', on its bound' if p.name in u.best.at_bound else ''}"
+        known = u.uncertainty
+        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
+            span, verdict = UNKNOWN, UNKNOWN
+            if known is not None:
+                low, high = known.interval_90[i]
+                span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
+            text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
             rows.append((u.law, p.name, p.unit, text, scientific(float(value)), span))
     columns = ("law", "parameter", "unit", "verdict", "value", "90 % interval")
     return Table(
@@ -277,7 +280,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         notes += ["locked damper"] * s.locked_damper
         values = [
             f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
-            for p, v in zip(u.model.parameters, s.theta, strict=True)
+            for p, v in zip(u.problem.parameters, s.theta, strict=True)
         ]
         modes = zip(s.frequency_hz[chosen], s.undamped_hz[chosen], s.damping_ratio[chosen], strict=True)
         cells = [f"{frequency(float(f))}\n{frequency(float(f0))}\n{percent(float(z))}" for f, f0, z in modes]

@@ -36,7 +36,10 @@ class UpdateSettings:
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
     starts: int = 16
     seed: int = 0
+    particles: int = 150
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Lognormal priors: median and standard deviation of ln θ by parameter name; the others are flat."""
     weighting: Literal["auto", "relative", "covariance"] = "auto"
     modes: tuple[int, ...] = (1, 2, 3, 4, 5)
     damping_of: str | tuple[str, ...] = "fore_aft"

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.twin.truth import truth_document
-from jackettwin.updating import Update
-from jackettwin.updating.budget import SOURCES, beyond_literature, damping_budget
-from jackettwin.updating.update import log_covariance
+from jackettwin.updating import Update, law_probability
+from jackettwin.updating.budget import SOURCES, beyond_literature
+from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -20,6 +25,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "name": result.name,
         "modes": [_measured(m) for m in result.measured],
         "updates": [update_document(result, i) for i in range(len(result.updates))],
+        "law_probability": law_probability(result.updates),
         "identification": [
             observation_document(seen, names)
             for seen, names in zip(result.observations, result.names, strict=True)
@@ -36,20 +42,11 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
 def update_document(result: TwinResult, index: int) -> dict[str, Any]:
     """Return the document of one law of ``jackettwin update``."""
     u = result.updates[index]
-    names = [p.name for p in u.model.parameters]
-    stds = (
-        [None] * len(names)
-        if u.log_std is None
-        else [float(v * s) for v, s in zip(u.best.theta, u.log_std, strict=True)]
-    )
+    names = [p.name for p in u.problem.parameters]
+    known = u.uncertainty
     return {
         "law": u.law,
-        "parameters": {
-            name: {"value": float(value), "std": std, "interval_90": interval, "unit": p.unit}
-            for name, p, value, std, interval in zip(
-                names, u.model.parameters, u.best.theta, stds, u.interval_90(), strict=True
-            )
-        },
+        "parameters": _parameters(u),
         "modes": _compared(result.measured, u),
         "solutions": [
             {
@@ -64,8 +61,11 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
             }
             for s in u.solutions
         ],
-        "identifiability": dict(zip(names, u.identifiability(), strict=True)),
-        "log_evidence": None,
+        "identifiability": dict.fromkeys(names)
+        if known is None
+        else {v.name: v.verdict for v in known.verdicts},
+        "log_evidence": None if known is None or known.posterior is None else known.posterior.log_evidence,
+        **({} if known is None else _uncertainty(u, known)),
         "damping_budget": _budget(result.measured, u),
         "real_poles_rad_s": u.modes.damped.real_poles,
         "reference_frequency_hz": u.model.reference_hz,
@@ -97,22 +97,99 @@ def _measured(m: MeasuredMode) -> dict[str, Any]:
     }
 
 
+def _parameters(u: Update) -> dict[str, dict[str, Any]]:
+    """Return each parameter's value at the best solution, and what is known of it."""
+    known = u.uncertainty
+    return {
+        p.name: {
+            "value": float(value),
+            "std": None if known is None else float(value * known.log_std[i]),
+            "interval_90": None if known is None else known.interval_90[i].tolist(),
+            "median": None if known is None else float(known.median[i]),
+            "log_std": None if known is None else float(known.log_std[i]),
+            "laplace_log_std": None if known is None else float(known.laplace_log_std[i]),
+            "prior_log_std": float(u.problem.prior.std[i]),
+            "bounds": [p.low, p.high],
+            "unit": p.unit,
+        }
+        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True))
+    }
+
+
+def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
+    """Return what the posterior says beside the parameters."""
+    posterior, q = known.posterior, known.predictive
+    names = [p.name for p in u.problem.parameters]
+    return {
+        "log_evidence_std": None if posterior is None else posterior.log_evidence_std,
+        "posterior": {
+            "status": known.status,
+            "intervals_from": "laplace" if posterior is None else "posterior",
+            "draws": len(known.log_theta),
+            "rhat": None if posterior is None else dict(zip(names, posterior.rhat.tolist(), strict=True)),
+        },
+        "identifiability_detail": {
+            v.name: {
+                "verdict": v.verdict,
+                "posterior_over_prior_std": v.ratio,
+                "before": v.verdict_before,
+                "expected_posterior_over_prior_std": v.ratio_before,
+                "reason": v.reason,
+            }
+            for v in known.verdicts
+        },
+        "next_measurements": [
+            {
+                "what": m.what,
+                "gain_nats": m.gain_nats,
+                "posterior_over_prior_std": dict(zip(names, m.ratio.tolist(), strict=True)),
+            }
+            for m in known.next_measurements
+        ],
+        "predictions": [
+            {
+                "mode": mode,
+                "frequency_hz": _quantiles(q.frequency_hz[:, i]),
+                "undamped_frequency_hz": _quantiles(q.undamped_hz[:, i]),
+                "damping_ratio": _quantiles(q.damping_ratio[:, i]),
+            }
+            for i, mode in enumerate(q.modes)
+        ],
+        "support": {name: _quantiles(values) for name, values in q.support.items()},
+        "profile_likelihood": {
+            p.name: {"values": p.values.tolist(), "cost": p.cost.tolist()} for p in known.profiles
+        },
+    }
+
+
+def _quantiles(draws: FloatArray) -> dict[str, Any]:
+    """Return median and 90 % interval, null where no draw has the mode."""
+    kept = draws[~np.isnan(draws)]
+    if kept.size == 0:
+        return {"median": None, "interval_90": None}
+    low, middle, high = np.quantile(kept, [0.05, 0.5, 0.95])
+    return {"median": float(middle), "interval_90": [float(low), float(high)]}
+
+
 def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
     """Return each mode's damping ratio by source; water is not modelled, so its part is not known."""
-    covariance = None if u.residuals.relative else log_covariance(u.model, u.residuals, u.best.theta)
-    budget = damping_budget(u.model, u.best.theta, u.residuals.modes, log_covariance=covariance)
-    intervals = budget.share_interval_90
+    b = u.budget
+
+    def by_source(values: FloatArray | None, i: int) -> dict[str, Any] | None:
+        return (
+            None if values is None else {**dict(zip(SOURCES, values[i].tolist(), strict=True)), "water": None}
+        )
+
     return [
         {
             "label": m.label,
-            "damping_ratio": {**dict(zip(SOURCES, budget.damping_ratio[i], strict=True)), "water": None},
+            "damping_ratio": by_source(b.damping_ratio, i),
+            "damping_ratio_interval_90": by_source(b.damping_ratio_interval_90, i),
             "beyond_literature": beyond_literature(
-                m.label, dict(zip(SOURCES, map(float, budget.damping_ratio[i]), strict=True))
+                m.label, dict(zip(SOURCES, map(float, b.damping_ratio[i]), strict=True))
             ),
-            "share": {**dict(zip(SOURCES, budget.share[i], strict=True)), "water": None},
-            "share_interval_90": None
-            if intervals is None
-            else {**dict(zip(SOURCES, intervals[i].tolist(), strict=True)), "water": None},
+            "share": by_source(b.share, i),
+            "share_interval_90": by_source(b.share_interval_90, i),
         }
         for i, m in enumerate(measured)
     ]

@@ -97,6 +97,13 @@ class ModelErrorSchema(Schema):
     damping: Ratio = 0.0
 
 
+class PriorSchema(Schema):
+    """A lognormal prior."""
+
+    median: Positive
+    log_std: Positive
+
+
 class UpdateSchema(Schema):
     """``update``."""
 
@@ -104,7 +111,9 @@ class UpdateSchema(Schema):
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
     starts: Annotated[int, Field(ge=1, le=10000)] = 16
     seed: Annotated[int, Field(ge=0)] = 0
+    particles: Annotated[int, Field(ge=20, le=100000)] = 150
     bounds: dict[str, tuple[float, float]] = {}
+    priors: dict[str, PriorSchema] = {}
     weighting: Literal["auto", "relative", "covariance"] = "auto"
     modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
     damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
@@ -225,7 +234,9 @@ def _update_settings(schema: TwinSchema) -> UpdateSettings:
         method=u.method,
         starts=u.starts,
         seed=u.seed,
+        particles=u.particles,
         bounds=dict(u.bounds),
+        priors={name: (p.median, p.log_std) for name, p in u.priors.items()},
         weighting=u.weighting,
         modes=tuple(u.modes),
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),

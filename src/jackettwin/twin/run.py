@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import hypot
 
 import numpy as np
@@ -14,7 +14,16 @@ from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
-from jackettwin.updating import Residuals, Target, Update, family, numbered_modes, support_model, update
+from jackettwin.updating import (
+    Residuals,
+    Target,
+    Update,
+    family,
+    numbered_modes,
+    single,
+    support_model,
+    update,
+)
 from jackettwin.updating.extras import Extras
 
 _PAIRED_MODES = 12
@@ -87,26 +96,29 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
 
 
 def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residuals) -> Update:
-    chosen = family(law)
-    extras = Extras(config.update.dashpots)
+    chosen, s = family(law), config.update
+    extras = Extras(s.dashpots)
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
-    bounds = {
-        k: v for k, v in config.update.bounds.items() if any(k == n or k.startswith(f"{n}_") for n in own)
-    }
     try:
         model = support_model(
             assembly,
             family=chosen,
             rayleigh=config.rayleigh,
             tie=config.tie,
-            bounds=bounds,
+            bounds=_of_law(s.bounds, own),
+            priors=_of_law(s.priors, own),
             highest_mode=max(residuals.modes),
             extras=extras,
         )
+        problem = single(model, residuals)
     except InputError as error:
-        raise error.at(file=config.path, field="update" if bounds else None) from None
-    s = config.update
-    return update(model, residuals, method=s.method, starts=s.starts, seed=s.seed)
+        raise error.at(file=config.path, field="update" if s.bounds or s.priors else None) from None
+    return update(problem, method=s.method, starts=s.starts, particles=s.particles, seed=s.seed)
+
+
+def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:
+    """Return what is given for these parameters, with or without a tie's suffix: laws share one file."""
+    return {k: v for k, v in given.items() if any(k == n or k.startswith(f"{n}_") for n in names)}
 
 
 def _from_targets(config: TwinConfig, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
@@ -156,10 +168,11 @@ def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighti
 
 def _residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residuals:
     """Return the residuals of all measured modes; what takes no part in the fit keeps its place with None."""
+    errors = [config.update.model_error(m.mode) for m in measured]
     complete = all(
-        (m.frequency_std_hz is not None or not m.fits_frequency)
-        and (m.damping_ratio_std is not None or not m.fits_damping)
-        for m in measured
+        (m.frequency_std_hz is not None or e.frequency > 0.0 or not m.fits_frequency)
+        and (m.damping_ratio_std is not None or e.damping > 0.0 or not m.fits_damping)
+        for m, e in zip(measured, errors, strict=True)
     )
     weighting = config.update.weighting
     if weighting == "covariance" and not complete:
@@ -172,8 +185,7 @@ def _residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residu
         )
     relative = weighting == "relative" or not complete
     targets = []
-    for m in measured:
-        error = config.update.model_error(m.mode)
+    for m, error in zip(measured, errors, strict=True):
         f = m.frequency_hz if m.fits_frequency else None
         zeta = m.damping_ratio if m.fits_damping else None
         targets.append(

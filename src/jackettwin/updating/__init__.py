@@ -2,18 +2,23 @@
 
 from jackettwin.updating.families import DEFAULT_LAWS, Parameter, family
 from jackettwin.updating.model import SupportModel, numbered_modes, support_model
+from jackettwin.updating.problem import Problem, joint, single
 from jackettwin.updating.targets import Residuals, Target
-from jackettwin.updating.update import Update, update
+from jackettwin.updating.update import Update, law_probability, update
 
 __all__ = [
     "DEFAULT_LAWS",
     "Parameter",
+    "Problem",
     "Residuals",
     "SupportModel",
     "Target",
     "Update",
     "family",
+    "joint",
+    "law_probability",
     "numbered_modes",
+    "single",
     "support_model",
     "update",
 ]

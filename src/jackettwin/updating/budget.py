@@ -39,12 +39,13 @@ class Budget:
     modes : mode numbers
     damping_ratio : (n_modes, n_sources) sums to ζ; sources as in ``SOURCES``
     share : (n_modes, n_sources) of the whole
-    share_interval_90 : (n_modes, n_sources, 2), or None without a covariance of the parameters
+    damping_ratio_interval_90, share_interval_90 : (n_modes, n_sources, 2), or None without draws
     """
 
     modes: tuple[int, ...]
     damping_ratio: FloatArray
     share: FloatArray
+    damping_ratio_interval_90: FloatArray | None
     share_interval_90: FloatArray | None
 
 
@@ -53,28 +54,30 @@ def damping_budget(
     theta: FloatArray,
     modes: tuple[int, ...],
     *,
-    log_covariance: FloatArray | None = None,
-    draws: int = 400,
-    seed: int = 0,
+    draws: FloatArray | None = None,
 ) -> Budget:
     """Return the damping budget at a parameter vector.
 
     Parameters
     ----------
-    log_covariance : (n_parameters, n_parameters), optional
-        Covariance of ln θ; intervals are quantiles over draws from it, kept inside the bounds.
+    draws : (n, n_parameters), optional
+        θ from the posterior; intervals are quantiles over them.
     """
     here = model.predict_many(theta[None], modes)
     ratio = _ratios(model, model.points(theta[None]), here)[0]
-    interval = None
-    if log_covariance is not None:
-        rng = np.random.default_rng(seed)
-        low, high = (np.log([getattr(p, side) for p in model.parameters]) for side in ("low", "high"))
-        z = np.clip(rng.multivariate_normal(np.log(theta), log_covariance, draws), low, high)
-        near = None if np.isnan(here.poles).any() else here
-        around = _ratios(model, model.points(np.exp(z)), model.predict_many(np.exp(z), modes, near=near))
-        interval = np.moveaxis(np.nanquantile(_shares(around), [0.05, 0.95], axis=0), 0, -1)
-    return Budget(modes, ratio, _shares(ratio), interval)
+    if draws is None:
+        return Budget(modes, ratio, _shares(ratio), None, None)
+    near = None if np.isnan(here.poles).any() else here
+    around = _ratios(model, model.points(draws), model.predict_many(draws, modes, near=near, slopes=False))
+    return Budget(modes, ratio, _shares(ratio), _interval_90(around), _interval_90(_shares(around)))
+
+
+def _interval_90(draws: FloatArray) -> FloatArray:
+    """Return the central interval over the first axis, NaN for modes that no draw has."""
+    known = ~np.isnan(draws).all(axis=(0, 2))
+    interval = np.full((*draws.shape[1:], 2), np.nan)
+    interval[known] = np.moveaxis(np.nanquantile(draws[:, known], [0.05, 0.95], axis=0), 0, -1)
+    return interval
 
 
 def beyond_literature(label: str, ratios: Mapping[str, float | None]) -> tuple[str, ...]:

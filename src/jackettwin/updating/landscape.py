@@ -5,16 +5,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.updating.model import SupportModel
+from jackettwin.updating.problem import Problem
 from jackettwin.updating.solutions import cost
-from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
 
 
 def sensitivity_curve(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
     theta: FloatArray,
     parameter: int,
     *,
@@ -30,13 +28,12 @@ def sensitivity_curve(
     for i, factor in enumerate(factors):
         moved = theta.copy()
         moved[parameter] *= factor
-        values[i] = cost(model, residuals, moved)
+        values[i] = cost(problem, moved)
     return factors, values
 
 
 def cost_surface(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
     theta: FloatArray,
     axes: tuple[int, int],
     x: FloatArray,
@@ -48,5 +45,5 @@ def cost_surface(
         for j, first in enumerate(x):
             moved = theta.copy()
             moved[axes[0]], moved[axes[1]] = first, second
-            surface[i, j] = cost(model, residuals, moved)
+            surface[i, j] = cost(problem, moved)
     return surface

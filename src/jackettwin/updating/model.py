@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +25,10 @@ from jackettwin.updating.families import Family, Parameter
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+Lognormal = tuple[float, float]
+"""Median and standard deviation of ln θ."""
 
 TIES = ("all", "horizontal-vertical", "per-leg")
 _ROOM = 1.2
@@ -172,11 +178,17 @@ class SupportModel:
         d = follow(M, reference.omega, reference.shapes, damped.shapes)[rows]
         u = follow(M, reference.omega, reference.shapes, undamped.shapes)[rows]
         return ExactModes(
-            poles=np.where(d >= 0, damped.eigenvalues[d], np.nan),
-            shapes=np.where(d >= 0, damped.shapes[:, d], np.nan),
-            undamped_hz=np.where(u >= 0, undamped.frequency_hz[u], np.nan),
+            poles=_taken(damped.eigenvalues, d),
+            shapes=_taken(damped.shapes, d),
+            undamped_hz=_taken(undamped.frequency_hz, u),
             damped=damped,
         )
+
+
+def _taken(values: npt.NDArray[Any], which: IntArray) -> npt.NDArray[Any]:
+    """Return values[..., which], NaN where ``which`` is −1; there may be no value at all."""
+    padded = np.concatenate([values, np.full((*values.shape[:-1], 1), np.nan, values.dtype)], axis=-1)
+    return np.asarray(padded[..., which])
 
 
 @dataclass(frozen=True)
@@ -219,7 +231,8 @@ def support_model(
     family: Family,
     rayleigh: Rayleigh,
     tie: str = "all",
-    bounds: dict[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, Lognormal] | None = None,
     highest_mode: int = 8,
     extras: Extras | None = None,
 ) -> SupportModel:
@@ -231,6 +244,8 @@ def support_model(
         Which translations share parameters.
     bounds : dict, optional
         Narrower or wider bounds by parameter name (with or without the tie's suffix).
+    priors : dict, optional
+        Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
     highest_mode : int
         The last numbered mode that will be asked for.
     extras : Extras, optional
@@ -245,13 +260,21 @@ def support_model(
         raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
     if not assembly.structure.reactions:
         raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
-    suffixes, extras, bounds = _suffixes(assembly, tie), extras or Extras(), bounds or {}
+    suffixes, extras, bounds, priors = (
+        _suffixes(assembly, tie),
+        extras or Extras(),
+        bounds or {},
+        priors or {},
+    )
     parameters = tuple(
-        _bounded(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds)
+        _informed(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds, priors)
         for suffix in suffixes
         for p in family.parameters
-    ) + tuple(_bounded(p, p.name, bounds) for p in extras.parameters)
-    _no_unknown_bounds(bounds, family, suffixes, extras)
+    ) + tuple(_informed(p, p.name, bounds, priors) for p in extras.parameters)
+    known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
+    known |= {p.name for p in extras.parameters}
+    for field, given in (("bounds", bounds), ("priors", priors)):
+        _no_unknown(field, given, known, family)
     # distinct stand-in laws, so that every tie group stays a group of its own
     stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(suffixes))]
     system = build_system(
@@ -286,21 +309,23 @@ def _springs(assembly: Assembly, suffixes: tuple[str, ...], laws: list[Law]) -> 
     return tuple(springs)
 
 
-def _bounded(p: Parameter, family_name: str, bounds: dict[str, tuple[float, float]]) -> Parameter:
+def _informed(
+    p: Parameter,
+    family_name: str,
+    bounds: Mapping[str, tuple[float, float]],
+    priors: Mapping[str, Lognormal],
+) -> Parameter:
     low, high = bounds.get(p.name, bounds.get(family_name, (p.low, p.high)))
-    return Parameter(p.name, low, high, p.unit)
+    median, log_std = priors.get(p.name, priors.get(family_name, (None, None)))
+    return Parameter(p.name, low, high, p.unit, median, log_std)
 
 
-def _no_unknown_bounds(
-    bounds: dict[str, tuple[float, float]], family: Family, suffixes: tuple[str, ...], extras: Extras
-) -> None:
-    known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
-    known |= {p.name for p in extras.parameters}
-    for name in bounds:
+def _no_unknown(field: str, given: Mapping[str, object], known: set[str], family: Family) -> None:
+    for name in given:
         if name not in known:
             raise InputError(
                 f"no such parameter of {family.name}",
-                field=f"bounds.{name}",
+                field=f"{field}.{name}",
                 value=name,
                 allowed=", ".join(sorted(known)),
             )

@@ -1,6 +1,6 @@
 r"""Posterior and evidence of one law by tempered sequential Monte Carlo.
 
-Particles drawn from the prior (flat in ln θ between the bounds) go through a ladder of tempered posteriors
+Particles drawn from the prior go through a ladder of tempered posteriors
 prior · Lᵝ, β from 0 to 1; each rung reweights, resamples and moves them (Del Moral, Doucet & Jasra 2006;
 Ching & Chen 2007). The mean weights multiply to the evidence,
 
@@ -20,8 +20,8 @@ from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.numbered import NumberedModes
-from jackettwin.updating.model import SupportModel
-from jackettwin.updating.targets import Residuals
+from jackettwin.updating.prior import Prior
+from jackettwin.updating.problem import Found, Problem
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -34,8 +34,6 @@ _MOVES = 12
 _LARGEST_RHAT = 1.1
 _LARGEST_SPREAD = 0.5
 """Standard deviation of log Z between islands beyond which it is not known."""
-_NEVER = -1e30
-"""Log-likelihood where a target mode does not exist."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,7 @@ class Posterior:
     Attributes
     ----------
     log_theta : (n_draws, n_parameters) equally weighted
-    poles : (n_draws, n_modes) of the target modes
+    poles : (n_draws, n_modes) of the target modes in the first state
     log_likelihood : (n_draws,)
     log_evidence, log_evidence_std : float
         Mean over the islands and its standard deviation.
@@ -71,39 +69,37 @@ class _Swarm:
 
     z: FloatArray
     log_l: FloatArray
-    found: NumberedModes
+    log_p: FloatArray
+    found: Found
 
     def take(self, index: npt.NDArray[np.intp]) -> None:
-        self.z, self.log_l, self.found = self.z[index], self.log_l[index], _pick(self.found, index)
+        self.z, self.log_l, self.log_p = self.z[index], self.log_l[index], self.log_p[index]
+        self.found = tuple(_pick(modes, index) for modes in self.found)
 
     def accept(self, yes: BoolArray, other: _Swarm) -> None:
         self.z = np.where(yes[:, None], other.z, self.z)
         self.log_l = np.where(yes, other.log_l, self.log_l)
-        old, new = self.found, other.found
-        self.found = NumberedModes(
-            np.where(yes[:, None], new.poles, old.poles),
-            np.where(yes[:, None, None], new.shapes, old.shapes),
-            old.slopes,
-            old.shape_slopes,
-            np.where(yes, new.status, old.status),
-        )
+        self.log_p = np.where(yes, other.log_p, self.log_p)
+        self.found = tuple(_either(yes, *pair) for pair in zip(other.found, self.found, strict=True))
 
 
 def sample_posterior(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
     *,
+    prior: Prior | None = None,
     particles: int = 300,
     islands: int = 4,
     seed: int = 0,
     progress: Callable[[], None] | None = None,
 ) -> Posterior:
-    """Return the posterior of the model's parameters.
+    """Return the posterior of a problem's parameters.
 
     Parameters
     ----------
-    residuals : Residuals
-        Weighted by standard deviations, not relative.
+    problem : Problem
+        Its residuals weighted by standard deviations, not relative.
+    prior : Prior, optional
+        Instead of the problem's.
     particles, islands : int
         Particles on each of the independent islands.
     progress : callable, optional
@@ -116,27 +112,29 @@ def sample_posterior(
     NumericalError
         If the islands do not agree: there are draws, but they are no posterior.
     """
-    if residuals.relative or not residuals.weighted:
+    if not problem.weighted:
         raise InputError(
             "no standard deviations, no likelihood",
             field="targets",
             remedy="give every target frequency and damping ratio its standard deviation",
         )
     rng = np.random.default_rng(seed)
-    runs = [_island(model, residuals, particles, child, progress) for child in rng.spawn(islands)]
+    runs = [
+        _island(problem, prior or problem.prior, particles, child, progress) for child in rng.spawn(islands)
+    ]
     z = np.array([swarm.z for swarm, _ in runs])
     log_z = np.array([value for _, value in runs])
     rhat = _rhat(z)
     spread = float(log_z.std(ddof=1))
     if float(rhat.max()) > _LARGEST_RHAT or spread > _LARGEST_SPREAD:
-        worst = model.parameters[int(np.argmax(rhat))].name
+        worst = problem.parameters[int(np.argmax(rhat))].name
         raise NumericalError(
             f"the posterior did not converge: R-hat {rhat.max():.2f} ({worst}), log evidence ±{spread:.2f}; "
             "more particles may help"
         )
     return Posterior(
         log_theta=z.reshape(-1, z.shape[2]),
-        poles=np.concatenate([swarm.found.poles for swarm, _ in runs]),
+        poles=np.concatenate([swarm.found[0].poles for swarm, _ in runs]),
         log_likelihood=np.concatenate([swarm.log_l for swarm, _ in runs]),
         log_evidence=float(logsumexp(log_z) - np.log(islands)),
         log_evidence_std=spread / np.sqrt(islands),
@@ -145,14 +143,14 @@ def sample_posterior(
 
 
 def _island(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
+    prior: Prior,
     n: int,
     rng: np.random.Generator,
     progress: Callable[[], None] | None,
 ) -> tuple[_Swarm, float]:
-    low, high = (np.log([getattr(p, side) for p in model.parameters]) for side in ("low", "high"))
-    swarm = _evaluate(model, residuals, low + (high - low) * rng.random((n, low.size)), None)
+    z = prior.draw(n, rng)
+    swarm = _evaluate(problem, prior, z, problem.anchor(z.mean(axis=0)))
     beta, log_z = 0.0, 0.0
     while beta < 1.0:
         step = _next_step(swarm.log_l, 1.0 - beta)
@@ -162,22 +160,18 @@ def _island(
         swarm.take(_systematic(np.exp(weight - logsumexp(weight)), rng))
         for move in range(_MOVES):
             z = _proposal(swarm.z, rng, wide=move % 4 == 3)
-            inside: BoolArray = np.all((z >= low) & (z <= high), axis=1)
-            trial = _evaluate(model, residuals, np.where(inside[:, None], z, swarm.z), swarm.found)
-            log_ratio = beta * (trial.log_l - swarm.log_l)
+            inside: BoolArray = np.isfinite(prior.log_density(z))
+            trial = _evaluate(problem, prior, np.where(inside[:, None], z, swarm.z), swarm.found)
+            log_ratio = beta * (trial.log_l - swarm.log_l) + trial.log_p - swarm.log_p
             swarm.accept(inside & (np.log1p(-rng.random(n)) < log_ratio), trial)
         if progress is not None:
             progress()
     return swarm, log_z
 
 
-def _evaluate(model: SupportModel, residuals: Residuals, z: FloatArray, near: NumberedModes | None) -> _Swarm:
-    found = model.predict_many(np.exp(z), residuals.modes, near=near, slopes=False)
-    known = np.asarray(~np.isnan(found.poles).any(axis=1))
-    log_l = np.full(len(z), _NEVER)
-    r = residuals.values(found.poles[known])
-    log_l[known] = -0.5 * (r * r).sum(axis=1) - residuals.log_normalisation
-    return _Swarm(z, log_l, found)
+def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> _Swarm:
+    log_l, found = problem.log_likelihood(z, near)
+    return _Swarm(z, log_l, prior.log_density(z), found)
 
 
 def _next_step(log_l: FloatArray, most: float) -> float:
@@ -217,6 +211,16 @@ def _rhat(z: FloatArray) -> FloatArray:
     within = z.var(axis=1, ddof=1).mean(axis=0)
     between = z.mean(axis=1).var(axis=0, ddof=1)
     return np.asarray(np.sqrt(1.0 + between / np.maximum(within, 1e-300)))
+
+
+def _either(yes: BoolArray, new: NumberedModes, old: NumberedModes) -> NumberedModes:
+    return NumberedModes(
+        np.where(yes[:, None], new.poles, old.poles),
+        np.where(yes[:, None, None], new.shapes, old.shapes),
+        old.slopes,
+        old.shape_slopes,
+        np.where(yes, new.status, old.status),
+    )
 
 
 def _pick(found: NumberedModes, index: npt.NDArray[np.intp]) -> NumberedModes:

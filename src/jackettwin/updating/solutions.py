@@ -12,8 +12,7 @@ from scipy.optimize import least_squares, minimize
 from scipy.stats import qmc
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.updating.model import Prediction, SupportModel
-from jackettwin.updating.targets import Residuals
+from jackettwin.updating.problem import Found, Problem
 
 FloatArray = npt.NDArray[np.float64]
 Method = Literal["least-squares", "nelder-mead"]
@@ -21,8 +20,6 @@ METHODS = ("least-squares", "nelder-mead")
 
 LOCKED_DAMPER = 0.05
 """Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
-_LOST = 10.0
-"""Residual of a mode that cannot be followed: worse than any that can."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +51,7 @@ class Solution:
 
 
 def search(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
     *,
     method: Method = "least-squares",
     starts: int = 16,
@@ -84,27 +80,23 @@ def search(
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
     if starts < 1:
         raise InputError("at least one start", field="update.starts", value=starts, allowed="≥ 1")
-    low, high = _log_bounds(model)
+    low, high = problem.prior.low, problem.prior.high
     run = _least_squares if method == "least-squares" else _nelder_mead
     ends = []
     for point in _scatter(low, high, starts, seed):
-        ends.append(run(model, residuals, point, low, high))
+        ends.append(run(problem, point))
         if progress is not None:
             progress()
     ends = [end for end in ends if np.isfinite(end[1])]
     if not ends:
         raise NumericalError("no start of the search could follow the target modes")
-    return tuple(_distinct([_solution(model, residuals, z, cost, low, high) for z, cost in ends]))
+    return tuple(_distinct([_solution(problem, z, cost) for z, cost in ends]))
 
 
-def cost(model: SupportModel, residuals: Residuals, theta: FloatArray) -> float:
-    """Return the cost (8.4) at a parameter vector."""
-    r, _ = _Evaluator(model, residuals)(np.log(theta))
+def cost(problem: Problem, theta: FloatArray) -> float:
+    """Return the cost, (8.4) or χ², at a parameter vector."""
+    r, _, _ = problem.evaluate(np.log(theta), None)
     return float(r @ r)
-
-
-def _log_bounds(model: SupportModel) -> tuple[FloatArray, FloatArray]:
-    return np.log([p.low for p in model.parameters]), np.log([p.high for p in model.parameters])
 
 
 def _scatter(low: FloatArray, high: FloatArray, n: int, seed: int) -> FloatArray:
@@ -113,46 +105,43 @@ def _scatter(low: FloatArray, high: FloatArray, n: int, seed: int) -> FloatArray
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 
 
-class _Evaluator:
+class Path:
     """Residuals and Jacobian along one search path: each prediction starts from the one before."""
 
-    def __init__(self, model: SupportModel, residuals: Residuals) -> None:
-        self.model, self.residuals = model, residuals
-        self.last: Prediction | None = None
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self.last: Found | None = None
         self.at: FloatArray | None = None
-        self.values: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
+        self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
 
     def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return residuals and Jacobian; the last answer is remembered."""
         if self.at is None or not np.array_equal(z, self.at):
-            self.values, self.at = self._evaluate(z), z.copy()
-        return self.values
+            r, J, self.last = self.problem.evaluate(z, self.last)
+            self.answer, self.at = (r, J), z.copy()
+        return self.answer
 
-    def _evaluate(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        prediction = self.model.predict(np.exp(z), self.residuals.modes, near=self.last)
-        if np.isnan(prediction.poles).any():
-            self.last = None
-            return np.full(self.residuals.count, _LOST), np.zeros((self.residuals.count, z.size))
-        self.last = prediction
-        return self.residuals.evaluate(prediction.poles, prediction.slopes)
+    def values(self, z: FloatArray) -> FloatArray:
+        """Return the residuals."""
+        return self(z)[0]
+
+    def jacobian(self, z: FloatArray) -> FloatArray:
+        """Return their Jacobian."""
+        return self(z)[1]
+
+    def total(self, z: FloatArray) -> float:
+        """Return the sum of squares."""
+        r = self.values(z)
+        return float(r @ r)
 
 
-def _least_squares(
-    model: SupportModel, residuals: Residuals, start: FloatArray, low: FloatArray, high: FloatArray
-) -> tuple[FloatArray, float]:
-    evaluate = _Evaluator(model, residuals)
-
-    def values(z: FloatArray) -> FloatArray:
-        return evaluate(z)[0]
-
-    def jacobian(z: FloatArray) -> FloatArray:
-        return evaluate(z)[1]
-
+def _least_squares(problem: Problem, start: FloatArray) -> tuple[FloatArray, float]:
+    evaluate = Path(problem)
     fit = least_squares(
-        values,
+        evaluate.values,
         start,
-        jac=jacobian,
-        bounds=(low, high),
+        jac=evaluate.jacobian,
+        bounds=(problem.prior.low, problem.prior.high),
         x_scale="jac",
         xtol=1e-10,
         ftol=1e-12,
@@ -162,41 +151,32 @@ def _least_squares(
     return np.asarray(fit.x), float(2.0 * fit.cost)
 
 
-def _nelder_mead(
-    model: SupportModel, residuals: Residuals, start: FloatArray, low: FloatArray, high: FloatArray
-) -> tuple[FloatArray, float]:
-    evaluate = _Evaluator(model, residuals)
-
-    def total(z: FloatArray) -> float:
-        r, _ = evaluate(z)
-        return float(r @ r)
-
+def _nelder_mead(problem: Problem, start: FloatArray) -> tuple[FloatArray, float]:
     fit = minimize(
-        total,
+        Path(problem).total,
         start,
         method="Nelder-Mead",
-        bounds=list(zip(low, high, strict=True)),
+        bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
         options={"xatol": 1e-5, "fatol": 1e-14, "maxfev": 600},
     )
     return np.asarray(fit.x), float(fit.fun)
 
 
-def _solution(
-    model: SupportModel, residuals: Residuals, z: FloatArray, value: float, low: FloatArray, high: FloatArray
-) -> Solution:
-    theta = np.exp(z)
-    poles = model.predict(theta, residuals.modes).poles
-    damped, undamped = np.abs(poles) / (2.0 * np.pi), model.undamped_hz(theta, residuals.modes)
+def _solution(problem: Problem, z: FloatArray, value: float) -> Solution:
+    first = problem.states[0]
+    theta, modes = problem.vectors(z[None], first)[0], first.residuals.modes
+    poles = problem.model.predict(theta, modes).poles
+    damped, undamped = np.abs(poles) / (2.0 * np.pi), problem.model.undamped_hz(theta, modes)
     apart = np.abs(undamped / damped - 1.0)
-    on_bound = (z - low < 1e-3) | (high - z < 1e-3)
+    on_bound = (z - problem.prior.low < 1e-3) | (problem.prior.high - z < 1e-3)
     return Solution(
-        theta=theta,
+        theta=np.exp(z),
         cost=value,
         frequency_hz=damped,
         undamped_hz=undamped,
         damping_ratio=np.asarray(-poles.real / np.abs(poles)),
         locked_damper=bool(np.isnan(apart).any() or (apart > LOCKED_DAMPER).any()),
-        at_bound=tuple(p.name for p, flag in zip(model.parameters, on_bound, strict=True) if flag),
+        at_bound=tuple(p.name for p, flag in zip(problem.parameters, on_bound, strict=True) if flag),
     )
 
 

@@ -61,6 +61,12 @@ class Residuals:
         return tuple(target.mode for target in self.targets)
 
     @property
+    def names(self) -> list[str]:
+        """``f1``, ``ζ1``, … of each residual."""
+        pairs = [(letter, t.mode) for t in self.targets for letter in ("f", "ζ")]
+        return [f"{letter}{mode}" for (letter, mode), used in zip(pairs, self._used(), strict=True) if used]
+
+    @property
     def count(self) -> int:
         """Number of residuals."""
         return sum(self._used())

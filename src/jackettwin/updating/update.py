@@ -1,22 +1,72 @@
-"""Fit one law and say what came of it."""
+"""Fit one law, sample its posterior, and say what came of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import logsumexp
 
+from jackettwin.errors import NumericalError
+from jackettwin.updating.budget import Budget, damping_budget
+from jackettwin.updating.identifiability import Verdict, identifiability
+from jackettwin.updating.laplace import laplace_draws, log_covariance
 from jackettwin.updating.model import ExactModes, SupportModel
+from jackettwin.updating.next_measurement import Measurement, next_measurements
+from jackettwin.updating.posterior import Posterior, sample_posterior
+from jackettwin.updating.predictive import Predictive, predict_quantities
+from jackettwin.updating.problem import Problem
+from jackettwin.updating.profile import Profile, profile
 from jackettwin.updating.solutions import Method, Solution, search
 from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
 
-_Z90 = 1.6448536269514722
-IDENTIFIED, WEAK = 0.3, 0.8
-"""Posterior over prior standard deviation of ln θ below which a parameter is identified, or weakly so."""
+_PREDICTED = (1, 2, 3, 4, 5)
+"""Modes that are predicted whether they were measured or not."""
+_DRAWS = 400
+"""Draws that predictions and budgets are made of."""
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """What is known beside the best solution. Only with standard deviations of every target.
+
+    Attributes
+    ----------
+    posterior : Posterior or None
+        None if it did not converge; then intervals are Laplace's.
+    status : str
+        ``"ok"``, or why there is no posterior.
+    laplace_log_std : (d,) standard deviation of ln θ by Gauss–Newton
+    log_theta : (n, d) the draws that everything below is made of
+    """
+
+    posterior: Posterior | None
+    status: str
+    laplace_log_std: FloatArray
+    log_theta: FloatArray
+    verdicts: tuple[Verdict, ...]
+    next_measurements: tuple[Measurement, ...]
+    predictive: Predictive
+    profiles: tuple[Profile, ...]
+
+    @property
+    def log_std(self) -> FloatArray:
+        """Standard deviation of ln θ, (d,)."""
+        return np.asarray(self.log_theta.std(axis=0))
+
+    @property
+    def median(self) -> FloatArray:
+        """Median of θ, (d,)."""
+        return np.asarray(np.exp(np.median(self.log_theta, axis=0)))
+
+    @property
+    def interval_90(self) -> FloatArray:
+        """Central 90 % interval of every θ, (d, 2)."""
+        return np.asarray(np.exp(np.quantile(self.log_theta, [0.05, 0.95], axis=0)).T)
 
 
 @dataclass(frozen=True)
@@ -25,87 +75,123 @@ class Update:
 
     Attributes
     ----------
-    model : SupportModel
-    residuals : Residuals
+    problem : Problem
     solutions : tuple of Solution
         Every distinct end point, best first.
     best : Solution
         The cheapest one without a locked damper; the cheapest of all if every one is locked.
     modes : ExactModes
         Of the full model at the best solution, in the order of ``residuals.modes``.
-    log_std : (n_parameters,) standard deviation of ln θ, or None if the targets carry no covariance
+    budget : Budget
+        Whose damping each of these modes has.
+    uncertainty : Uncertainty or None
+        None if the targets carry no standard deviations.
     """
 
-    model: SupportModel
-    residuals: Residuals
+    problem: Problem
     solutions: tuple[Solution, ...]
     best: Solution
     modes: ExactModes
-    log_std: FloatArray | None
+    budget: Budget
+    uncertainty: Uncertainty | None
+
+    @property
+    def model(self) -> SupportModel:
+        """The model that was updated."""
+        return self.problem.model
+
+    @property
+    def residuals(self) -> Residuals:
+        """The data of the first operating state."""
+        return self.problem.states[0].residuals
 
     @property
     def law(self) -> str:
         """Name of the law."""
         return self.model.family.name
 
-    def interval_90(self) -> list[tuple[float, float] | None]:
-        """Return the 90 % interval of each parameter, clipped to its bounds."""
-        if self.log_std is None:
-            return [None] * len(self.model.parameters)
-        return [
-            (max(p.low, value * float(np.exp(-_Z90 * s))), min(p.high, value * float(np.exp(_Z90 * s))))
-            for p, value, s in zip(self.model.parameters, self.best.theta, self.log_std, strict=True)
-        ]
-
-    def identifiability(self) -> list[str | None]:
-        """Return per parameter ``identified``, ``weak`` or ``unidentified``, against a flat prior of ln θ."""
-        if self.log_std is None:
-            return [None] * len(self.model.parameters)
-        prior = np.log([p.high / p.low for p in self.model.parameters]) / np.sqrt(12.0)
-        verdicts: list[str | None] = []
-        for ratio in self.log_std / prior:
-            verdicts.append(
-                "identified" if ratio < IDENTIFIED else "weak" if ratio < WEAK else "unidentified"
-            )
-        return verdicts
-
 
 def update(
-    model: SupportModel,
-    residuals: Residuals,
+    problem: Problem,
     *,
     method: Method = "least-squares",
     starts: int = 16,
+    particles: int = 150,
     seed: int = 0,
     progress: Callable[[], None] | None = None,
 ) -> Update:
-    """Return every solution of one law, the best one recomputed on the full model.
+    """Return every solution of one law, the best one recomputed on the full model, and what is known of it.
+
+    Parameters
+    ----------
+    particles : int
+        Of each of the posterior's four islands; doubled once if they do not agree.
 
     Raises
     ------
     NumericalError
         If no start can follow the target modes.
     """
-    solutions = search(model, residuals, method=method, starts=starts, seed=seed, progress=progress)
+    solutions = search(problem, method=method, starts=starts, seed=seed, progress=progress)
     best = next((s for s in solutions if not s.locked_damper), solutions[0])
+    modes = problem.states[0].residuals.modes
+    uncertainty = _uncertainty(problem, best, particles, seed) if problem.weighted else None
     return Update(
-        model=model,
-        residuals=residuals,
+        problem=problem,
         solutions=solutions,
         best=best,
-        modes=model.exact_modes(best.theta, residuals.modes),
-        log_std=None if residuals.relative else _log_std(model, residuals, best.theta),
+        modes=problem.model.exact_modes(_first(problem, np.log(best.theta)[None])[0], modes),
+        budget=damping_budget(
+            problem.model,
+            _first(problem, np.log(best.theta)[None])[0],
+            modes,
+            draws=None if uncertainty is None else _first(problem, _thinned(uncertainty.log_theta)),
+        ),
+        uncertainty=uncertainty,
     )
 
 
-def log_covariance(model: SupportModel, residuals: Residuals, theta: FloatArray) -> FloatArray:
-    """Return the covariance of ln θ: Gauss–Newton Hessian and a flat prior between the bounds."""
-    prediction = model.predict(theta, residuals.modes)
-    _, J = residuals.evaluate(prediction.poles, prediction.slopes)
-    prior = np.log([p.high / p.low for p in model.parameters]) / np.sqrt(12.0)
-    return np.asarray(np.linalg.inv(J.T @ J + np.diag(prior**-2.0)))
+def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
+    """Return the probability of each law, all equally likely before; None without evidence of all."""
+    found = [u.uncertainty.posterior if u.uncertainty is not None else None for u in updates]
+    if any(posterior is None for posterior in found):
+        return None
+    log_z = np.array([posterior.log_evidence for posterior in found if posterior is not None])
+    probability = np.exp(log_z - logsumexp(log_z))
+    return {u.law: float(p) for u, p in zip(updates, probability, strict=True)}
 
 
-def _log_std(model: SupportModel, residuals: Residuals, theta: FloatArray) -> FloatArray:
-    """Return the standard deviation of ln θ."""
-    return np.asarray(np.sqrt(np.diag(log_covariance(model, residuals, theta))))
+def _first(problem: Problem, z: FloatArray) -> FloatArray:
+    """Return the model's parameter vectors in the first operating state."""
+    return problem.vectors(z, problem.states[0])
+
+
+def _thinned(z: FloatArray) -> FloatArray:
+    return z[:: max(1, len(z) // _DRAWS)][:_DRAWS]
+
+
+def _uncertainty(problem: Problem, best: Solution, particles: int, seed: int) -> Uncertainty:
+    posterior, status = _posterior(problem, particles, seed)
+    z = laplace_draws(problem, best.theta, seed=seed) if posterior is None else posterior.log_theta
+    measured = [m for m in problem.states[0].residuals.modes if m not in _PREDICTED]
+    known = tuple(m for m in _PREDICTED if m <= problem.model.highest_mode)
+    return Uncertainty(
+        posterior=posterior,
+        status=status,
+        laplace_log_std=np.sqrt(np.diag(log_covariance(problem, best.theta))),
+        log_theta=z,
+        verdicts=identifiability(problem, z, seed=seed),
+        next_measurements=next_measurements(problem, z),
+        predictive=predict_quantities(problem.model, _first(problem, _thinned(z)), (*known, *measured)),
+        profiles=tuple(profile(problem, best.theta, j) for j in range(len(problem.parameters))),
+    )
+
+
+def _posterior(problem: Problem, particles: int, seed: int) -> tuple[Posterior | None, str]:
+    status = "ok"
+    for n in (particles, 2 * particles):
+        try:
+            return sample_posterior(problem, particles=n, seed=seed), "ok"
+        except NumericalError as error:
+            status = str(error)
+    return None, status

@@ -18,6 +18,7 @@ from jackettwin.updating import (
     Update,
     family,
     numbered_modes,
+    single,
     support_model,
     update,
 )
@@ -146,7 +147,7 @@ def _figure_8_1(assembly: Assembly) -> list[Row]:
 
 def fitted(model: SupportModel, residuals: Residuals) -> Update:
     """Return the multi-start fit that ``verify`` and the gallery show."""
-    return update(model, residuals, starts=12, seed=0)
+    return update(single(model, residuals), starts=12, seed=0)
 
 
 def _fit(model: SupportModel, bars: tuple[float, float]) -> list[Row]:

@@ -1,0 +1,27 @@
+"""The posterior as a normal in ln θ around one solution: what a Gauss–Newton Hessian knows."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.updating.problem import Problem
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def log_covariance(problem: Problem, theta: FloatArray) -> FloatArray:
+    """Return the covariance (d, d) of ln θ: (JᵀJ + P)⁻¹ with the prior's precision P.
+
+    A flat prior counts as a normal one of the same standard deviation, so that what no data see keeps it.
+    """
+    _, J, _ = problem.evaluate(np.log(theta), None)
+    flat = np.array([p.median is None for p in problem.parameters])
+    return np.asarray(np.linalg.inv(J.T @ J + np.diag(np.where(flat, problem.prior.std**-2.0, 0.0))))
+
+
+def laplace_draws(problem: Problem, theta: FloatArray, *, n: int = 400, seed: int = 0) -> FloatArray:
+    """Return draws (n, d) of ln θ from the normal around ``theta``, kept inside the bounds."""
+    rng = np.random.default_rng(seed)
+    z = rng.multivariate_normal(np.log(theta), log_covariance(problem, theta), n)
+    return np.clip(z, problem.prior.low, problem.prior.high)

@@ -1,0 +1,82 @@
+"""What the posterior says of what nobody measured: other modes, the undamped structure, the supports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.response.numbered import NumberedModes, numbered_poles
+from jackettwin.soil.coefficients import law_stiffness, static_rows
+from jackettwin.updating.model import SupportModel
+
+FloatArray = npt.NDArray[np.float64]
+
+_FIRST, _FOURTH = 1, 4
+"""The modes whose frequencies a support's stiffness and loss factor are stated at."""
+
+
+@dataclass(frozen=True)
+class Predictive:
+    """Draws of quantities of interest, NaN where a mode does not exist.
+
+    Attributes
+    ----------
+    modes : mode numbers
+    frequency_hz, damping_ratio, undamped_hz : (n_draws, n_modes)
+    support : {name: (n_draws,)}
+        Of each tie group, as data see it: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at
+        the first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth's.
+    """
+
+    modes: tuple[int, ...]
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    undamped_hz: FloatArray
+    support: Mapping[str, FloatArray]
+
+
+def predict_quantities(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) -> Predictive:
+    """Return the quantities at draws θ (n_draws, n_parameters) of the model's parameters."""
+    damped = _from_first(model, theta, modes, undamped=False)
+    undamped = _from_first(model, theta, modes, undamped=True)
+    size = np.abs(damped.poles)
+    return Predictive(
+        modes,
+        size / (2.0 * pi),
+        -damped.poles.real / size,
+        np.abs(undamped.poles) / (2.0 * pi),
+        support_quantities(model, theta),
+    )
+
+
+def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, FloatArray]:
+    """Return the supports as data see them (see :class:`Predictive`)."""
+    pinned = model.condensed.pinned.omega
+    s = 1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]]
+    rows = model.points(theta).plain().rows
+    quantities = {}
+    for g, suffix in enumerate(model.suffixes):
+        D = law_stiffness(rows[:, g], np.broadcast_to(s, (len(theta), 2)))
+        loss = D.imag / D.real
+        quantities[f"static_stiffness{suffix}"] = static_rows(rows[:, g])[:, 0]
+        quantities[f"storage_stiffness{suffix}"] = D.real[:, 0]
+        quantities[f"loss_factor{suffix}"] = loss[:, 0]
+        quantities[f"stiffness_growth{suffix}"] = D.real[:, 1] / D.real[:, 0]
+        quantities[f"loss_factor_growth{suffix}"] = loss[:, 1] / loss[:, 0]
+    return quantities
+
+
+def _from_first(
+    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, undamped: bool
+) -> NumberedModes:
+    """Return the modes of all draws, each started from the first draw's."""
+    points = model.points(theta).plain()
+    start = model.points(theta[:1]).plain()
+    if undamped:
+        points, start = points.undamped(), start.undamped()
+    near = numbered_poles(model.condensed, start, modes)
+    return numbered_poles(model.condensed, points, modes, near=None if np.isnan(near.poles).any() else near)

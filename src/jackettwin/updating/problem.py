@@ -1,0 +1,197 @@
+"""What is solved and sampled: a support model, its data in one or several operating states, and a prior."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.response.numbered import NumberedModes
+from jackettwin.updating.families import Parameter
+from jackettwin.updating.model import SupportModel
+from jackettwin.updating.prior import BoxPrior
+from jackettwin.updating.targets import Residuals
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+NEVER = -1e30
+"""Log-likelihood where a target mode does not exist."""
+_LOST = 10.0
+"""Residual of a mode that cannot be followed: worse than any that can."""
+
+Found = tuple[NumberedModes, ...]
+"""Modes at many parameter vectors, one entry a state: where neighbours start from."""
+
+
+@dataclass(frozen=True)
+class State:
+    """Data measured in one operating state.
+
+    Attributes
+    ----------
+    columns : (n_model,) which of the problem's parameters are the model's in this state
+    factors : (n_model,) what they are multiplied by: a rotor's dashpot grows with the wind
+    """
+
+    name: str
+    residuals: Residuals
+    columns: IntArray
+    factors: FloatArray
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A support model and everything measured of it.
+
+    Attributes
+    ----------
+    parameters : tuple of Parameter
+        The model's, and for a state-dependent one a copy for each state.
+    prior : BoxPrior
+        Of their logarithms.
+    """
+
+    model: SupportModel
+    states: tuple[State, ...]
+    parameters: tuple[Parameter, ...]
+    prior: BoxPrior
+
+    @property
+    def relative(self) -> bool:
+        """Whether the cost is the thesis's: no likelihood, no prior."""
+        return any(state.residuals.relative for state in self.states)
+
+    @property
+    def weighted(self) -> bool:
+        """Whether every value has a standard deviation, so that there is a likelihood."""
+        return not self.relative and all(state.residuals.weighted for state in self.states)
+
+    @property
+    def n_data(self) -> int:
+        """Number of data residuals: they come before the priors'."""
+        return sum(state.residuals.count for state in self.states)
+
+    @property
+    def data_names(self) -> list[str]:
+        """What each residual is of: ``f1``, ``ζ4``, with the state's name if there are several."""
+        several = len(self.states) > 1
+        return [
+            f"{name} ({state.name})" if several else name
+            for state in self.states
+            for name in state.residuals.names
+        ]
+
+    def vectors(self, z: FloatArray, state: State) -> FloatArray:
+        """Return the model's parameter vectors (n, n_model) of points z = ln θ (n, d) in one state."""
+        return np.asarray(np.exp(z[:, state.columns]) * state.factors)
+
+    def evaluate(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, Found | None]:
+        """Return residuals, their Jacobian by z and the modes at one point (d,); None if a mode is lost.
+
+        The normal priors follow the data's residuals.
+        """
+        values, rows, found = [], [], []
+        for i, state in enumerate(self.states):
+            r = state.residuals
+            modes = self.model.predict_many(
+                self.vectors(z[None], state), r.modes, near=None if near is None else near[i]
+            )
+            found.append(modes)
+            jacobian = np.zeros((r.count, z.size))
+            if np.isnan(modes.poles).any():
+                values.append(np.full(r.count, _LOST))
+            else:
+                value, jacobian[:, state.columns] = r.evaluate(modes.poles[0], modes.slopes[0])
+                values.append(value)
+            rows.append(jacobian)
+        if not self.relative:
+            value, jacobian = self.prior.rows(z)
+            values.append(value)
+            rows.append(jacobian)
+        lost = any(np.isnan(modes.poles).any() for modes in found)
+        return np.concatenate(values), np.concatenate(rows), None if lost else tuple(found)
+
+    def anchor(self, z: FloatArray) -> Found | None:
+        """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""
+        found = self.log_likelihood(z[None], None)[1]
+        return None if any(np.isnan(modes.poles).any() for modes in found) else found
+
+    def log_likelihood(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, Found]:
+        """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
+        log_l, found = np.zeros(len(z)), []
+        for i, state in enumerate(self.states):
+            modes = self.model.predict_many(
+                self.vectors(z, state),
+                state.residuals.modes,
+                near=None if near is None else near[i],
+                slopes=False,
+            )
+            known = np.asarray(~np.isnan(modes.poles).any(axis=1))
+            r = state.residuals.values(modes.poles[known])
+            log_l[known] += -0.5 * (r * r).sum(axis=1) - state.residuals.log_normalisation
+            log_l[~known] = NEVER
+            found.append(modes)
+        return log_l, tuple(found)
+
+
+def single(model: SupportModel, residuals: Residuals) -> Problem:
+    """Return the problem of one operating state.
+
+    Raises
+    ------
+    InputError
+        If a parameter has a lognormal prior but the residuals carry no standard deviations.
+    """
+    return joint(model, {"": (residuals, {})})
+
+
+def joint(
+    model: SupportModel,
+    states: Mapping[str, tuple[Residuals, Mapping[str, float]]],
+    *,
+    per_state: tuple[str, ...] = (),
+) -> Problem:
+    """Return the problem of several operating states that share their parameters.
+
+    Parameters
+    ----------
+    states : {name: (residuals, factors)}
+        Factors by parameter name: what a shared parameter is multiplied by in this state.
+    per_state : tuple of str
+        Parameters with a value of their own in each state, named ``parameter@state``.
+
+    Raises
+    ------
+    InputError
+        If a name is none of the model's, or priors meet residuals without standard deviations.
+    """
+    names = [p.name for p in model.parameters]
+    for name in (*per_state, *(name for _, factors in states.values() for name in factors)):
+        if name not in names:
+            raise InputError("no such parameter", field="states", value=name, allowed=", ".join(names))
+    shared = [p for p in model.parameters if p.name not in per_state]
+    own = [p for p in model.parameters if p.name in per_state]
+    parameters = (*shared, *(replace(p, name=f"{p.name}@{state}") for state in states for p in own))
+    place = {p.name: i for i, p in enumerate(parameters)}
+    built = tuple(
+        State(
+            state,
+            residuals,
+            np.array([place.get(name, place.get(f"{name}@{state}", -1)) for name in names], dtype=np.intp),
+            np.array([factors.get(name, 1.0) for name in names]),
+        )
+        for state, (residuals, factors) in states.items()
+    )
+    problem = Problem(model, built, parameters, BoxPrior.of(parameters))
+    if problem.relative and any(p.median is not None for p in parameters):
+        raise InputError(
+            "a prior needs data with standard deviations",
+            field="update.priors",
+            value=[p.name for p in parameters if p.median is not None],
+            remedy="give every target its standard deviation, or leave the priors out",
+        )
+    return problem

@@ -1,0 +1,105 @@
+"""Verdicts on a case whose answer is known from the physics: tower modes see the vertical springs."""
+
+import numpy as np
+import pytest
+
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Problem, Residuals, Target, family, single, support_model
+from jackettwin.updating.identifiability import Verdict, identifiability
+from jackettwin.updating.laplace import laplace_draws
+from jackettwin.updating.next_measurement import next_measurements
+from jackettwin.updating.posterior import sample_posterior
+from jackettwin.updating.predictive import predict_quantities, support_quantities
+from jackettwin.updating.profile import profile
+
+TRUTH = np.array([2.5e9, 1e8, 2.5e9, 1e8])  # k, c horizontal; k, c vertical
+MODES = (1, 2, 4)
+
+
+@pytest.fixture(scope="module")
+def problem(jacket15: Assembly) -> Problem:
+    """f1, f2, f4 and ζ1 of separate horizontal and vertical Kelvin–Voigt supports."""
+    model = support_model(
+        jacket15,
+        family=family("kelvin-voigt"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+        tie="horizontal-vertical",
+        bounds={"k": (1e8, 1e11), "c": (1e6, 1e10)},
+        highest_mode=5,
+    )
+    poles = model.predict(TRUTH, MODES).poles
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    targets = (
+        Target(1, f[0], 1e-3 * f[0], zeta[0], 0.15 * zeta[0]),
+        Target(2, f[1], 1e-3 * f[1]),
+        Target(4, f[2], 1e-3 * f[2]),
+    )
+    return single(model, Residuals(targets, relative=False))
+
+
+@pytest.fixture(scope="module")
+def draws(problem: Problem) -> np.ndarray:
+    return sample_posterior(problem, particles=100, islands=3, seed=1).log_theta
+
+
+@pytest.fixture(scope="module")
+def verdicts(problem: Problem, draws: np.ndarray) -> dict[str, Verdict]:
+    return {v.name: v for v in identifiability(problem, draws)}
+
+
+def test_vertical_stiffness_is_identified_and_horizontal_damping_is_not(verdicts: dict[str, Verdict]) -> None:
+    assert verdicts["k_vertical"].verdict == "identified"
+    assert verdicts["k_vertical"].reason.startswith("fixed by f")
+    assert verdicts["c_horizontal"].verdict == "unidentified"
+    assert verdicts["c_horizontal"].ratio > verdicts["c_vertical"].ratio
+
+
+def test_before_any_value_is_known_the_design_says_the_same(verdicts: dict[str, Verdict]) -> None:
+    assert verdicts["c_horizontal"].verdict_before == "unidentified"
+    assert verdicts["k_vertical"].ratio_before < verdicts["k_horizontal"].ratio_before
+
+
+def test_torsion_would_tell_of_the_horizontal_springs(problem: Problem, draws: np.ndarray) -> None:
+    found = {m.what: m for m in next_measurements(problem, draws)}
+    torsion = found["frequency of torsion (mode 3)"]
+    others = [m.ratio[0] for name, m in found.items() if "mode 3" not in name and "times" not in name]
+    assert torsion.ratio[0] < min(others)
+    gains = [m.gain_nats for m in found.values()]
+    assert gains == sorted(gains, reverse=True)
+
+
+def test_a_profile_is_least_at_the_solution_and_rises_as_the_data_say(problem: Problem) -> None:
+    sharp, flat = profile(problem, TRUTH, 2), profile(problem, TRUTH, 1)
+    assert sharp.values[np.argmin(sharp.cost)] == pytest.approx(TRUTH[2])
+    assert sharp.cost[0] > 50.0 and sharp.cost[-1] > 10.0
+    # nothing sees the horizontal dashpots until they lock
+    assert flat.cost[flat.values < TRUTH[1]].max() < 0.5
+
+
+def test_predictions_contain_the_truth(problem: Problem, draws: np.ndarray) -> None:
+    q = predict_quantities(problem.model, np.exp(draws), (1, 4, 5))
+    truth = problem.model.predict(TRUTH, (1, 4, 5)).poles
+    for values, true in (
+        (q.damping_ratio, -truth.real / np.abs(truth)),
+        (q.undamped_hz, problem.model.undamped_hz(TRUTH, (1, 4, 5))),
+    ):
+        low, high = np.quantile(values, [0.05, 0.95], axis=0)
+        assert (low <= true).all() and (true <= high).all()
+
+
+def test_supports_are_stated_as_data_see_them(problem: Problem) -> None:
+    """Kelvin–Voigt: constant stiffness, a loss factor ωc/k that grows with the frequency."""
+    seen = support_quantities(problem.model, TRUTH[None])
+    omega = problem.model.condensed.pinned.omega
+    assert seen["storage_stiffness_vertical"][0] == pytest.approx(2.5e9)
+    assert seen["static_stiffness_vertical"][0] == pytest.approx(2.5e9)
+    assert seen["loss_factor_vertical"][0] == pytest.approx(omega[0] * 1e8 / 2.5e9)
+    assert seen["stiffness_growth_vertical"][0] == pytest.approx(1.0)
+    assert seen["loss_factor_growth_vertical"][0] == pytest.approx(omega[3] / omega[0])
+
+
+def test_laplace_keeps_the_prior_of_what_no_data_see(problem: Problem) -> None:
+    z = laplace_draws(problem, TRUTH, n=2000)
+    ratio = z.std(axis=0) / problem.prior.std
+    # clipping at the bounds narrows a normal of the prior's width by a few per cent
+    assert ratio[1] > 0.7 and ratio[2] < 0.1

@@ -1,0 +1,106 @@
+"""One cost for search and sampling: gradients, states that share parameters, priors."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, single, support_model
+from jackettwin.updating.extras import Extras
+from jackettwin.updating.posterior import sample_posterior
+from jackettwin.updating.problem import NEVER
+
+MODES = (1, 2, 4)
+
+
+@pytest.fixture(scope="module")
+def model(jacket15: Assembly) -> SupportModel:
+    return support_model(
+        jacket15,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+        bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6), "c_side_side": (1e3, 1e6)},
+        priors={"loss_factor": (0.05, 1.0)},
+        highest_mode=5,
+        extras=Extras(("c_side_side",)),
+    )
+
+
+def seen(model: SupportModel, theta: np.ndarray) -> Residuals:
+    targets = []
+    for mode, pole in zip(MODES, model.predict(theta, MODES).poles, strict=True):
+        f, zeta = abs(pole) / (2 * np.pi), -pole.real / abs(pole)
+        targets.append(Target(mode, f, 0.004 * f, zeta, 0.2 * zeta))
+    return Residuals(tuple(targets), relative=False)
+
+
+WIND = {"8 m/s": 8.0, "16 m/s": 16.0}
+TRUTH = np.array([3e9, 0.1, 6e3])  # the dashpot a m/s
+
+
+@pytest.fixture(scope="module")
+def windy(model: SupportModel) -> Problem:
+    """The rotor's dashpot grows with the wind, the soil does not change."""
+    return joint(
+        model,
+        {
+            name: (seen(model, TRUTH * np.array([1.0, 1.0, v])), {"c_side_side": v})
+            for name, v in WIND.items()
+        },
+    )
+
+
+def test_gradients_are_differences(windy: Problem) -> None:
+    z, h = np.log(TRUTH) + 0.1, 1e-4
+    _, J, near = windy.evaluate(z, None)
+    for j in range(z.size):
+        step = h * (np.arange(z.size) == j)
+        up, down = (windy.evaluate(z + s, near)[0] for s in (step, -step))
+        np.testing.assert_allclose(J[:, j], (up - down) / (2 * h), rtol=1e-5, atol=1e-6)
+
+
+def test_log_likelihood_is_the_sum_over_states(windy: Problem) -> None:
+    z = np.log(TRUTH)[None] + np.array([[0.0], [0.2]])
+    both, _ = windy.log_likelihood(z, None)
+    each = [replace(windy, states=(state,)).log_likelihood(z, None)[0] for state in windy.states]
+    np.testing.assert_allclose(both, sum(each), rtol=1e-12)
+    # at the truth nothing is left but the normalisation
+    assert both[0] == pytest.approx(-sum(s.residuals.log_normalisation for s in windy.states), abs=1e-9)
+
+
+def test_a_damper_that_overdamps_the_mode_has_no_likelihood(model: SupportModel) -> None:
+    problem = single(model, seen(model, TRUTH * np.array([1.0, 1.0, 10.0])))
+    far = replace(model.parameters[2], high=1e9)
+    loose = replace(problem, model=replace(model, parameters=(*model.parameters[:2], far)))
+    log_l, _ = loose.log_likelihood(np.log([[3e9, 0.1, 3e8]]), None)
+    assert log_l[0] <= NEVER
+
+
+def test_states_tell_rotor_from_soil(windy: Problem, model: SupportModel) -> None:
+    posterior = sample_posterior(windy, particles=60, islands=2, seed=3)
+    low, high = posterior.interval(0.9).T
+    assert (low < TRUTH).all() and (high > TRUTH).all()
+    # two winds in a known proportion fix the rotor's share
+    assert np.log(high / low)[2] < 1.0
+
+
+def test_a_parameter_of_each_state(model: SupportModel) -> None:
+    residuals = seen(model, TRUTH * np.array([1.0, 1.0, 10.0]))
+    problem = joint(model, {"calm": (residuals, {}), "gale": (residuals, {})}, per_state=("c_side_side",))
+    assert [p.name for p in problem.parameters] == [
+        "k", "loss_factor", "c_side_side@calm", "c_side_side@gale",
+    ]  # fmt: skip
+    z = np.log([3e9, 0.1, 1e4, 5e4])[None]
+    for state, c in zip(problem.states, (1e4, 5e4), strict=True):
+        np.testing.assert_allclose(problem.vectors(z, state)[0], [3e9, 0.1, c])
+    assert "ζ4 (gale)" in problem.data_names
+
+
+def test_unknown_names_and_priors_without_weights(model: SupportModel) -> None:
+    residuals = seen(model, TRUTH * np.array([1.0, 1.0, 10.0]))
+    with pytest.raises(InputError, match="no such parameter"):
+        joint(model, {"": (residuals, {})}, per_state=("c_yaw",))
+    with pytest.raises(InputError, match="needs data with standard deviations"):
+        single(model, Residuals((Target(1, 0.18),), relative=True))
