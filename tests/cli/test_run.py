@@ -29,7 +29,7 @@ def test_result_and_report_are_left_and_nothing_else(outcome: tuple[Path, dict])
 def test_the_keys_of_the_contract(outcome: tuple[Path, dict]) -> None:
     document = outcome[1]
     assert {"modes", "updates", "report"} <= set(document)
-    assert [u["law"] for u in document["updates"]] == ["kelvin-voigt", "zener", "maxwell-3"]
+    assert [u["law"] for u in document["updates"]] == ["kelvin-voigt", "maxwell-3", "zener", "springpot"]
     for update in document["updates"]:
         assert {"law", "parameters", "modes", "solutions", "identifiability", "log_evidence"} <= set(update)
         for parameter in update["parameters"].values():

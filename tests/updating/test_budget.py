@@ -85,7 +85,7 @@ def test_the_first_pair_is_met_in_both_assignments(jacket15: Assembly, first: fl
         ),
         relative=False,
     )
-    fit = update(single(model, residuals), starts=8, particles=60)
+    fit = update(single(model, residuals), starts=4, particles=40)
     np.testing.assert_allclose(fit.modes.damping_ratio[:2], [first, second], rtol=0.05)
     np.testing.assert_allclose(fit.modes.frequency_hz, [0.1819, 0.1838, 0.7362], rtol=0.01)
     budget = fit.budget

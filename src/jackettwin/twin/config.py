@@ -34,7 +34,7 @@ class UpdateSettings:
 
     laws: tuple[str, ...] = DEFAULT_LAWS
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: int = 16
+    starts: int = 32
     seed: int = 0
     particles: int = 150
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)

@@ -53,14 +53,21 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
                 "parameters": dict(zip(names, map(float, s.theta), strict=True)),
                 "cost": s.cost,
                 "locked_damper": s.locked_damper,
+                "locks_within_extent": s.locks_within,
                 "frequency_hz": s.frequency_hz,
                 "undamped_frequency_hz": s.undamped_hz,
                 "damping_ratio": s.damping_ratio,
                 "at_bound": list(s.at_bound),
                 "starts_that_ended_here": s.found,
+                "extent": dict(zip(names, s.extent.tolist(), strict=True)),
             }
             for s in u.solutions
         ],
+        "completeness": {
+            "statement": u.search.statement,
+            "starts": u.search.starts,
+            "missed_share_95": u.search.missed_share_95,
+        },
         "identifiability": dict.fromkeys(names)
         if known is None
         else {v.name: v.verdict for v in known.verdicts},

@@ -109,7 +109,7 @@ class UpdateSchema(Schema):
 
     laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: Annotated[int, Field(ge=1, le=10000)] = 16
+    starts: Annotated[int, Field(ge=1, le=10000)] = 32
     seed: Annotated[int, Field(ge=0)] = 0
     particles: Annotated[int, Field(ge=20, le=100000)] = 150
     bounds: dict[str, tuple[float, float]] = {}

@@ -71,6 +71,20 @@ class Problem:
         return not self.relative and all(state.residuals.weighted for state in self.states)
 
     @property
+    def negligible(self) -> float:
+        """Cost that does not matter: χ² by one, or each relative residual by 1e-4."""
+        return self.n_data * 1e-8 if self.relative else 1.0
+
+    @property
+    def hopeless(self) -> float:
+        """Cost above the best from which a minimum explains nothing: χ² by 50, relative residuals of 10 %."""
+        return self.n_data * 1e-2 if self.relative else 50.0
+
+    def allowance(self, cost: float) -> float:
+        """Return by how much a cost may rise and still count as the same: solutions apart by less are one."""
+        return max(self.negligible, 1e-3 * cost)
+
+    @property
     def n_data(self) -> int:
         """Number of data residuals: they come before the priors'."""
         return sum(state.residuals.count for state in self.states)

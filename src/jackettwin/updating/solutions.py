@@ -1,4 +1,4 @@
-"""Search for every solution: many starts, one list of distinct end points."""
+"""Search for every solution: scattered starts, deflation of what is known, one list of distinct valleys."""
 
 from __future__ import annotations
 
@@ -8,36 +8,48 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares, minimize
 from scipy.stats import qmc
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.updating.problem import Found, Problem
+from jackettwin.updating.descent import End, descend, descend_simplex, settle
+from jackettwin.updating.problem import Problem
+from jackettwin.updating.valleys import extent, gather
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 Method = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
 
 LOCKED_DAMPER = 0.05
 """Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
+_MOST = 16
+"""Starts are doubled up to this many times their number while a solution has been found only once."""
+_DEFLATED = 6
+"""Descents with the known solutions deflated that must find nothing new."""
+_CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
 class Solution:
-    """An end point of the search.
+    """A minimum of the cost, or a valley of equal ones.
 
     Attributes
     ----------
     theta : (n_parameters,)
+        Of a valley, the point nearest the middle of the bounds.
     cost : float
         Sum of squared residuals.
-    frequency_hz, undamped_hz, damping_ratio : (n_targets,)
+    frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
     locked_damper : bool
         An undamped frequency is more than 5 % from the damped one.
+    locks_within : bool
+        A valley's ends are looked at, too: at some of them a damper is locked.
     at_bound : tuple of str
         Parameters that ended on a bound.
     found : int
         How many starts ended here.
+    extent : (n_parameters, 2)
+        How far each parameter can go, the others following, before the cost rises noticeably.
     """
 
     theta: FloatArray
@@ -46,26 +58,62 @@ class Solution:
     undamped_hz: FloatArray
     damping_ratio: FloatArray
     locked_damper: bool
+    locks_within: bool
     at_bound: tuple[str, ...]
-    found: int = 1
+    found: int
+    extent: FloatArray
+
+
+@dataclass(frozen=True)
+class Search:
+    """Every solution that was found, cheapest first, and how sure it is that these are all.
+
+    Attributes
+    ----------
+    starts : int
+        Descents from scattered points; further ones deflated the known solutions.
+    unsettled : int
+        Descents that ended at no minimum.
+    missed_share_95 : float
+        A solution that was missed draws less than this share of the starts, with 95 % confidence.
+    """
+
+    solutions: tuple[Solution, ...]
+    starts: int
+    unsettled: int
+    missed_share_95: float
+
+    @property
+    def statement(self) -> str:
+        """How complete the list is, in a sentence."""
+        n = len(self.solutions)
+        once = sum(s.found == 1 for s in self.solutions)
+        return (
+            f"{self.starts} starts and {_DEFLATED} deflated descents ended in "
+            f"{n} distinct solution{'s' if n > 1 else ''}"
+            f"{f', {once} of them found only once' if once else ', each found more than once'}; "
+            f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
+            "(95 % confidence)."
+        )
 
 
 def search(
     problem: Problem,
     *,
     method: Method = "least-squares",
-    starts: int = 16,
+    starts: int = 32,
     seed: int = 0,
     progress: Callable[[], None] | None = None,
-) -> tuple[Solution, ...]:
-    """Return the distinct solutions from ``starts`` scattered starting points, best first.
+) -> Search:
+    """Return the distinct solutions, best first.
+
+    Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while a solution
+    has been found only once; then the known solutions are deflated until nothing new appears.
 
     Parameters
     ----------
     method : {"least-squares", "nelder-mead"}
-        Gradient least squares, or the thesis's simplex (section 8.2).
-    starts : int
-        Scrambled Sobol points in the logarithms between the bounds.
+        Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
     progress : callable, optional
         Called after each start.
 
@@ -80,17 +128,30 @@ def search(
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
     if starts < 1:
         raise InputError("at least one start", field="update.starts", value=starts, allowed="≥ 1")
-    low, high = problem.prior.low, problem.prior.high
-    run = _least_squares if method == "least-squares" else _nelder_mead
-    ends = []
-    for point in _scatter(low, high, starts, seed):
-        ends.append(run(problem, point))
-        if progress is not None:
-            progress()
-    ends = [end for end in ends if np.isfinite(end[1])]
-    if not ends:
+    run = descend if method == "least-squares" else descend_simplex
+    points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
+    ends: list[End] = []
+    n = starts
+    while True:
+        for point in points[len(ends) : n]:
+            ends.append(run(problem, point))
+            if progress is not None:
+                progress()
+        valleys = gather(problem, [(end, 1) for end in ends if end.settled])
+        if 2 * n > len(points) or (valleys and all(count > 1 for _, count in valleys)):
+            break
+        n *= 2
+    if method == "least-squares":
+        valleys = _deflate(problem, valleys, points)
+    if not valleys:
         raise NumericalError("no start of the search could follow the target modes")
-    return tuple(_distinct([_solution(problem, z, cost) for z, cost in ends]))
+    valleys = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
+    return Search(
+        tuple(_solution(problem, settle(problem, end), count) for end, count in valleys),
+        len(ends),
+        sum(not end.settled for end in ends),
+        1.0 - (1.0 - _CONFIDENCE) ** (1.0 / len(ends)),
+    )
 
 
 def cost(problem: Problem, theta: FloatArray) -> float:
@@ -99,95 +160,48 @@ def cost(problem: Problem, theta: FloatArray) -> float:
     return float(r @ r)
 
 
-def _scatter(low: FloatArray, high: FloatArray, n: int, seed: int) -> FloatArray:
+def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
+    low, high = problem.prior.low, problem.prior.high
     sampler = qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))
     power = int(np.ceil(np.log2(max(n, 2))))
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 
 
-class Path:
-    """Residuals and Jacobian along one search path: each prediction starts from the one before."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        self.last: Found | None = None
-        self.at: FloatArray | None = None
-        self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
-
-    def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals and Jacobian; the last answer is remembered."""
-        if self.at is None or not np.array_equal(z, self.at):
-            r, J, self.last = self.problem.evaluate(z, self.last)
-            self.answer, self.at = (r, J), z.copy()
-        return self.answer
-
-    def values(self, z: FloatArray) -> FloatArray:
-        """Return the residuals."""
-        return self(z)[0]
-
-    def jacobian(self, z: FloatArray) -> FloatArray:
-        """Return their Jacobian."""
-        return self(z)[1]
-
-    def total(self, z: FloatArray) -> float:
-        """Return the sum of squares."""
-        r = self.values(z)
-        return float(r @ r)
+def _deflate(problem: Problem, valleys: list[tuple[End, int]], points: FloatArray) -> list[tuple[End, int]]:
+    """Return the valleys and what further descents find with them deflated."""
+    for point in points[:_DEFLATED]:
+        end = descend(problem, point, known=tuple(valley.z for valley, _ in valleys))
+        if end.settled:
+            valleys = gather(problem, [*valleys, (end, 1)])
+    return valleys
 
 
-def _least_squares(problem: Problem, start: FloatArray) -> tuple[FloatArray, float]:
-    evaluate = Path(problem)
-    fit = least_squares(
-        evaluate.values,
-        start,
-        jac=evaluate.jacobian,
-        bounds=(problem.prior.low, problem.prior.high),
-        x_scale="jac",
-        xtol=1e-10,
-        ftol=1e-12,
-        gtol=1e-12,
-        max_nfev=120,
-    )
-    return np.asarray(fit.x), float(2.0 * fit.cost)
-
-
-def _nelder_mead(problem: Problem, start: FloatArray) -> tuple[FloatArray, float]:
-    fit = minimize(
-        Path(problem).total,
-        start,
-        method="Nelder-Mead",
-        bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
-        options={"xatol": 1e-5, "fatol": 1e-14, "maxfev": 600},
-    )
-    return np.asarray(fit.x), float(fit.fun)
-
-
-def _solution(problem: Problem, z: FloatArray, value: float) -> Solution:
-    first = problem.states[0]
-    theta, modes = problem.vectors(z[None], first)[0], first.residuals.modes
-    poles = problem.model.predict(theta, modes).poles
-    damped, undamped = np.abs(poles) / (2.0 * np.pi), problem.model.undamped_hz(theta, modes)
-    apart = np.abs(undamped / damped - 1.0)
-    on_bound = (z - problem.prior.low < 1e-3) | (problem.prior.high - z < 1e-3)
+def _solution(problem: Problem, end: End, found: int) -> Solution:
+    poles, undamped = _damped_and_undamped(problem, end.z)
+    damped = np.abs(poles) / (2.0 * np.pi)
+    sides, points = extent(problem, end)
+    on_bound = (end.z - problem.prior.low < 1e-3) | (problem.prior.high - end.z < 1e-3)
     return Solution(
-        theta=np.exp(z),
-        cost=value,
+        theta=np.exp(end.z),
+        cost=end.cost,
         frequency_hz=damped,
         undamped_hz=undamped,
         damping_ratio=np.asarray(-poles.real / np.abs(poles)),
-        locked_damper=bool(np.isnan(apart).any() or (apart > LOCKED_DAMPER).any()),
+        locked_damper=_locked(poles, undamped),
+        locks_within=any(_locked(*_damped_and_undamped(problem, z)) for z in points),
         at_bound=tuple(p.name for p, flag in zip(problem.parameters, on_bound, strict=True) if flag),
+        found=found,
+        extent=np.exp(sides),
     )
 
 
-def _distinct(solutions: list[Solution]) -> list[Solution]:
-    """Return solutions by cost, merging end points within 2 % in every parameter."""
-    kept: list[Solution] = []
-    for candidate in sorted(solutions, key=lambda s: s.cost):
-        for i, other in enumerate(kept):
-            if np.abs(np.log(candidate.theta / other.theta)).max() < 0.02:
-                kept[i] = Solution(**{**vars(other), "found": other.found + 1})
-                break
-        else:
-            kept.append(candidate)
-    return kept
+def _damped_and_undamped(problem: Problem, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Return the poles and undamped frequencies of the first state's modes."""
+    first = problem.states[0]
+    theta, modes = problem.vectors(z[None], first)[0], first.residuals.modes
+    return problem.model.predict(theta, modes).poles, problem.model.undamped_hz(theta, modes)
+
+
+def _locked(poles: ComplexArray, undamped_hz: FloatArray) -> bool:
+    apart = np.abs(undamped_hz * 2.0 * np.pi / np.abs(poles) - 1.0)
+    return bool(np.isnan(apart).any() or (apart > LOCKED_DAMPER).any())

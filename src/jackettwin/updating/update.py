@@ -19,7 +19,7 @@ from jackettwin.updating.posterior import Posterior, sample_posterior
 from jackettwin.updating.predictive import Predictive, predict_quantities
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.profile import Profile, profile
-from jackettwin.updating.solutions import Method, Solution, search
+from jackettwin.updating.solutions import Method, Search, Solution, search
 from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
@@ -76,8 +76,8 @@ class Update:
     Attributes
     ----------
     problem : Problem
-    solutions : tuple of Solution
-        Every distinct end point, best first.
+    search : Search
+        Every solution, best first, and how sure it is that these are all.
     best : Solution
         The cheapest one without a locked damper; the cheapest of all if every one is locked.
     modes : ExactModes
@@ -89,11 +89,16 @@ class Update:
     """
 
     problem: Problem
-    solutions: tuple[Solution, ...]
+    search: Search
     best: Solution
     modes: ExactModes
     budget: Budget
     uncertainty: Uncertainty | None
+
+    @property
+    def solutions(self) -> tuple[Solution, ...]:
+        """Every solution, best first."""
+        return self.search.solutions
 
     @property
     def model(self) -> SupportModel:
@@ -115,7 +120,7 @@ def update(
     problem: Problem,
     *,
     method: Method = "least-squares",
-    starts: int = 16,
+    starts: int = 32,
     particles: int = 150,
     seed: int = 0,
     progress: Callable[[], None] | None = None,
@@ -132,13 +137,13 @@ def update(
     NumericalError
         If no start can follow the target modes.
     """
-    solutions = search(problem, method=method, starts=starts, seed=seed, progress=progress)
-    best = next((s for s in solutions if not s.locked_damper), solutions[0])
+    found = search(problem, method=method, starts=starts, seed=seed, progress=progress)
+    best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
     modes = problem.states[0].residuals.modes
     uncertainty = _uncertainty(problem, best, particles, seed) if problem.weighted else None
     return Update(
         problem=problem,
-        solutions=solutions,
+        search=found,
         best=best,
         modes=problem.model.exact_modes(_first(problem, np.log(best.theta)[None])[0], modes),
         budget=damping_budget(

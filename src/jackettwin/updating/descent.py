@@ -1,0 +1,227 @@
+"""Local searches: from one start to the bottom it leads to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares, minimize
+
+from jackettwin.updating.problem import Found, Problem
+
+FloatArray = npt.NDArray[np.float64]
+
+_EVALUATIONS = 200
+_RIDGE = 1e-2
+"""Weight of the pull to the middle of the bounds, in units of the cost that does not matter."""
+_POINT = 0.02
+"""Without the pull, a solution moves by less than this; a point in a valley slides away and stays pulled."""
+
+
+@dataclass(frozen=True)
+class End:
+    """Where a local search ended.
+
+    Attributes
+    ----------
+    z : (d,) ln θ
+    cost : float
+        Without the pull to the middle.
+    settled : bool
+        Whether it is a minimum: nothing lower nearby, and the same cost from a cold start.
+    """
+
+    z: FloatArray
+    cost: float
+    settled: bool
+
+
+class Path:
+    """Residuals and Jacobian along one search path: each prediction starts from the one before."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self.last: Found | None = None
+        self.at: FloatArray | None = None
+        self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
+
+    def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return residuals and Jacobian; the last answer is remembered."""
+        if self.at is None or not np.array_equal(z, self.at):
+            r, J, self.last = self.problem.evaluate(z, self.last)
+            self.answer, self.at = (r, J), z.copy()
+        return self.answer
+
+    def values(self, z: FloatArray) -> FloatArray:
+        """Return the residuals."""
+        return self(z)[0]
+
+    def jacobian(self, z: FloatArray) -> FloatArray:
+        """Return their Jacobian."""
+        return self(z)[1]
+
+    def total(self, z: FloatArray) -> float:
+        """Return the sum of squares."""
+        r = self.values(z)
+        return float(r @ r)
+
+
+def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...] = ()) -> End:
+    r"""Return the end of a least-squares descent.
+
+    A pull to the middle of the bounds, a hundredth of the cost that does not matter, leads off plateaus and
+    gives a valley one lowest point. Known solutions are deflated (Farrell et al. 2015): the residuals are
+    multiplied by :math:`\prod_i (1 + σ²/\|z - z_i\|²)`, and the end is polished without that.
+    """
+    if known:
+        start = _least_squares(problem, start, _deflated(problem, known), tolerance=1e-4)
+    z = start
+    for tolerance in (1e-3, 1e-8):
+        here = Path(problem).total(z)
+        z = _least_squares(problem, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
+    free = _least_squares(problem, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
+    if np.abs(free - z).max() < _POINT:
+        z = free
+    return _judged(problem, z)
+
+
+def settle(problem: Problem, end: End) -> End:
+    """Return a valley's point nearest the middle of the bounds; a point solution returns unchanged."""
+    _, J, _ = problem.evaluate(end.z, None)
+    width = problem.prior.high - problem.prior.low
+    weakest = float(np.linalg.svd(J * width, compute_uv=False)[-1]) if len(J) >= end.z.size else 0.0
+    if weakest**2 > problem.negligible:
+        return end
+    pull = _pulled(problem, problem.allowance(end.cost))
+    z = _least_squares(problem, end.z, pull, tolerance=1e-12, evaluations=1000)
+    return _judged(problem, z)
+
+
+def descend_simplex(problem: Problem, start: FloatArray) -> End:
+    """Return the end of the thesis's simplex search (section 8.2)."""
+    fit = minimize(
+        Path(problem).total,
+        start,
+        method="Nelder-Mead",
+        bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
+        options={"xatol": 1e-5, "fatol": 1e-14, "maxfev": 600},
+    )
+    return End(np.asarray(fit.x), float(fit.fun), bool(np.isfinite(fit.fun)))
+
+
+def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -> tuple[FloatArray, float]:
+    """Return the point of least cost with one ln θ held, and its cost."""
+    path, held = Path(problem), z.copy()
+    held[parameter] = value
+    free = np.flatnonzero(np.arange(z.size) != parameter)
+    if free.size == 0:
+        return held, path.total(held)
+
+    def full(y: FloatArray) -> FloatArray:
+        held[free] = y
+        return held
+
+    def values(y: FloatArray) -> FloatArray:
+        return path.values(full(y))
+
+    def jacobian(y: FloatArray) -> FloatArray:
+        return path.jacobian(full(y))[:, free]
+
+    fit = least_squares(
+        values,
+        np.clip(z[free], problem.prior.low[free], problem.prior.high[free]),
+        jac=jacobian,
+        bounds=(problem.prior.low[free], problem.prior.high[free]),
+        x_scale="jac",
+        max_nfev=40,
+    )
+    return full(fit.x).copy(), float(2.0 * fit.cost)
+
+
+Rows = Callable[[FloatArray], FloatArray]
+
+
+def _least_squares(
+    problem: Problem,
+    start: FloatArray,
+    rows_of: Callable[[Path], tuple[Rows, Rows]],
+    *,
+    tolerance: float,
+    evaluations: int = _EVALUATIONS,
+) -> FloatArray:
+    values, jacobian = rows_of(Path(problem))
+    fit = least_squares(
+        values,
+        start,
+        jac=jacobian,
+        bounds=(problem.prior.low, problem.prior.high),
+        x_scale="jac",
+        xtol=tolerance,
+        ftol=max(1e-2 * tolerance, 1e-14),
+        gtol=1e-14,
+        max_nfev=evaluations,
+    )
+    return np.asarray(fit.x)
+
+
+def _pulled(problem: Problem, allowance: float) -> Callable[[Path], tuple[Rows, Rows]]:
+    low, high = problem.prior.low, problem.prior.high
+    weight = np.sqrt(_RIDGE * allowance) / (high - low)
+    middle = 0.5 * (low + high)
+
+    def rows_of(path: Path) -> tuple[Rows, Rows]:
+        def values(z: FloatArray) -> FloatArray:
+            return np.concatenate([path.values(z), weight * (z - middle)])
+
+        def jacobian(z: FloatArray) -> FloatArray:
+            return np.concatenate([path.jacobian(z), np.diag(weight)])
+
+        return values, jacobian
+
+    return rows_of
+
+
+def _deflated(problem: Problem, known: tuple[FloatArray, ...]) -> Callable[[Path], tuple[Rows, Rows]]:
+    width = 0.1 * (problem.prior.high - problem.prior.low)
+
+    def factor(z: FloatArray) -> tuple[float, FloatArray]:
+        """Return m(z) and ∇ ln m."""
+        log_m, slope = 0.0, np.zeros(z.size)
+        for centre in known:
+            u = (z - centre) / width
+            square = float(u @ u) + 1e-12
+            log_m += float(np.log1p(1.0 / square))
+            slope -= 2.0 * u / width / (square * (1.0 + square))
+        return float(np.exp(log_m)), slope
+
+    def rows_of(path: Path) -> tuple[Rows, Rows]:
+        def values(z: FloatArray) -> FloatArray:
+            return factor(z)[0] * path.values(z)
+
+        def jacobian(z: FloatArray) -> FloatArray:
+            m, slope = factor(z)
+            return np.asarray(m * (path.jacobian(z) + np.outer(path.values(z), slope)))
+
+        return values, jacobian
+
+    return rows_of
+
+
+def _judged(problem: Problem, z: FloatArray) -> End:
+    """Return the end with whether it is a minimum: a Gauss–Newton step inside the bounds promises nothing."""
+    r, J, found = problem.evaluate(z, None)
+    cost = float(r @ r)
+    if found is None:
+        return End(z, cost, False)
+    gradient = J.T @ r
+    inside = ~(
+        ((z - problem.prior.low < 1e-6) & (gradient > 0.0))
+        | ((problem.prior.high - z < 1e-6) & (gradient < 0.0))
+    )
+    promise = 0.0
+    if inside.any():
+        step = np.linalg.lstsq(J[:, inside], -r, rcond=1e-8)[0]
+        promise = -float(gradient[inside] @ np.clip(step, -1.0, 1.0))
+    return End(z, cost, promise <= problem.allowance(cost))
