@@ -113,7 +113,7 @@ def complete(targets_only: TwinResult, record: Record, observation: Observation)
     )
 
 
-CATEGORIES = {"mode", "member"}
+CATEGORIES = {"mode", "member", "law"}
 """Axes that name things have no unit."""
 
 

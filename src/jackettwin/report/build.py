@@ -20,6 +20,7 @@ from jackettwin.report import figures_updating as compare
 from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.numbers import fixed, frequency, percent, words
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_figures, write_page
+from jackettwin.report.section_posterior import what_is_known, whose_damping
 from jackettwin.report.summary import headline, shown_update
 from jackettwin.twin import TwinResult
 from jackettwin.twin.truth import true_modes, true_parameters
@@ -56,6 +57,8 @@ def report_sections(result: TwinResult) -> list[Section]:
         ("Identification", _identification),
         ("Identified against updated", _comparison),
         ("Against the known truth", _truth),
+        ("What is known", what_is_known),
+        ("Whose damping", whose_damping),
         ("Damped and undamped", _damped_undamped),
         ("Mode shapes", _mode_shapes),
         ("Solutions", _solutions),
@@ -256,7 +259,8 @@ def _shapes(result: TwinResult, u: Update) -> list[Shape]:
 
 
 def _solutions(result: TwinResult) -> list[Block]:
-    return [tables.solutions_table(result, u) for u in result.updates]
+    said = tuple(f"{u.law}: {u.search.statement}" for u in result.updates)
+    return [Text(said), *(tables.solutions_table(result, u) for u in result.updates)]
 
 
 def _landscape(result: TwinResult) -> list[Block]:

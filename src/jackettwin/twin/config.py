@@ -45,7 +45,11 @@ class UpdateSettings:
     damping_of: str | tuple[str, ...] = "fore_aft"
     model_errors: tuple[ModelError, ...] = ()
     dashpots: tuple[str, ...] = ()
-    """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``."""
+    """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``, at the mean wind speed."""
+    rotor: str | None = None
+    """A windIO file or shipped rotor from which the dashpots' priors follow."""
+    wind_speed_m_s: float | None = None
+    """Instead of the mean over the records' conditions."""
 
     def fits_damping(self, label: str) -> bool:
         """Return whether the damping of a mode takes part in the fit."""

@@ -119,6 +119,8 @@ class UpdateSchema(Schema):
     damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
     model_error: list[ModelErrorSchema] = []
     dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
+    rotor: str | None = None
+    wind_speed_m_s: Positive | None = None
 
 
 class TwinSchema(Schema):
@@ -190,24 +192,26 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         records=tuple(path.parent / record for record in schema.records),
         targets=tuple(Target(**target.model_dump()) for target in schema.targets),
         identification=IdentificationSettings.from_mapping(schema.identification),
-        update=_update_settings(schema),
+        update=_update_settings(schema, path.parent),
     )
 
 
 def _check_update(update: UpdateSchema) -> None:
-    """Refuse unknown laws and impossible bounds now, not after the records have been identified."""
+    """Refuse unknown laws, bounds and priors now, not after the records have been identified."""
     with located(field="laws"):
         known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
     known |= {p.name for p in Extras(tuple(update.dashpots)).parameters}
+    for field, given in (("bounds", update.bounds), ("priors", update.priors)):
+        for name in given:
+            if not any(name == k or name.startswith(f"{k}_") for k in known):
+                raise InputError(
+                    "no law has such a parameter",
+                    field=f"{field}.{name}",
+                    value=name,
+                    allowed=", ".join(sorted(known)),
+                    remedy=did_you_mean(name, sorted(known)),
+                )
     for name, (low, high) in update.bounds.items():
-        if not any(name == k or name.startswith(f"{k}_") for k in known):
-            raise InputError(
-                "no law has such a parameter",
-                field=f"bounds.{name}",
-                value=name,
-                allowed=", ".join(sorted(known)),
-                remedy=did_you_mean(name, sorted(known)),
-            )
         Parameter(name, low, high, "")
 
 
@@ -226,7 +230,12 @@ def _structure(schema: TwinSchema, folder: Path) -> Structure:
     return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
 
 
-def _update_settings(schema: TwinSchema) -> UpdateSettings:
+def _beside(name: str, folder: Path) -> str:
+    """Return a file beside the twin's, or the name of a shipped one."""
+    return str(folder / name) if Path(name).suffix else name
+
+
+def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
     u = schema.update
     first = [schema.support.law] if schema.support.law else []
     return UpdateSettings(
@@ -242,4 +251,6 @@ def _update_settings(schema: TwinSchema) -> UpdateSettings:
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
         dashpots=tuple(dict.fromkeys(u.dashpots)),
+        rotor=None if u.rotor is None else _beside(u.rotor, folder),
+        wind_speed_m_s=u.wind_speed_m_s,
     )

@@ -28,6 +28,7 @@ class Sighting:
     estimate: ModalEstimate
     mac: float
     duration_s: float
+    wind_m_s: float | None = None
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def measure(
         pairs = pair(found.modes, numbered.frequency_hz, shapes)
         for mode, (index, likeness) in pairs.items():
             sightings.setdefault(mode + 1, []).append(
-                Sighting(found.modes[index], likeness, found.duration_s)
+                Sighting(found.modes[index], likeness, found.duration_s, _wind(seen.record))
             )
         number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
@@ -87,6 +88,11 @@ def measure(
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
         tuple(numbers),
     )
+
+
+def _wind(record: Record) -> float | None:
+    value = record.conditions.get("mean_wind_speed_m_s")
+    return None if value is None else float(value)
 
 
 def fuse(sightings: tuple[Sighting, ...]) -> tuple[float, float, float, float]:

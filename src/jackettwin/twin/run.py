@@ -14,13 +14,14 @@ from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
+from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_priors
 from jackettwin.updating import (
     Residuals,
     Target,
     Update,
     family,
+    joint,
     numbered_modes,
-    single,
     support_model,
     update,
 )
@@ -66,10 +67,13 @@ def run_twin(
     found = measure(config, assembly, numbered, step=step) if config.records else None
     measured = _from_records(config, found, labels) if found is not None else _from_targets(config, labels)
     residuals = _residuals(config, measured)
+    wind = mean_wind(config, found)
+    states = operating_states(config, measured, found, residuals, wind)
+    priors = {**rotor_priors(config, assembly, numbered, wind), **config.update.priors}
     updates = []
     for law in laws or config.update.laws:
         step(f"update {law}")
-        updates.append(_update(config, assembly, law, residuals))
+        updates.append(_update(config, assembly, law, states, priors))
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -95,7 +99,13 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
     return 1 + len(config.records) + len(laws or config.update.laws)
 
 
-def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residuals) -> Update:
+def _update(
+    config: TwinConfig,
+    assembly: Assembly,
+    law: str,
+    states: States,
+    priors: Mapping[str, tuple[float, float]],
+) -> Update:
     chosen, s = family(law), config.update
     extras = Extras(s.dashpots)
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
@@ -106,11 +116,11 @@ def _update(config: TwinConfig, assembly: Assembly, law: str, residuals: Residua
             rayleigh=config.rayleigh,
             tie=config.tie,
             bounds=_of_law(s.bounds, own),
-            priors=_of_law(s.priors, own),
-            highest_mode=max(residuals.modes),
+            priors=_of_law(priors, own),
+            highest_mode=max(mode for r, _ in states.values() for mode in r.modes),
             extras=extras,
         )
-        problem = single(model, residuals)
+        problem = joint(model, states)
     except InputError as error:
         raise error.at(file=config.path, field="update" if s.bounds or s.priors else None) from None
     return update(problem, method=s.method, starts=s.starts, particles=s.particles, seed=s.seed)

@@ -76,7 +76,7 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
     multiplied by :math:`\prod_i (1 + σ²/\|z - z_i\|²)`, and the end is polished without that.
     """
     if known:
-        start = _least_squares(problem, start, _deflated(problem, known), tolerance=1e-4)
+        start = _least_squares(problem, start, _deflated(problem, known), tolerance=1e-3, evaluations=60)
     z = start
     for tolerance in (1e-3, 1e-8):
         here = Path(problem).total(z)
@@ -135,6 +135,8 @@ def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -
         jac=jacobian,
         bounds=(problem.prior.low[free], problem.prior.high[free]),
         x_scale="jac",
+        xtol=1e-6,
+        ftol=1e-4,
         max_nfev=40,
     )
     return full(fit.x).copy(), float(2.0 * fit.cost)

@@ -17,6 +17,8 @@ _TRADES = 0.7
 """Correlation from which two parameters trade places."""
 _TRADES = 0.7
 """Correlation from which two parameters trade places."""
+_UNSEEN = 0.5
+"""Standard deviations of the data that a prior standard deviation of a parameter moves, at the median."""
 _DESIGN_POINTS = 48
 """Points of the prior at which the precision to expect is computed."""
 
@@ -103,8 +105,8 @@ def _reasons(problem: Problem, z: FloatArray, ratio: FloatArray) -> list[str]:
         value = correlation[j, partner]
         if ratio[j] < IDENTIFIED:
             reasons.append(f"fixed by {data[strongest]}")
-        elif J[strongest, j] < 1.0:
-            reasons.append("no datum sees it: its whole prior moves none by a standard deviation")
+        elif np.linalg.norm(J[:, j]) < _UNSEEN:
+            reasons.append("no datum sees it: its prior moves them by less than half a standard deviation")
         elif abs(value) >= _TRADES:
             reasons.append(f"trades with {names[partner]} (correlation {value:+.2f})")
         else:

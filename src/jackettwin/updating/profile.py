@@ -28,7 +28,7 @@ class Profile:
     cost: FloatArray
 
 
-def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 15) -> Profile:
+def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 11) -> Profile:
     """Return the profile of one parameter from a solution outwards, each point started from its neighbour."""
     z = np.log(theta)
     low, high = problem.prior.low[parameter], problem.prior.high[parameter]

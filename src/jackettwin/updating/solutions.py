@@ -25,7 +25,7 @@ LOCKED_DAMPER = 0.05
 _MOST = 16
 """Starts are doubled up to this many times their number while a solution has been found only once."""
 _DEFLATED = 6
-"""Descents with the known solutions deflated that must find nothing new."""
+"""Most descents with the known solutions deflated; a quarter of the starts if these are few."""
 _CONFIDENCE = 0.95
 
 
@@ -71,7 +71,9 @@ class Search:
     Attributes
     ----------
     starts : int
-        Descents from scattered points; further ones deflated the known solutions.
+        Descents from scattered points.
+    deflated : int
+        Further descents, with the known solutions deflated.
     unsettled : int
         Descents that ended at no minimum.
     missed_share_95 : float
@@ -80,6 +82,7 @@ class Search:
 
     solutions: tuple[Solution, ...]
     starts: int
+    deflated: int
     unsettled: int
     missed_share_95: float
 
@@ -89,7 +92,7 @@ class Search:
         n = len(self.solutions)
         once = sum(s.found == 1 for s in self.solutions)
         return (
-            f"{self.starts} starts and {_DEFLATED} deflated descents ended in "
+            f"{self.starts} starts and {self.deflated} deflated descents ended in "
             f"{n} distinct solution{'s' if n > 1 else ''}"
             f"{f', {once} of them found only once' if once else ', each found more than once'}; "
             f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
@@ -128,6 +131,7 @@ def search(
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
     if starts < 1:
         raise InputError("at least one start", field="update.starts", value=starts, allowed="≥ 1")
+    deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
     run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
     ends: list[End] = []
@@ -141,14 +145,15 @@ def search(
         if 2 * n > len(points) or (valleys and all(count > 1 for _, count in valleys)):
             break
         n *= 2
-    if method == "least-squares":
-        valleys = _deflate(problem, valleys, points)
+    if deflated:
+        valleys = _deflate(problem, valleys, points[:deflated])
     if not valleys:
         raise NumericalError("no start of the search could follow the target modes")
     valleys = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
     return Search(
         tuple(_solution(problem, settle(problem, end), count) for end, count in valleys),
         len(ends),
+        deflated,
         sum(not end.settled for end in ends),
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / len(ends)),
     )
@@ -169,7 +174,7 @@ def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
 
 def _deflate(problem: Problem, valleys: list[tuple[End, int]], points: FloatArray) -> list[tuple[End, int]]:
     """Return the valleys and what further descents find with them deflated."""
-    for point in points[:_DEFLATED]:
+    for point in points:
         end = descend(problem, point, known=tuple(valley.z for valley, _ in valleys))
         if end.settled:
             valleys = gather(problem, [*valleys, (end, 1)])

@@ -1,0 +1,127 @@
+"""The report's sections on what is known: intervals, verdicts, predictions, whose damping it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.report import figures_posterior as draw
+from jackettwin.report.numbers import UNKNOWN, fixed, scientific
+from jackettwin.report.page import Block, Plot, Table, Text
+from jackettwin.report.summary import shown_update
+from jackettwin.twin import TwinResult
+from jackettwin.updating import Update, law_probability
+from jackettwin.updating.update import Uncertainty
+
+
+def what_is_known(result: TwinResult) -> list[Block]:
+    """Return verdicts, next measurements, posterior, profiles, predictions and the laws' comparison."""
+    known = [(u, u.uncertainty) for u in result.updates if u.uncertainty is not None]
+    if not known:
+        return []
+    blocks: list[Block] = [Text(tuple(f"{u.law}: {_status(k)}" for u, k in known))]
+    for u, k in known:
+        blocks.append(_verdicts(u, k))
+    shown = shown_update(result)
+    if shown.uncertainty is not None:
+        blocks += _of_one(shown, shown.uncertainty)
+    probability = law_probability(result.updates)
+    if probability is not None and len(probability) > 1:
+        caption = "How likely each law is given the data; dashed: before them. Evidence, not fit."
+        blocks.append(Plot("law_comparison", caption, draw.law_comparison(probability)))
+    return blocks
+
+
+def whose_damping(result: TwinResult) -> list[Block]:
+    """Return the damping budget of the update that is shown."""
+    if not result.updates:
+        return []
+    u = shown_update(result)
+    interval = (
+        "bars: 90 % intervals" if u.budget.damping_ratio_interval_90 is not None else "no intervals known"
+    )
+    caption = (
+        f"{u.law}: whose damping each mode has, {interval}. Water is not modelled: its part is not known."
+    )
+    return [Plot("damping_budget", caption, draw.damping_budget(result.measured, u.budget))]
+
+
+def _status(k: Uncertainty) -> str:
+    if k.posterior is None:
+        return f"no posterior: {k.status}. The intervals are Laplace's approximation."
+    p = k.posterior
+    return (
+        f"posterior of {len(p.log_theta)} draws, R-hat at most {p.rhat.max():.3f}, "
+        f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}."
+    )
+
+
+def _verdicts(u: Update, k: Uncertainty) -> Table:
+    rows = [
+        (
+            v.name,
+            v.verdict,
+            v.reason,
+            v.verdict_before,
+            fixed(v.ratio, 2),
+            scientific(float(k.median[i])),
+            f"{scientific(float(k.interval_90[i, 0]))} … {scientific(float(k.interval_90[i, 1]))}",
+        )
+        for i, v in enumerate(k.verdicts)
+    ]
+    columns = (
+        "parameter",
+        "verdict",
+        "why",
+        "expected before",
+        "std after/before [-]",
+        "median",
+        "90 % interval",
+    )
+    return Table(
+        f"{u.law}: what the data tell of each parameter (SI units).", columns, tuple(rows), 4, folded=False
+    )
+
+
+def _of_one(u: Update, k: Uncertainty) -> list[Block]:
+    blocks: list[Block] = [
+        Plot(
+            "posterior",
+            f"{u.law}: draws from the posterior on logarithmic axes; × the best solution, dotted: 90 %.",
+            draw.corner(u, k),
+        ),
+        Plot(
+            "profiles",
+            f"{u.law}: profile likelihoods. A line that stays below the dashed one tells nothing.",
+            draw.profiles(u, k),
+        ),
+        _predictions(u, k),
+    ]
+    if k.next_measurements:
+        rows = [(m.what, fixed(m.gain_nats, 2)) for m in k.next_measurements]
+        caption = f"{u.law}: which further measurement would tell most, by expected information."
+        blocks.append(Table(caption, ("measurement", "gain [nat]"), tuple(rows), 1))
+    return blocks
+
+
+def _predictions(u: Update, k: Uncertainty) -> Table:
+    q = k.predictive
+    rows = [
+        (
+            f"mode {mode}",
+            _span(q.frequency_hz[:, i], 1.0, 4),
+            _span(q.undamped_hz[:, i], 1.0, 4),
+            _span(q.damping_ratio[:, i], 100.0, 2),
+        )
+        for i, mode in enumerate(q.modes)
+    ]
+    columns = ("", "f [Hz]", "undamped f [Hz]", "ζ [%]")
+    return Table(f"{u.law}: predictions, 90 % intervals of the posterior.", columns, tuple(rows), 1)
+
+
+def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:
+    kept = draws[~np.isnan(draws)]
+    if kept.size == 0:
+        return UNKNOWN
+    low, high = factor * np.quantile(kept, [0.05, 0.95])
+    return f"{fixed(low, decimals)} … {fixed(high, decimals)}"
