@@ -1,0 +1,73 @@
+"""The parked rotor in a twin: priors from geometry and wind, damping fitted wind by wind."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import ModalEstimate
+from jackettwin.structure import assemble
+from jackettwin.twin import read_twin
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.measure import Measured, Sighting
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.rotor import mean_wind, operating_states, rotor_priors
+from jackettwin.updating import Residuals, Target, numbered_modes
+
+
+@pytest.fixture(scope="module")
+def config() -> TwinConfig:
+    return read_twin("openfast_pile")
+
+
+def seen(zeta: float, wind: float | None) -> Sighting:
+    estimate = ModalEstimate(0.175, zeta, np.ones(1, complex), 1.0, 0.0, 1.0)
+    return Sighting(estimate, 1.0, 600.0, wind)
+
+
+def measured(label: str, mode: int) -> MeasuredMode:
+    return MeasuredMode(mode, label, 0.175, 0.001, 0.03, 0.005, None, None, True, True)
+
+
+WINDS = ((0.024, 8.0), (0.036, 12.0), (0.034, 12.0), (0.048, 16.0))
+RESIDUALS = Residuals(
+    (Target(1, 0.175, 0.001, 0.03, 0.005), Target(2, 0.178, 0.001, 0.009, 0.002)), relative=False
+)
+MODES = (measured("side_side_1", 1), measured("fore_aft_1", 2))
+
+
+def found(winds: tuple[tuple[float, float | None], ...]) -> Measured:
+    sightings = tuple(seen(*pair) for pair in winds)
+    return Measured((), (), {1: sightings, 2: sightings}, ())
+
+
+def test_side_side_damping_is_fitted_in_each_wind(config: TwinConfig) -> None:
+    assert mean_wind(config, found(WINDS)) == 12.0
+    states = operating_states(config, MODES, found(WINDS), RESIDUALS, 12.0)
+    assert list(states) == ["all winds", "8 m/s", "12 m/s", "16 m/s"]
+    common = states["all winds"][0].targets
+    assert common[0].damping_ratio is None and common[0].frequency_hz == 0.175
+    # no dashpot fore-aft: its damping stays fused
+    assert common[1] == RESIDUALS.targets[1]
+    residuals, factors = states["16 m/s"]
+    assert factors == {"c_side_side": pytest.approx(16.0 / 12.0)}
+    assert [t.mode for t in residuals.targets] == [1]
+    assert states["12 m/s"][0].targets[0].damping_ratio == pytest.approx(0.035, rel=0.01)
+
+
+def test_without_winds_or_dashpots_everything_is_one_state(config: TwinConfig) -> None:
+    unknown = tuple((zeta, None) for zeta, _ in WINDS)
+    assert mean_wind(config, found(unknown)) is None
+    assert list(operating_states(config, MODES, found(unknown), RESIDUALS, None)) == [""]
+    still = replace(config, update=replace(config.update, dashpots=()))
+    assert list(operating_states(still, MODES, found(WINDS), RESIDUALS, 12.0)) == [""]
+
+
+def test_the_prior_is_the_known_aerodynamic_damping(config: TwinConfig) -> None:
+    """Full geometry, IEA 15 MW, shaft locked: 2.42 % at 10 m/s (M 1.12e6 kg, 0.183 Hz, slope 0.012)."""
+    assembly = assemble(config.structure, gravity=True)
+    c, log_std = rotor_priors(config, assembly, numbered_modes(assembly, 2), 10.0)["c_side_side"]
+    zeta = c / (2.0 * 1.12e6 * 2.0 * np.pi * 0.183)
+    # the closed form is 3.5 % high, this twin's mode slopes a little differently
+    assert zeta == pytest.approx(0.0242, rel=0.15)
+    assert log_std == 0.4
