@@ -66,11 +66,19 @@ def test_the_model_meets_the_fitted_frequencies_within_its_model_error(pile: Twi
                 assert abs(f - m.frequency_hz) < 3.0 * std
 
 
-def test_side_side_damping_is_reported_as_more_than_supports_explain(pile: TwinResult) -> None:
+def test_side_side_damping_is_the_rotors(pile: TwinResult) -> None:
+    """True ζ of side-side 1 at 12 m/s: 3.78 %, 0.81 % of it not the rotor's; the mean wind is 11.6 m/s."""
+    for update in pile.updates:
+        low, high = update.budget.damping_ratio_interval_90[0, 2]
+        assert low < 0.0297 * 11.6 / 12.0 < high
+        assert update.budget.share[0, 2] > 0.6 > update.budget.share[1, 2]
+
+
+def test_damping_that_was_not_fitted_is_shown_beside_the_model(pile: TwinResult) -> None:
     for excess in pile.excess:
-        first = next(e for e in excess if e.label == "side_side_1")
-        assert not first.explained
-        assert first.measured > 2.0 * first.model
+        second = next(e for e in excess if e.label == "side_side_2")
+        assert not second.explained
+        assert second.measured > 1.3 * second.model
 
 
 def test_vertical_soil_stiffness_is_identified_near_the_truth(pile: TwinResult) -> None:
