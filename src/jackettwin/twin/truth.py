@@ -67,9 +67,12 @@ def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
     for update in result.updates:
         if update.law != law:
             continue
-        for parameter, value, interval in zip(
-            update.model.parameters, update.best.theta, update.interval_90(), strict=True
+        known = update.uncertainty
+        for i, (parameter, value) in enumerate(
+            zip(update.problem.parameters, update.best.theta, strict=True)
         ):
+            low_high = None if known is None else known.interval_90[i]
+            interval = None if low_high is None else (float(low_high[0]), float(low_high[1]))
             if parameter.name in true:
                 found.append(TrueParameter(law, parameter.name, true[parameter.name], float(value), interval))
     return tuple(found)
