@@ -68,3 +68,15 @@ def test_a_steady_tone_is_taken_out_before_the_fit(tower, rng):
         other = min(disturbed.modes, key=lambda m: abs(m.frequency_hz - mode.frequency_hz))
         # the tone is farther than 6 half bandwidths from every mode
         assert other.damping_ratio == pytest.approx(mode.damping_ratio, rel=0.05)
+
+
+def test_a_fit_that_breaks_down_leaves_what_the_subspace_method_found(tower, rng, monkeypatch):
+    from jackettwin.identification import choice
+
+    def broken(*args, **kwargs):
+        raise np.linalg.LinAlgError("singular")
+
+    monkeypatch.setattr(choice, "refine", broken)
+    result = identify(simulate(tower, rng, sample_rate_hz=5.0))
+    assert any("broke down" in text for text in result.warnings)
+    assert {mode.method for mode in result.modes} == {"ssi-cov"}

@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ssi_cov
+from jackettwin.identification.covariances import covariances
 from jackettwin.identification.mac import mac
-from jackettwin.identification.ssi_cov import frequency_and_damping, hankel, order_poles
+from jackettwin.identification.ssi_cov import (
+    LEAST_SQUARE,
+    balanced_subspace,
+    frequency_and_damping,
+    hankel,
+    order_poles,
+)
+from jackettwin.identification.synthetic import simulate
 
 RATE = 10.0
 
@@ -57,3 +65,27 @@ def test_each_order_equals_a_plain_least_squares_solution(rng):
         ours = np.linalg.eigvals(subspace.state_matrix(order))
         # same least squares problem by QR and by pseudo-inverse
         np.testing.assert_allclose(np.sort_complex(ours), np.sort_complex(plain), rtol=0, atol=1e-6)
+
+
+def test_poles_do_not_depend_on_how_the_hankel_matrix_is_factorised(tower):
+    y = simulate(tower, np.random.default_rng(5), sample_rate_hz=5.0).data
+    h = hankel(covariances(y / y.std(axis=1, keepdims=True), 40), 20)
+    short, full = (balanced_subspace(h, 8, 30, factors=kept) for kept in (False, True))
+    assert short.factors is None
+    for one, other in zip(order_poles(short, range(1, 31)), order_poles(full, range(1, 31)), strict=True):
+        # squaring the matrix costs half of the digits of its smallest singular value at most
+        np.testing.assert_allclose(
+            np.sort_complex(one.eigenvalues), np.sort_complex(other.eigenvalues), rtol=0, atol=1e-6
+        )
+
+
+def test_a_nearly_singular_hankel_matrix_is_not_squared(rng):
+    f, *_, lagged = exact_covariances(30, rng)
+    h = hankel(lagged, 15)
+    values = np.linalg.svd(h, compute_uv=False)
+    assert (values[5] / values[0]) ** 2 < LEAST_SQUARE
+    assert balanced_subspace(h, 3, 6, factors=False).factors is not None
+    assert balanced_subspace(h, 3, 4, factors=False).factors is None
+    (poles,) = order_poles(balanced_subspace(h, 3, 4, factors=False), [4])
+    got_f, _ = frequency_and_damping(poles.eigenvalues, RATE)
+    np.testing.assert_allclose(np.sort(got_f), f, rtol=1e-6)

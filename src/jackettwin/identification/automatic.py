@@ -152,15 +152,20 @@ def _ssi_cov_poles(
 ) -> list[OrderPoles]:
     resolved = ready.settings
     n_lags = 2 * resolved.block_rows
+    known = settings.blocks >= FEWEST_BLOCKS and (settings.weighting, settings.state_matrix) == (
+        "br",
+        "shift",
+    )
     subspace = ssi_cov(
         covariances(ready.y, n_lags)[:, :, ready.references],
         block_rows=resolved.block_rows,
         max_order=resolved.orders[-1],
         weighting=settings.weighting,
         state_matrix=settings.state_matrix,
+        factors=known,
     )
     orders = subspace.orders(resolved.orders)
-    if settings.blocks < FEWEST_BLOCKS or (settings.weighting, settings.state_matrix) != ("br", "shift"):
+    if not known:
         return order_poles(subspace, orders)
     blocks = block_covariances(ready.y, n_lags, settings.blocks)[..., ready.references]
     shared = propagation(subspace, block_deviations(blocks, resolved.block_rows))

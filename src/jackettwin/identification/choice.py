@@ -65,10 +65,11 @@ def chosen_modes(
     warnings: tuple[str, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
-        refined = None
+        refined: Refined | None = None
+        obstacle: str | None = "gaps remain in the record"
         if np.isnan(y).mean(axis=1).max() <= MOST_MISSING:
             refined = _refined(judged, open_to, sure, y, scale, channels, tones_hz, resolved)
-        obstacle = _obstacle(refined)
+            obstacle = _obstacle(refined)
         if refined is None or obstacle is not None:
             warnings = (f"modes not refined: {obstacle}",)
         else:
@@ -79,7 +80,7 @@ def chosen_modes(
 def _obstacle(refined: Refined | None) -> str | None:
     """Return why the refined modes are not to be used, or None."""
     if refined is None:
-        return "gaps remain in the record"
+        return "the arithmetic of the fit broke down"
     if not refined.converged:
         return "the fit of the spectral model did not converge"
     if refined.lack_of_fit > MOST_LACK_OF_FIT:
@@ -99,18 +100,22 @@ def _refined(
     channels: Sequence[Channel],
     tones_hz: Collection[float],
     resolved: ResolvedSettings,
-) -> Refined:
+) -> Refined | None:
+    """Return the refined candidates, or None if the arithmetic of the fit broke down."""
     modes = [judged[i].mode for i in open_to]
-    return refine(
-        without_tones(y, resolved.sample_rate_hz, tones_hz),
-        resolved.sample_rate_hz,
-        guarded_band_hz(resolved),
-        frequency_hz=np.array([m.frequency_hz for m in modes]),
-        damping_ratio=np.array([m.damping_ratio for m in modes]),
-        shapes=np.array([m.mode_shape.real for m in modes]) / scale,
-        sure=sure,
-        derivatives=[DERIVATIVES[c.quantity] for c in channels],
-    )
+    try:
+        return refine(
+            without_tones(y, resolved.sample_rate_hz, tones_hz),
+            resolved.sample_rate_hz,
+            guarded_band_hz(resolved),
+            frequency_hz=np.array([m.frequency_hz for m in modes]),
+            damping_ratio=np.array([m.damping_ratio for m in modes]),
+            shapes=np.array([m.mode_shape.real for m in modes]) / scale,
+            sure=sure,
+            derivatives=[DERIVATIVES[c.quantity] for c in channels],
+        )
+    except np.linalg.LinAlgError:
+        return None
 
 
 def _numbers(

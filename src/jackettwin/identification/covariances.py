@@ -10,6 +10,8 @@ from jackettwin.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 
+SEGMENT_WINDOWS = 8
+"""Length of the transforms in lag windows."""
 LEAST_PAIRS = 0.2
 """A lag must keep this share of its sample pairs, else gaps have eaten the record."""
 
@@ -101,12 +103,22 @@ def block_covariances(y: FloatArray, n_lags: int, n_blocks: int) -> FloatArray:
 
 
 def _lag_products(late: FloatArray, early: FloatArray, n_lags: int) -> FloatArray:
-    """Return Σ_t late_{t+i} early_tᵀ for i = 0 … n_lags: (n_lags + 1, n_late, n_early)."""
-    size = fft.next_fast_len(max(late.shape[1], early.shape[1]) + n_lags, real=True)
-    spectrum_late = fft.rfft(late, size, axis=1)
-    spectrum_early = spectrum_late if late is early else fft.rfft(early, size, axis=1)
-    out = np.empty((n_lags + 1, late.shape[0], early.shape[0]))
-    for j in range(early.shape[0]):
-        product = spectrum_late * spectrum_early[j].conj()
-        out[:, :, j] = fft.irfft(product, size, axis=1)[:, : n_lags + 1].T
-    return out
+    """Return Σ_t late_{t+i} early_tᵀ for i = 0 … n_lags: (n_lags + 1, n_late, n_early).
+
+    The record is cut into segments of a few lag windows whose cross spectra are added up before the one
+    inverse transform.
+    """
+    size = fft.next_fast_len(min(max(SEGMENT_WINDOWS * n_lags, 1024), early.shape[1] + n_lags), real=True)
+    hop = size - n_lags
+    n_segments = -(-early.shape[1] // hop)
+    spectrum_early = fft.rfft(_segments(early, n_segments, hop, hop), size, axis=2)
+    spectrum_late = fft.rfft(_segments(late, n_segments, hop, size), axis=2)
+    cross = spectrum_late.transpose(2, 0, 1) @ spectrum_early.conj().transpose(2, 1, 0)
+    return np.ascontiguousarray(fft.irfft(cross, size, axis=0)[: n_lags + 1])
+
+
+def _segments(y: FloatArray, n_segments: int, hop: int, length: int) -> FloatArray:
+    """Return segments that start a hop apart, zero beyond the end: (n_channels, n_segments, length)."""
+    needed = (n_segments - 1) * hop + length
+    padded = np.pad(y[:, :needed], ((0, 0), (0, max(needed - y.shape[1], 0))))
+    return np.lib.stride_tricks.sliding_window_view(padded, length, axis=1)[:, ::hop]

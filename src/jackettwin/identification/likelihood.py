@@ -52,6 +52,8 @@ TOLERANCE = 0.02
 """Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
 LEAST_GAIN = 0.01
 """… or the log-likelihood gains less than this."""
+KEPT_SHARE = 1e-4
+"""Share of the added power kept in the Cramér-Rao bound, against rounding."""
 FIT_BLOCKS = 40
 """Blocks of lines over which the misfit is summed."""
 ZETA_RANGE = (1e-5, 0.5)
@@ -79,6 +81,8 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
     """Climb to the maximum of the posterior by damped Fisher scoring, in at most so many steps."""
     prior = prior_of(data, p)
     value, lift = objective(data, prior, p), 1e-3
+    if not np.isfinite(value):
+        return Climb(p, value, False, 0)
     for iteration in range(1, most + 1):
         score, fisher = scoring(data, prior, p)
         trial_value = -np.inf
@@ -142,11 +146,12 @@ def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray
     model = expected(data, p, dither)
     white = _inverse_root(model.matrix)
     share = np.einsum("kab,kb,kcb->kac", white, dither, white.conj(), optimize=True)
-    # E0 whitened is R Rᴴ; V is the inner product of Rᴴ G R
-    root = np.linalg.cholesky(np.eye(white.shape[1]) - share)
+    # E0 whitened is R Rᴴ, singular but for the noise; V is the inner product of Rᴴ G R
+    values, vectors = np.linalg.eigh(np.eye(white.shape[1]) - share)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
     middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
     bread = _inverse(scoring(data, prior, p)[1])
-    bare = expected(data, p)
+    bare = expected(data, p, KEPT_SHARE * dither)
     clear = _information(data, p, bare, _inverse_root(bare.matrix))
     clear[np.diag_indices(len(clear))] += prior.precision
     _add_coherence_prior(p, np.zeros(len(clear)), clear)
@@ -182,7 +187,8 @@ def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
     dither = known_power(data)
     try:
         root = np.linalg.cholesky(p.gamma)
-        factor = np.linalg.cholesky(expected(data, p, dither).matrix)
+        with np.errstate(over="ignore", invalid="ignore"):
+            factor = np.linalg.cholesky(expected(data, p, dither).matrix)
     except np.linalg.LinAlgError:
         return -np.inf
     log_det = 2.0 * np.log(np.einsum("kaa->ka", factor).real).sum(axis=1)

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 from scipy import linalg
+from scipy.linalg import lapack
 
+from jackettwin.errors import NumericalError
 from jackettwin.identification.mac import normalised
 
 if TYPE_CHECKING:
@@ -21,8 +23,27 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+LEAST_SQUARE = 1e-9
+"""Smallest squared singular value over the largest for which H Hᵀ is as good as H: poles agree to 1e-7."""
+
 Weighting = Literal["br", "cva"]
 StateMatrix = Literal["shift", "one-lag"]
+
+
+@dataclass(frozen=True)
+class Factors:
+    """All singular values and vectors of a Hankel matrix.
+
+    Attributes
+    ----------
+    left, right : (n_rows, n_rows), (n_columns, n_columns)
+        Vectors in columns.
+    singular_values : (n_singular,)
+    """
+
+    left: FloatArray
+    singular_values: FloatArray
+    right: FloatArray
 
 
 @dataclass(frozen=True)
@@ -38,8 +59,8 @@ class Subspace:
         Upper triangle and right side of the equation for the state matrix; order n uses the leading blocks.
     basis : (n_rows − n_channels, n_max) or None
         Orthonormal basis of the observability matrix without its last block row (shift structure only).
-    left, singular_values, right_vectors : (n_rows, n_rows), (n_singular,), (n_columns, n_columns)
-        Full factorisation of the weighted Hankel matrix.
+    factors : Factors or None
+        Full factorisation of the weighted Hankel matrix, which uncertainty needs.
     """
 
     observability: FloatArray
@@ -47,9 +68,7 @@ class Subspace:
     upper: FloatArray
     right: FloatArray
     basis: FloatArray | None
-    left: FloatArray
-    singular_values: FloatArray
-    right_vectors: FloatArray
+    factors: Factors | None
 
     def state_matrix(self, order: int) -> FloatArray:
         """Return A of the given order, (order, order)."""
@@ -108,6 +127,7 @@ def ssi_cov(
     max_order: int,
     weighting: Weighting = "br",
     state_matrix: StateMatrix = "shift",
+    factors: bool = True,
 ) -> Subspace:
     r"""Factorise the covariances once for all model orders.
 
@@ -122,47 +142,75 @@ def ssi_cov(
     ----------
     covariances : (2·block_rows + 1, n_channels, n_channels)
         Lags 0 … 2·block_rows.
+    factors : bool
+        Whether the full factorisation, which uncertainty needs, is kept.
     """
     n_channels = covariances.shape[1]
     h = hankel(covariances, block_rows)
     if weighting == "br" and state_matrix == "shift":
-        return balanced_subspace(h, n_channels, max_order)
+        return balanced_subspace(h, n_channels, max_order, factors=factors)
     w1_inverse, w2_inverse = _weights(covariances, block_rows, weighting)
-    u, s, vt = linalg.svd(_divide(h, w1_inverse, w2_inverse), check_finite=False)
-    n = min(max_order, len(s) - n_channels)
-    u1, root = u[:, :n], np.sqrt(s[:n])
+    all_ = _factors(_divide(h, w1_inverse, w2_inverse))
+    n = min(max_order, len(all_.singular_values) - n_channels)
+    u1, root = all_.left[:, :n], np.sqrt(all_.singular_values[:n])
     observability = np.asarray(u1 * root if w1_inverse is None else w1_inverse @ (u1 * root))
     if state_matrix == "shift":
-        return _shift(observability, n_channels, u, s, vt)
+        return _shift(observability, n_channels, all_)
     shifted = _divide(hankel(covariances, block_rows, 2), w1_inverse, w2_inverse)
-    right = np.asarray((u1.T @ shifted @ vt[:n].T) / np.outer(root, root))
-    return Subspace(observability, n_channels, np.eye(n), right, None, u, s, vt.T)
+    right = np.asarray((u1.T @ shifted @ all_.right[:, :n]) / np.outer(root, root))
+    return Subspace(observability, n_channels, np.eye(n), right, None, all_)
 
 
-def balanced_subspace(h: FloatArray, n_channels: int, max_order: int) -> Subspace:
-    """Factorise a Hankel matrix with unit weights and take A from the shift structure."""
+def balanced_subspace(h: FloatArray, n_channels: int, max_order: int, *, factors: bool = True) -> Subspace:
+    """Factorise a Hankel matrix with unit weights and take A from the shift structure.
+
+    Parameters
+    ----------
+    factors : bool
+        Whether the full factorisation, which uncertainty needs, is kept. Without it the leading left
+        vectors come from H Hᵀ, where that loses no digit that matters.
+    """
+    n = min(max_order, min(h.shape) - n_channels)
+    if not factors:
+        values, vectors = linalg.eigh(
+            h @ h.T, subset_by_index=[len(h) - n, len(h) - 1], check_finite=False, driver="evr"
+        )
+        if values[0] > LEAST_SQUARE * values[-1]:
+            observability = vectors[:, ::-1] * values[::-1] ** 0.25
+            return _shift(np.asarray(observability), n_channels, None)
+    all_ = _factors(h)
+    return _shift(np.asarray(all_.left[:, :n] * np.sqrt(all_.singular_values[:n])), n_channels, all_)
+
+
+def _factors(h: FloatArray) -> Factors:
     u, s, vt = linalg.svd(h, check_finite=False)
-    n = min(max_order, len(s) - n_channels)
-    return _shift(np.asarray(u[:, :n] * np.sqrt(s[:n])), n_channels, u, s, vt)
+    return Factors(u, s, vt.T)
 
 
-def _shift(
-    observability: FloatArray, n_channels: int, u: FloatArray, s: FloatArray, vt: FloatArray
-) -> Subspace:
+def _shift(observability: FloatArray, n_channels: int, factors: Factors | None) -> Subspace:
     q, r = linalg.qr(observability[:-n_channels], mode="economic", check_finite=False)
     right = np.asarray(q.T @ observability[n_channels:])
-    return Subspace(observability, n_channels, np.asarray(r), right, np.asarray(q), u, s, vt.T)
+    return Subspace(observability, n_channels, np.asarray(r), right, np.asarray(q), factors)
 
 
 def order_poles(subspace: Subspace, orders: Sequence[int]) -> list[OrderPoles]:
     """Return the oscillating poles of each model order and their shapes at the sensors."""
     out = []
     for order in orders:
-        eigenvalues, vectors = linalg.eig(subspace.state_matrix(order), check_finite=False)
-        keep = eigenvalues.imag > 0.0
-        shapes = (subspace.output_matrix(order) @ vectors[:, keep]).T
-        out.append(OrderPoles(order, eigenvalues[keep], normalised(shapes)))
+        eigenvalues, vectors = _oscillating(subspace.state_matrix(order))
+        shapes = (subspace.output_matrix(order) @ vectors).T
+        out.append(OrderPoles(order, eigenvalues, normalised(np.asarray(shapes))))
     return out
+
+
+def _oscillating(a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the eigenvalues of positive imaginary part and their vectors in columns."""
+    real, imag, _, vectors, info = lapack.dgeev(a, compute_vl=0, overwrite_a=1)
+    if info != 0:
+        raise NumericalError(f"eigenvalues of order {len(a)} did not converge")
+    k = np.flatnonzero(imag > 0.0)
+    # LAPACK stores the vector of a conjugate pair as real and imaginary part in two columns
+    return np.asarray(real[k] + 1j * imag[k]), np.asarray(vectors[:, k] + 1j * vectors[:, k + 1])
 
 
 def frequency_and_damping(eigenvalues: ComplexArray, sample_rate_hz: float) -> tuple[FloatArray, FloatArray]:

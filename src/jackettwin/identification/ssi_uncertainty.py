@@ -42,6 +42,8 @@ class Propagation:
     """Everything about the perturbed factorisation that all model orders share."""
 
     subspace: Subspace
+    left: FloatArray
+    """U, (n_rows, n_rows)."""
     columns: FloatArray
     """(n_rows, n_blocks, n_max): Uᵀ ΔH V₁."""
     rows: FloatArray
@@ -112,7 +114,7 @@ def stacked_hankel(
 
 def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propagation:
     """Form what all orders share. Unit weights and shift structure only."""
-    if subspace.basis is None:
+    if subspace.basis is None or subspace.factors is None:
         raise InputError(
             "uncertainty needs the shift structure",
             field="state_matrix",
@@ -120,7 +122,7 @@ def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propaga
             allowed="shift",
             remedy="set state_matrix to shift",
         )
-    u, v = subspace.left, subspace.right_vectors
+    u, v = subspace.factors.left, subspace.factors.right
     n_max, n_channels = subspace.observability.shape[1], subspace.n_channels
     n_rows = len(u)
     columns, rows = [], []
@@ -128,10 +130,12 @@ def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propaga
         columns.append(u.T @ (delta @ v[:, :n_max]))
         crossed = v.T @ (delta.T @ u[:, :n_max])
         rows.append(np.pad(crossed[:n_rows], ((0, max(n_rows - len(crossed), 0)), (0, 0))))
-    sigma = np.pad(subspace.singular_values, (0, n_rows - len(subspace.singular_values)))
+    s = subspace.factors.singular_values
+    sigma = np.pad(s, (0, n_rows - len(s)))
     q, o = subspace.basis, subspace.observability
     return Propagation(
         subspace=subspace,
+        left=u,
         columns=np.stack(columns, axis=1),
         rows=np.stack(rows, axis=1),
         squares=(sigma[:n_max], sigma),
@@ -192,7 +196,7 @@ def _one_order(
     gap = mu - eigenvalues[:, None]
     gap[chosen, index] = np.inf
     delta_mu = modal[chosen, :, index].T
-    delta_shape = _real_stack_times(subspace.left[:n_channels, n:], e)
+    delta_shape = _real_stack_times(shared.left[:n_channels, n:], e)
     delta_shape += _stack_times(np.asarray(raw_shapes, dtype=complex), modal / gap[:, None, :])
     return replace(
         bare,

@@ -265,6 +265,14 @@ def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any
         "mpc": m.mpc,
         "method": m.method,
         "status": m.status,
+        "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
+        "least_relative_std": {
+            "damping_ratio_long_data": m.damping_ratio_cov_limit,
+            "frequency_cramer_rao": None if m.cramer_rao_log_std is None else float(m.cramer_rao_log_std[0]),
+            "damping_ratio_cramer_rao": None
+            if m.cramer_rao_log_std is None
+            else float(m.cramer_rao_log_std[1]),
+        },
     }
     if channels is not None:
         document["mode_shape"] = {
