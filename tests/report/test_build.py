@@ -12,7 +12,7 @@ import pytest
 from jackettwin.report import Plot, Section, Text, build_gallery, build_report
 from jackettwin.report.build import report_sections
 from jackettwin.report.numbers import frequency, percent
-from jackettwin.report.tables import records_table
+from jackettwin.report.tables_records import records_table
 from jackettwin.twin import TwinResult
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.report import figures_posterior as draw
-from jackettwin.report.numbers import UNKNOWN, fixed, scientific
+from jackettwin.report.numbers import UNKNOWN, fixed, scientific, words
 from jackettwin.report.page import Block, Plot, Table, Text
 from jackettwin.report.summary import shown_update
 from jackettwin.twin import TwinResult
@@ -24,7 +26,7 @@ def what_is_known(result: TwinResult) -> list[Block]:
         blocks.append(_verdicts(u, k))
     shown = shown_update(result)
     if shown.uncertainty is not None:
-        blocks += _of_one(shown, shown.uncertainty)
+        blocks += _of_one(shown, shown.uncertainty, {m.mode: m.label for m in result.measured})
     probability = law_probability(result.updates)
     if probability is not None and len(probability) > 1:
         caption = "How likely each law is given the data; dashed: before them. Evidence, not fit."
@@ -83,7 +85,7 @@ def _verdicts(u: Update, k: Uncertainty) -> Table:
     )
 
 
-def _of_one(u: Update, k: Uncertainty) -> list[Block]:
+def _of_one(u: Update, k: Uncertainty, labels: Mapping[int, str]) -> list[Block]:
     blocks: list[Block] = [
         Plot(
             "posterior",
@@ -95,7 +97,7 @@ def _of_one(u: Update, k: Uncertainty) -> list[Block]:
             f"{u.law}: profile likelihoods. A line that stays below the dashed one tells nothing.",
             draw.profiles(u, k),
         ),
-        _predictions(u, k),
+        _predictions(u, k, labels),
     ]
     if k.next_measurements:
         rows = [(m.what, fixed(m.gain_nats, 2)) for m in k.next_measurements]
@@ -104,18 +106,18 @@ def _of_one(u: Update, k: Uncertainty) -> list[Block]:
     return blocks
 
 
-def _predictions(u: Update, k: Uncertainty) -> Table:
+def _predictions(u: Update, k: Uncertainty, labels: Mapping[int, str]) -> Table:
     q = k.predictive
     rows = [
         (
-            f"mode {mode}",
+            words(labels.get(mode, f"mode {mode}")),
             _span(q.frequency_hz[:, i], 1.0, 4),
             _span(q.undamped_hz[:, i], 1.0, 4),
             _span(q.damping_ratio[:, i], 100.0, 2),
         )
         for i, mode in enumerate(q.modes)
     ]
-    columns = ("", "f [Hz]", "undamped f [Hz]", "ζ [%]")
+    columns = ("mode", "f [Hz]", "undamped f [Hz]", "ζ [%]")
     return Table(f"{u.law}: predictions, 90 % intervals of the posterior.", columns, tuple(rows), 1)
 
 

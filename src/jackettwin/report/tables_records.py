@@ -1,0 +1,141 @@
+"""Tables of records and of the modes identified in them: nothing is computed here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.report.figures_identification import damping_interval, frequency_interval
+from jackettwin.report.figures_record import plain
+from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, scientific, words
+from jackettwin.report.page import Table
+from jackettwin.twin import Observation, TwinResult
+from jackettwin.twin.result import MeasuredMode
+
+
+def quality_table(seen: Observation) -> Table:
+    """Return how good each channel of a record is."""
+    channels = {channel.name: channel for channel in seen.record.channels}
+    rows = []
+    for q in seen.quality.channels:
+        findings = [f.text for f in seen.quality.findings if f.channel == q.name]
+        rms, unit = UNKNOWN, ""
+        if q.name in channels:
+            unit = plain(channels[q.name].unit)
+            y = seen.record.data[seen.record.channel_names.index(q.name)]
+            rms = scientific(float(np.nanstd(y))) if np.isfinite(y).any() else UNKNOWN
+        lost = [fixed(100.0 * share, 2) for share in (q.gap_share, q.spike_share, q.clipped_share)]
+        rows.append((q.name, "; ".join(findings) or "no fault found", unit, fixed(q.score, 2), rms, *lost))
+    columns = (
+        "channel",
+        "findings",
+        "unit",
+        "score [-]",
+        "std [unit]",
+        "missing [%]",
+        "spikes [%]",
+        "clipped [%]",
+    )
+    return Table(f"{seen.record.name}: quality of every channel.", columns, tuple(rows), 3)
+
+
+def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:
+    """Return the identified modes of a record with their 95 % intervals."""
+    rows = [
+        (
+            words(name) if name else "not in the model",
+            frequency(m.frequency_hz, m.frequency_std_hz),
+            interval(frequency_interval(m), 1.0, 4),
+            percent(m.damping_ratio, m.damping_ratio_std),
+            interval(damping_interval(m), 100.0, 2),
+            "–" if m.unrefined is None else percent(m.unrefined.damping_ratio, m.unrefined.damping_ratio_std),
+            _limits(m),
+            fixed(m.mpc, 2),
+            fixed(100.0 * m.order_share, 0),
+            m.method,
+        )
+        for name, m in zip(names, found.modes, strict=True)
+    ]
+    columns = (
+        "mode",
+        "f [Hz]",
+        "95 % of f [Hz]",
+        "ζ [%]",
+        "95 % of ζ [%]",
+        "ζ by SSI [%]",
+        "least ±\n[% of ζ]",
+        "MPC\n[-]",
+        "orders\n[%]",
+        "method",
+    )
+    caption = f"Modes identified in {', '.join(found.records)}."
+    if not folded:
+        caption += (
+            " Least ±: what a record of this length allows at best, by the long-data law √(1/2πζfT) and by "
+            "the Cramér-Rao bound of the fitted spectrum."
+        )
+    return Table(caption, columns, tuple(rows), folded=folded)
+
+
+def _limits(m: ModalEstimate) -> str:
+    bounds = (
+        m.damping_ratio_cov_limit,
+        m.cramer_rao_log_std[1] if m.cramer_rao_log_std is not None else None,
+    )
+    return " / ".join(UNKNOWN if bound is None else fixed(100.0 * bound, 0) for bound in bounds)
+
+
+def records_table(result: TwinResult) -> Table:
+    """Return every named mode in every record: which is which, and how far the records agree."""
+    found = [
+        dict(zip(names, seen.modes, strict=True))
+        for names, seen in zip(result.names, result.identifications, strict=True)
+    ]
+    rows = [
+        (
+            words(m.label),
+            *(
+                f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}" if mode else UNKNOWN
+                for mode in (modes.get(m.label) for modes in found)
+            ),
+        )
+        for m in result.measured
+    ]
+    records = [name for seen in result.identifications for name in seen.records]
+    caption = "Which mode is which in every record: f [Hz] / ζ [%]; a dash where it was not found."
+    return Table(caption, ("mode", *records), tuple(rows))
+
+
+def rejected_table(found: Identification) -> Table:
+    """Return the candidates that were not accepted, each with its reason."""
+    rows = [(r.reason, frequency(r.frequency_hz), percent(r.damping_ratio)) for r in found.rejected]
+    caption = f"{count(len(rows), 'candidate').capitalize()} not accepted as a mode, with the reasons"
+    return Table(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
+
+
+def pairing_table(measured: Sequence[MeasuredMode], unpaired: Sequence[ModalEstimate]) -> Table:
+    """Return which identified mode is which of the model."""
+    rows = [
+        (
+            words(m.label),
+            str(m.mode),
+            frequency(m.frequency_hz),
+            fixed(m.mac, 3),
+            "yes" if m.fits_frequency else "no",
+            "yes" if m.fits_damping else "no",
+        )
+        for m in measured
+    ]
+    rows += [
+        ("no counterpart in the model", UNKNOWN, frequency(e.frequency_hz), UNKNOWN, "no", "no")
+        for e in unpaired
+    ]
+    columns = ("mode of the model", "no.", "identified f [Hz]", "likeness [-]", "f fitted", "ζ fitted")
+    return Table(
+        "Which identified mode is which: the modal assurance criterion at the sensors; for modes closer than "
+        "6 % in frequency, whose measured shapes mix, the share of the shape in the plane of the pair.",
+        columns,
+        tuple(rows),
+    )

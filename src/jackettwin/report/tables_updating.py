@@ -1,0 +1,154 @@
+"""Tables of measured against updated: every number is the result's, none is computed but differences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
+from jackettwin.report.page import Table
+from jackettwin.report.summary import shown_update
+from jackettwin.twin import TwinResult
+from jackettwin.twin.truth import TrueMode, TrueParameter
+from jackettwin.updating import Update
+
+
+def key_table(result: TwinResult) -> Table:
+    """Return measured against updated, one row a mode."""
+    columns = ["mode", "no.", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
+    columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
+    rows = []
+    for i, m in enumerate(result.measured):
+        row = [words(m.label), str(m.mode), frequency(m.frequency_hz, m.frequency_std_hz)]
+        row += [_mark(frequency(float(u.modes.frequency_hz[i])), m.fits_frequency) for u in result.updates]
+        row += [percent(m.damping_ratio, m.damping_ratio_std)]
+        row += [_mark(percent(float(u.modes.damping_ratio[i])), m.fits_damping) for u in result.updates]
+        rows.append(tuple(row))
+    caption = (
+        "Measured and updated modes. ± is one standard deviation; values in brackets took no part in the fit."
+    )
+    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
+
+
+def _mark(text: str, fitted: bool) -> str:
+    return text if fitted or text == UNKNOWN else f"({text})"
+
+
+def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
+    """Return the true modes that the records state beside the measured and the updated ones."""
+    shown = [shown_update(result)] if result.updates else []
+    columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in shown)]
+    columns += ["true\nζ [%]", "measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in shown)]
+    place = {m.label: i for i, m in enumerate(result.measured)}
+    rows = []
+    for true in stated:
+        i = place[true.label]
+        m = result.measured[i]
+        row = [words(true.label), frequency(true.frequency_hz), frequency(m.frequency_hz, m.frequency_std_hz)]
+        row += [frequency(float(u.modes.frequency_hz[i])) for u in shown]
+        row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
+        row += [percent(float(u.modes.damping_ratio[i])) for u in shown]
+        rows.append(tuple(row))
+    caption = "What is known to be true of these records, the mean over them, beside what was found."
+    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
+
+
+def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
+    """Return the true parameters of the support beside the updated ones."""
+    rows = [
+        (
+            p.law,
+            p.name,
+            f"{p.true:.4g}",
+            f"{p.value:.4g}",
+            UNKNOWN if p.interval_90 is None else f"{p.interval_90[0]:.4g} – {p.interval_90[1]:.4g}",
+            UNKNOWN if p.covered is None else "yes" if p.covered else "no",
+        )
+        for p in parameters
+    ]
+    columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
+    return Table("True parameters of the support, SI units.", columns, tuple(rows), text_columns=2)
+
+
+def damped_undamped_table(result: TwinResult) -> Table:
+    """Return damped and undamped frequencies side by side, law by law."""
+    columns = ["mode"]
+    for u in result.updates:
+        flag = ", locked" if u.best.locked_damper else ""
+        columns += [f"{u.law}{flag}\ndamped [Hz]", "\nundamped [Hz]"]
+    rows = []
+    for i, m in enumerate(result.measured):
+        pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
+        rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
+    caption = "Damped and undamped frequencies of the full updated model."
+    return Table(caption, tuple(columns), tuple(rows))
+
+
+def parameter_table(updates: Sequence[Update]) -> Table:
+    """Return the updated support parameters."""
+    rows = []
+    for u in updates:
+        known = u.uncertainty
+        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
+            span, verdict = UNKNOWN, UNKNOWN
+            if known is not None:
+                low, high = known.interval_90[i]
+                span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
+            text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
+            rows.append((u.law, p.name, p.unit, text, scientific(float(value)), span))
+    columns = ("law", "parameter", "unit", "verdict", "value", "90 % interval")
+    return Table(
+        "Updated supports. The verdict compares what the data say with the width of the bounds.",
+        columns,
+        tuple(rows),
+        4,
+    )
+
+
+def solutions_table(result: TwinResult, u: Update) -> Table:
+    """Return every distinct solution of a law, with the modes that took part in the fit."""
+    fitted = [m for m in result.measured if m.fits_frequency or m.fits_damping]
+    chosen = [m in fitted for m in result.measured]
+    columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in fitted))
+    rows, marked = [], set()
+    for i, s in enumerate(u.solutions):
+        if s.locked_damper:
+            marked.add(i)
+        notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["reported"] * (s is u.best)
+        notes += ["locked damper"] * s.locked_damper
+        values = [
+            f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
+            for p, v in zip(u.problem.parameters, s.theta, strict=True)
+        ]
+        modes = zip(s.frequency_hz[chosen], s.undamped_hz[chosen], s.damping_ratio[chosen], strict=True)
+        cells = [f"{frequency(float(f))}\n{frequency(float(f0))}\n{percent(float(z))}" for f, f0, z in modes]
+        head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
+        rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))
+    caption = (
+        f"{u.law}: every distinct solution of the search, cheapest first, and how many starts ended there; "
+        "* on a bound."
+    )
+    return Table(caption, columns, tuple(rows), 2, frozenset(marked))
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "-" else f" {unit}"
+
+
+def excess_table(result: TwinResult) -> Table:
+    """Return the damping that the updated supports do not explain."""
+    rows = []
+    for u, excess in zip(result.updates, result.excess, strict=True):
+        for e in excess:
+            verdict = "within two standard deviations" if e.explained else "not explained"
+            rows.append(
+                (
+                    u.law,
+                    words(e.label),
+                    verdict,
+                    percent(e.measured, e.measured_std),
+                    percent(e.model),
+                    percent(e.measured - e.model),
+                )
+            )
+    columns = ("law", "mode", "verdict", "measured ζ [%]", "model ζ [%]", "excess [%]")
+    return Table("Damping left out of the fit, beside what steel and support give.", columns, tuple(rows), 3)
