@@ -17,12 +17,12 @@ DEFAULT_SCENARIO = "parked"
 
 @click.command("simulate")
 @click.argument("scenario", default=DEFAULT_SCENARIO)
-@click.option("--out", required=True, help="The record to write: NAME.parquet, NAME.json beside it.")
+@click.option("--out", help="The record, NAME.json beside it; default out/NAME.parquet.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def simulate_command(scenario: str, out: str, as_json: bool) -> None:
+def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     """Simulate SCENARIO, a shipped name or a YAML file, and write its record."""
     chosen = read_scenario(scenario)
-    path = _record_path(out)
+    path = _record_path(out or f"out/{chosen.name}")
     done = simulate(chosen)
     write_record(done.record, path)
     if as_json:

@@ -9,7 +9,7 @@ import click
 import numpy as np
 
 from jackettwin.cli.check import nodal_force
-from jackettwin.cli.console import output
+from jackettwin.cli.console import output, print_json
 from jackettwin.cli.modes import rayleigh_option
 from jackettwin.errors import InputError
 from jackettwin.loads.morison import Coefficients
@@ -37,7 +37,9 @@ _MOST_USED = 1.5
 
 @click.command("view")
 @click.argument("structure")
-@click.option("--out", required=True, type=click.Path(dir_okay=False, path_type=Path), help="FILE.html")
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), help="FILE.html; default out/NAME.html"
+)
 @click.option("--support", help="As for `jackettwin modes`.")
 @click.option(
     "--modes", "number", default=8, show_default=True, type=click.IntRange(0, 40), help="How many modes."
@@ -66,9 +68,10 @@ _MOST_USED = 1.5
     metavar="NODE=FX,FY,FZ",
     help="Beside the self-weight, for utilisation.",
 )
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def view_command(
     structure: str,
-    out: Path,
+    out: Path | None,
     support: str | None,
     number: int,
     rayleigh: str | None,
@@ -78,9 +81,10 @@ def view_command(
     wave: str | None,
     record: Path | None,
     forces: tuple[str, ...],
+    as_json: bool,
 ) -> None:
     """Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record."""
-    if out.suffix.lower() not in (".html", ".htm"):
+    if out is not None and out.suffix.lower() not in (".html", ".htm"):
         raise InputError("unknown format of a page", field="--out", value=out.name, allowed=".html")
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
@@ -117,7 +121,11 @@ def view_command(
         flooded,
         (f"{books.mass_kg / 1e3:,.0f} t, {len(chosen.members)} members",),
     )
-    output.print(f"wrote {write_view(view, out)}")
+    path = write_view(view, out or Path("out") / f"{chosen.name}.html")
+    if as_json:
+        print_json({"page": str(path), "motions": [motion.name for motion in motions]})
+    else:
+        output.print(f"wrote {path}")
 
 
 def _band(text: str) -> tuple[float, float, float]:

@@ -1,6 +1,6 @@
 """A jacket as a superelement for OpenFAST, and what plain Craig-Bampton would have made of it.
 
-Run: python examples/07_superelement.py
+Run: python examples/06_superelement.py
 """
 
 from pathlib import Path
