@@ -159,6 +159,13 @@ def test_steady_wind_and_yaw_are_not_dead(tower: SimpleNamespace) -> None:
     assert not assess(replace(with_row(record, 7, np.zeros(12_000)), channels=channels)).findings
 
 
+def test_a_record_that_is_not_stationary_is_flagged(tower: SimpleNamespace) -> None:
+    record = tower.record(16)
+    grown = replace(record, data=record.data * np.exp(np.linspace(0.0, 8.0, record.data.shape[1])))
+    assert {f.fault for f in assess(grown).findings} >= {"unsteady"}
+    assert "unsteady" not in {f.fault for f in assess(record).findings}
+
+
 def test_faults_lower_the_score(tower: SimpleNamespace) -> None:
     record = tower.record(14)
     row = record.data[0].copy()

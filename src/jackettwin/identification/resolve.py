@@ -11,6 +11,7 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
+from jackettwin.records.record import SMALLEST
 
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
@@ -29,6 +30,8 @@ GUARD = 1.25
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
+FEWEST_SAMPLES = 64
+"""Fewer make no spectrum."""
 DEAD = 1e-9
 """A channel is dead when it moves less than this share of its largest value."""
 
@@ -45,7 +48,7 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
             warnings.append(
                 f"channel {channel.name} left out: {1.0 - len(finite) / max(len(y), 1):.0%} missing"
             )
-        elif np.ptp(finite) <= DEAD * np.abs(finite).max():
+        elif np.ptp(finite) <= max(DEAD * np.abs(finite).max(), SMALLEST):
             warnings.append(f"channel {channel.name} left out: constant")
         else:
             alive.append(channel.name)
@@ -62,6 +65,7 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
 
 def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedSettings, Record]:
     """Choose what the settings leave open, and decimate."""
+    _check_samples(record)
     low, high = _band(record, settings)
     rate = settings.sample_rate_hz
     if rate is None:
@@ -108,6 +112,18 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
             remedy="choose a lower band or use a record of higher rate",
         )
     return low, high
+
+
+def _check_samples(record: Record) -> None:
+    n = record.data.shape[1]
+    if n < FEWEST_SAMPLES:
+        raise InputError(
+            "record too short to identify anything",
+            field="data",
+            value=f"{n} samples",
+            allowed=f"≥ {FEWEST_SAMPLES} samples",
+            remedy="use a longer record",
+        )
 
 
 def _check_duration(record: Record, low: float, window_s: float) -> None:

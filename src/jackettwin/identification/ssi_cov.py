@@ -25,6 +25,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 LEAST_SQUARE = 1e-9
 """Smallest squared singular value over the largest for which H Hᵀ is as good as H: poles agree to 1e-7."""
+RANK = 1e-12
+"""A singular value counts when it is more than this share of the largest."""
 
 Weighting = Literal["br", "cva"]
 StateMatrix = Literal["shift", "one-lag"]
@@ -179,6 +181,8 @@ def balanced_subspace(h: FloatArray, n_channels: int, max_order: int, *, factors
             observability = vectors[:, ::-1] * values[::-1] ** 0.25
             return _shift(np.asarray(observability), n_channels, None)
     all_ = _factors(h)
+    # noise-free signals have a rank, beyond which there is nothing to divide by
+    n = min(n, int(np.sum(all_.singular_values > RANK * all_.singular_values[0])))
     return _shift(np.asarray(all_.left[:, :n] * np.sqrt(all_.singular_values[:n])), n_channels, all_)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
+from jackettwin.records.record import RATES_HZ
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -64,6 +65,7 @@ def regularise(
     """
     keep = _increasing(times_s)
     t, y = times_s[keep] - times_s[keep][0], data[:, keep]
+    _refuse_absurd(t)
     index, step, offset = _grid(t)
     if index[-1] > MOST_GRID_POINTS * len(t):
         raise InputError(
@@ -100,6 +102,18 @@ def _increasing(times_s: FloatArray) -> npt.NDArray[np.intp]:
             remedy="remove the time column and state sample_rate_hz, or sort the file",
         )
     return keep
+
+
+def _refuse_absurd(t: FloatArray) -> None:
+    rate = (len(t) - 1) / t[-1]
+    if not RATES_HZ[0] <= rate <= RATES_HZ[1]:
+        raise InputError(
+            "time stamps are no logger's",
+            field="time",
+            value=f"{rate:g} stamps a second",
+            allowed=f"{RATES_HZ[0]:g} to {RATES_HZ[1]:g}",
+            remedy="check the unit of the time column",
+        )
 
 
 def _grid(t: FloatArray) -> tuple[npt.NDArray[np.int64], float, float]:

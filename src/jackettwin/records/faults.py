@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from jackettwin.records.filters import bridge
+from jackettwin.records.record import SMALLEST
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -26,6 +27,8 @@ LEAST_AT_RAIL = 5
 """Fewer samples at the extreme say nothing."""
 STUCK_RUN_RATIO = 50.0
 """Run of equal values, in units of the channel's usual run, that is a frozen reading."""
+MOST_UNSTEADY = 1e9
+"""What is said of a signal that is silent but for one part."""
 
 
 def runs(mask: BoolArray) -> npt.NDArray[np.int64]:
@@ -41,7 +44,9 @@ def runs(mask: BoolArray) -> npt.NDArray[np.int64]:
 def is_constant(y: FloatArray) -> bool:
     """Tell whether no two samples differ by more than rounding, or there are fewer than two."""
     finite = y[np.isfinite(y)]
-    return len(finite) < 2 or bool(np.ptp(finite) <= 4.0 * np.spacing(np.abs(finite).max()))
+    if len(finite) < 2:
+        return True
+    return bool(np.ptp(finite) <= max(4.0 * np.spacing(np.abs(finite).max()), SMALLEST))
 
 
 def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
@@ -128,3 +133,23 @@ def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
         return 0.0
     scale = float(np.std(fast[finite]))
     return float(np.ptp(slow[finite])) / scale if scale > 0.0 else 0.0
+
+
+def unsteadiness(y: FloatArray, n_parts: int) -> float:
+    """Return the rms of the loudest part of a channel over the median of its parts; 1 if it is steady.
+
+    Parameters
+    ----------
+    y : (n_samples,)
+        Zero mean; NaN marks missing samples.
+
+    Examples
+    --------
+    >>> unsteadiness(np.array([1.0, -1.0, 1.0, -1.0, 5.0, -5.0]), 3)
+    5.0
+    """
+    parts = [part[np.isfinite(part)] for part in np.array_split(y, n_parts)]
+    rms = np.array([np.sqrt(np.mean(part**2)) for part in parts if len(part)])
+    if len(rms) < n_parts or not rms.max() > 0.0:
+        return 1.0
+    return float(min(rms.max() / max(float(np.median(rms)), SMALLEST), MOST_UNSTEADY))

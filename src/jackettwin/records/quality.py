@@ -29,6 +29,10 @@ DRIFT_CYCLES = 5.0
 """Drift is what is slower than this many cycles a record."""
 DRIFT_RATIO = 3.0
 """Range of the slow part over the rms of the rest, beyond which it is drift."""
+PARTS = 10
+"""Parts of a record whose rms are compared."""
+UNSTEADY_RATIO = 10.0
+"""Rms of the loudest part over the median of all, beyond which a record is not stationary."""
 WEAK_RATIO = 1e-4
 """Rms over the median of the channels of one quantity, below which a sensor is hardly alive."""
 JITTER = 0.05
@@ -40,8 +44,8 @@ class Finding:
     """One fault: where, which, in a sentence, and whether ``repair`` removes it.
 
     ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
-    ``stuck``, ``held``, ``drift``, ``sign``, ``unreadable``, ``clock``; ``channel`` is None if it concerns
-    the record.
+    ``stuck``, ``held``, ``drift``, ``unsteady``, ``sign``, ``unreadable``, ``clock``; ``channel`` is None
+    if it concerns the record.
     """
 
     fault: str
@@ -64,6 +68,7 @@ class ChannelQuality:
     stuck_share: float
     hold_length: int
     drift_ratio: float
+    unsteadiness: float
     swapped_sign: bool
 
 
@@ -156,6 +161,7 @@ def _judge(
         stuck_share=float(stuck.sum()) / n,
         hold_length=held,
         drift_ratio=drift,
+        unsteadiness=faults.unsteadiness(np.where(spikes, np.nan, slow_free), PARTS) if look else 1.0,
         swapped_sign=bool(sign),
     )
     findings = list(_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
@@ -205,6 +211,9 @@ def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
     if _drifts(channel, q):
         text = f"drifts over {q.drift_ratio:.1f} times the rms of its vibration; slow part removed"
         yield Finding("drift", text, name, True)
+    if q.unsteadiness > UNSTEADY_RATIO:
+        text = f"is {q.unsteadiness:.3g} times stronger in one tenth of the record than usual: not stationary"
+        yield Finding("unsteady", text, name)
 
 
 def _sign_findings(name: str, sign: bool | None) -> Iterator[Finding]:

@@ -18,6 +18,10 @@ FloatArray = npt.NDArray[np.float64]
 
 LARGEST = 1e15
 """No sensor reads more than this in SI units; what does is damage, and would overflow when squared."""
+SMALLEST = 1e-30
+"""No sensor resolves less than this in SI units: what varies by less does not vary."""
+RATES_HZ = (1e-9, 1e9)
+"""Sample rates a logger may have."""
 
 
 @dataclass(frozen=True)
@@ -73,12 +77,12 @@ class Record:
                 allowed=f"({len(self.channels)}, n_samples)",
                 remedy="give one row a channel",
             )
-        if not np.isfinite(self.sample_rate_hz) or self.sample_rate_hz <= 0.0:
+        if not RATES_HZ[0] <= self.sample_rate_hz <= RATES_HZ[1]:
             raise InputError(
                 "sample rate must be a positive number",
                 field="sample_rate_hz",
                 value=self.sample_rate_hz,
-                allowed="> 0",
+                allowed=f"{RATES_HZ[0]:g} to {RATES_HZ[1]:g}",
                 remedy="state the logger's rate in Hz",
             )
 

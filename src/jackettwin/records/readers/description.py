@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from difflib import get_close_matches
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
+NUMBERS = ("mean_wind_speed_m_s", "wind_speed_m_s", "yaw_deg")
+"""Conditions that are numbers or not known (null)."""
 CHANNEL_METADATA = "channel_metadata"
 """Key of a record's metadata under which further keys of its channels are kept."""
 
@@ -40,7 +43,7 @@ class ChannelEntry(Schema):
 class _File(Schema):
     model_config = ConfigDict(extra="allow")
 
-    sample_rate_hz: float | None = Field(default=None, gt=0.0)
+    sample_rate_hz: float | None = Field(default=None, gt=0.0, strict=True)
     start_utc: str | None = None
     channels: dict[str, ChannelEntry] | None = None
     conditions: dict[str, Any] = Field(default_factory=dict)
@@ -81,7 +84,7 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
         If it is not JSON, a known key has a wrong value, or a key is a near miss of a known one.
     """
     try:
-        data = json.loads(text, parse_constant=_refuse_constant)
+        data = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_repeats)
     except (ValueError, RecursionError) as error:
         raise InputError(
             f"is not JSON: {error}", file=file, allowed="a JSON object", remedy="check commas and quotes"
@@ -96,6 +99,7 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
         error.remedy = error.remedy or "correct the value; docs/reference/records.md shows the format"
         raise
     _refuse_near_misses(entries, "", file)
+    _refuse_words(entries.conditions, file)
     for name, entry in (entries.channels or {}).items():
         _refuse_near_misses(entry, f"channels.{name}.", file)
     further = {
@@ -177,6 +181,29 @@ def _plain(value: Any) -> Any:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is not a JSON number")
+
+
+def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse a key given twice, of which JSON would silently keep the last."""
+    for key, count in Counter(key for key, _ in pairs).items():
+        if count > 1:
+            raise ValueError(f"key {key!r} is given {count} times")
+    return dict(pairs)
+
+
+def _refuse_words(conditions: Mapping[str, Any], file: Path | str | None) -> None:
+    for name in NUMBERS:
+        value = conditions.get(name)
+        if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+            continue
+        raise InputError(
+            "is not a number",
+            file=file,
+            field=f"conditions.{name}",
+            value=value,
+            allowed="a number, or null if it is not known",
+            remedy="correct or remove it",
+        )
 
 
 def _refuse_near_misses(model: Schema, place: str, file: Path | str | None) -> None:

@@ -126,5 +126,6 @@ def _refuse_unreadable(path: Path) -> None:
     except (OSError, ValueError) as error:
         problem = f"cannot be opened ({error})"
     if problem:
-        near = [p.name for p in path.parent.glob(f"*{path.suffix}")] if path.parent.is_dir() else []
+        beside = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else ()
+        near = [p.name for p in beside if p.name != path.name]
         raise InputError(problem, file=path, remedy=did_you_mean(path.name, near) or "check the path")

@@ -243,8 +243,13 @@ def _direction_in(name: str, kind: str) -> tuple[float, float, float]:
 
 
 def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    length = float(np.linalg.norm(direction))
-    if length == 0.0:
+    largest = max(map(abs, direction))
+    if not largest < float("inf"):
+        raise InputError(
+            "is not a direction", field="direction", value=direction, allowed="three finite numbers"
+        )
+    if largest == 0.0:
         return (0.0, 0.0, 0.0)
-    x, y, z = (float(part) / length for part in direction)
+    length = float(np.linalg.norm(np.array(direction) / largest))
+    x, y, z = (float(part) / largest / length for part in direction)
     return (x, y, z)
