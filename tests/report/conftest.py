@@ -100,7 +100,7 @@ def complete(targets_only: TwinResult, record: Record, observation: Observation)
         )
         for m, mode in zip(targets_only.measured, found.modes[:2], strict=False)
     )
-    excess = (DampingExcess("side_side_1", 0.0456, 0.004, 0.0123, False),)
+    excess = (DampingExcess("side_side_1", 0.0456, 0.004, 0.0123),)
     return replace(
         targets_only,
         name="from_record",

@@ -92,7 +92,7 @@ def test_page_shows_the_numbers_of_the_result(report: Path, complete: TwinResult
     for undamped in update.modes.undamped_hz:
         assert frequency(float(undamped)) in text
     excess = complete.excess[0][0]
-    assert percent(excess.measured) in text and percent(excess.model) in text
+    assert percent(excess.measured) in text and percent(excess.support) in text
 
 
 def test_names_are_escaped(report: Path) -> None:

@@ -74,11 +74,22 @@ def test_side_side_damping_is_the_rotors(pile: TwinResult) -> None:
         assert update.budget.share[0, 2] > 0.6 > update.budget.share[1, 2]
 
 
-def test_damping_that_was_not_fitted_is_shown_beside_the_model(pile: TwinResult) -> None:
+def test_damping_no_support_explains_is_the_rotors_and_said_so(pile: TwinResult) -> None:
+    for excess in pile.excess:
+        e = {e.label: e for e in excess}
+        # 3.4 % measured, 0.6 % from steel and soil
+        assert not e["side_side_1"].explained and e["side_side_1"].carried
+        assert e["side_side_1"].excess > 0.02
+    row = run_document(pile, report=None)["updates"][0]["unexplained_damping"][0]
+    assert row["label"] == "side_side_1" and row["carried_by"] == "rotor"
+
+
+def test_the_rotors_part_of_the_second_side_side_mode_is_predicted(pile: TwinResult) -> None:
+    """Not fitted: the blades turn with the tower's slope there. True: 2.92 %, without wind 1.30 %."""
     for excess in pile.excess:
         second = next(e for e in excess if e.label == "side_side_2")
-        assert not second.explained
-        assert second.measured > 1.3 * second.model
+        assert abs(second.measured - second.support - second.rotor) < 2.0 * second.measured_std
+        assert second.rotor == pytest.approx(0.0162 * 11.6 / 12.0, rel=0.25)
 
 
 def test_vertical_soil_stiffness_is_identified_near_the_truth(pile: TwinResult) -> None:

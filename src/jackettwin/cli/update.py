@@ -59,15 +59,19 @@ def print_updates(result: TwinResult) -> None:
                 f"{100 * zeta:.2f}",
             )
         output.print(table)
+        fitted = {m.label for m in result.measured if m.fits_frequency}
         for e in excess:
-            if not e.explained:
+            if e.label in fitted and not e.explained:
                 output.print(f"  {e.label}: {_unexplained(e)}")
     for warning in result.warnings:
         output.print(f"warning: {warning}")
 
 
-def _unexplained(excess: DampingExcess) -> str:
-    points = 100 * abs(excess.measured - excess.model)
-    if excess.measured > excess.model:
-        return f"{points:.2f} % of critical that no support can explain"
-    return f"{points:.2f} % of critical less than the model has: its steel damping is too high there"
+def _unexplained(e: DampingExcess) -> str:
+    points = f"{100 * abs(e.excess):.2f} % of critical"
+    if e.excess < 0.0:
+        return f"{points} less than the model has: its steel damping is too high there"
+    if e.carried:
+        return f"{points} that no support can explain: the rotor's dashpot carries it ({100 * e.rotor:.2f} %)"
+    part = f", {100 * e.rotor:.2f} % of it the rotor's" if e.rotor > 0.1 * e.excess else ""
+    return f"{points} that no support can explain{part}"

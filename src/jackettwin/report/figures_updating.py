@@ -117,25 +117,42 @@ def damped_undamped(measured: Sequence[MeasuredMode], updates: Sequence[Update])
 
 
 def damping_excess(law: str, rows: Sequence[DampingExcess]) -> go.Figure:
-    """Draw measured damping beside what the updated support gives, for modes left out of the fit."""
+    """Draw measured damping beside what the updated support gives, and the rotor."""
     names = [words(row.label) for row in rows]
     spans = [_span(row.measured, row.measured_std) for row in rows]
     figure = go.Figure()
     figure.add_bar(
         x=names,
-        y=[100.0 * row.model for row in rows],
+        y=[100.0 * row.support for row in rows],
         name=f"steel and support ({law})",
+        offsetgroup="model",
         marker={
             "color": style.law_look(law).colour,
             "line": {"color": style.INK, "width": 0.8},
             "pattern": {"shape": "/"},
         },
-        hovertemplate="%{y:.2f} %<extra>model</extra>",
+        hovertemplate="%{y:.2f} %<extra>steel and support</extra>",
     )
+    if any(row.rotor > 1e-6 for row in rows):
+        figure.add_bar(
+            x=names,
+            y=[100.0 * row.rotor for row in rows],
+            base=[100.0 * row.support for row in rows],
+            name="rotor's dashpot",
+            offsetgroup="model",
+            marker={
+                "color": style.BLUE,
+                "line": {"color": style.INK, "width": 0.8},
+                "pattern": {"shape": "x"},
+            },
+            customdata=[100.0 * row.rotor for row in rows],
+            hovertemplate="%{customdata:.2f} %<extra>rotor</extra>",
+        )
     figure.add_bar(
         x=names,
         y=[100.0 * row.measured for row in rows],
         name="measured, 95 %",
+        offsetgroup="measured",
         error_y=_bars(spans),
         marker={"color": style.PALE, "line": {"color": style.INK, "width": 0.8}},
         hovertemplate="%{y:.2f} %<extra>measured</extra>",

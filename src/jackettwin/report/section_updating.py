@@ -123,17 +123,17 @@ def _surface(u: Update) -> Plot:
 
 
 def unexplained_damping(result: TwinResult) -> list[Block]:
-    """Return the damping that the fit left out, beside what the model gives."""
+    """Return measured damping beside what steel, support and rotor give."""
     if not any(result.excess):
         return []
     u = shown_update(result)
     rows = result.excess[result.updates.index(u)]
     text = (
-        "These modes' damping took no part in the fit. What exceeds steel and support has another source: "
-        "for side-side modes of a parked rotor, above all its aerodynamics. It is reported, not forced into "
-        "the soil."
+        "What exceeds steel and support has another source: for side-side modes of a parked rotor, above all "
+        "its aerodynamics. It is given to the rotor's dashpot, if the twin has one, and reported, not forced "
+        "into the soil."
     )
-    caption = f"Measured damping beside what steel and the updated support ({u.law}) give."
+    caption = f"Measured damping beside what steel, the updated support ({u.law}) and the rotor give."
     return [
         Text((text,)),
         Plot("damping_excess", caption, compare.damping_excess(u.law, rows)),

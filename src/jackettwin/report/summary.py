@@ -95,14 +95,17 @@ def _excess(result: TwinResult) -> list[str]:
     if not result.updates:
         return []
     rows = result.excess[result.updates.index(shown_update(result))] if any(result.excess) else ()
-    open_ = [row for row in rows if not row.explained and row.measured > row.model]
-    if not open_:
-        return []
-    texts = [
-        f"{words(r.label)} measures ζ {percent(r.measured)} % where the model has {percent(r.model)} %"
-        for r in open_
-    ]
-    return [
-        f"{listed(texts).capitalize()}: no support at the feet explains this, another source must "
-        "(the rotor, the water)."
-    ]
+    said = []
+    for carried, source in (
+        (True, "the rotor's dashpot does"),
+        (False, "another source must (the rotor, the water)"),
+    ):
+        texts = [
+            f"{words(r.label)} measures ζ {percent(r.measured)} % where steel and support give "
+            f"{percent(r.support)} %"
+            for r in rows
+            if not r.explained and r.excess > 0.0 and r.carried == carried
+        ]
+        if texts:
+            said.append(f"{listed(texts).capitalize()}: no support at the feet explains this, {source}.")
+    return said

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
 from jackettwin.report.summary import shown_update
-from jackettwin.twin import TwinResult
+from jackettwin.twin import DampingExcess, TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
 
@@ -136,19 +136,32 @@ def _unit(unit: str) -> str:
 
 def excess_table(result: TwinResult) -> Table:
     """Return the damping that the updated supports do not explain."""
-    rows = []
-    for u, excess in zip(result.updates, result.excess, strict=True):
-        for e in excess:
-            verdict = "within two standard deviations" if e.explained else "not explained"
-            rows.append(
-                (
-                    u.law,
-                    words(e.label),
-                    verdict,
-                    percent(e.measured, e.measured_std),
-                    percent(e.model),
-                    percent(e.measured - e.model),
-                )
-            )
-    columns = ("law", "mode", "verdict", "measured ζ [%]", "model ζ [%]", "excess [%]")
-    return Table("Damping left out of the fit, beside what steel and support give.", columns, tuple(rows), 3)
+    rows = [
+        (
+            u.law,
+            words(e.label),
+            _verdict(e),
+            percent(e.measured, e.measured_std),
+            percent(e.support),
+            percent(e.rotor),
+            percent(e.excess),
+        )
+        for u, excess in zip(result.updates, result.excess, strict=True)
+        for e in excess
+    ]
+    columns = (
+        "law",
+        "mode",
+        "verdict",
+        "measured ζ [%]",
+        "steel and support [%]",
+        "rotor's dashpot [%]",
+        "excess over steel and support [%]",
+    )
+    return Table("Measured damping beside what steel, support and rotor give.", columns, tuple(rows), 3)
+
+
+def _verdict(e: DampingExcess) -> str:
+    if e.explained:
+        return "support explains it"
+    return "the rotor's dashpot carries it" if e.carried else "not explained"

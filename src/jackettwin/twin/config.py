@@ -47,7 +47,9 @@ class UpdateSettings:
     dashpots: tuple[str, ...] = ()
     """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``, at the mean wind speed."""
     rotor: str | None = None
-    """A windIO file or shipped rotor from which the dashpots' priors follow."""
+    """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
+    shaft: Literal["locked", "free"] = "locked"
+    """Whether the parked rotor turns with the nacelle."""
     wind_speed_m_s: float | None = None
     """Instead of the mean over the records' conditions."""
 

@@ -81,9 +81,11 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
                 "label": e.label,
                 "measured_damping_ratio": e.measured,
                 "measured_damping_ratio_std": e.measured_std,
-                "damping_ratio": e.model,
-                "excess": e.measured - e.model,
+                "support_damping_ratio": e.support,
+                "rotor_damping_ratio": e.rotor,
+                "excess": e.excess,
                 "explained": e.explained,
+                "carried_by": "rotor" if e.carried else None,
             }
             for e in result.excess[index]
         ],

@@ -120,6 +120,7 @@ class UpdateSchema(Schema):
     model_error: list[ModelErrorSchema] = []
     dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
     rotor: str | None = None
+    shaft: Literal["locked", "free"] = "locked"
     wind_speed_m_s: Positive | None = None
 
 
@@ -252,5 +253,6 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
         dashpots=tuple(dict.fromkeys(u.dashpots)),
         rotor=None if u.rotor is None else _beside(u.rotor, folder),
+        shaft=u.shaft,
         wind_speed_m_s=u.wind_speed_m_s,
     )

@@ -45,14 +45,40 @@ class MeasuredMode:
 
 @dataclass(frozen=True)
 class DampingExcess:
-    """Measured damping of a mode that took no part in the fit, beside what the updated support gives it."""
+    """Measured damping of a mode beside what the steel and the updated support give it.
+
+    Attributes
+    ----------
+    support : float
+        The steel's and the soil's part of the model's ratio.
+    rotor : float
+        The part of the nacelle's dashpots; 0 without them.
+    """
 
     label: str
     measured: float
     measured_std: float | None
-    model: float
-    explained: bool
-    """Whether the difference is within two standard deviations."""
+    support: float
+    rotor: float = 0.0
+
+    @property
+    def excess(self) -> float:
+        """What no support explains; negative if the steel's damping is too high."""
+        return self.measured - self.support
+
+    @property
+    def explained(self) -> bool:
+        """Whether the support explains the measured ratio: within two standard deviations, or 5 %."""
+        return abs(self.excess) <= self._allowance
+
+    @property
+    def carried(self) -> bool:
+        """Whether the rotor's dashpots carry what the support does not explain."""
+        return not self.explained and abs(self.excess - self.rotor) <= self._allowance
+
+    @property
+    def _allowance(self) -> float:
+        return 0.05 * self.measured if self.measured_std is None else 2.0 * self.measured_std
 
 
 @dataclass(frozen=True)
@@ -72,7 +98,7 @@ class TwinResult:
     updates : tuple of Update
         One a law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
-        For each update, the modes whose damping was left out of the fit.
+        For each update, every mode with measured damping.
     assumptions, warnings : tuple of str
         Sentences for the report.
     """

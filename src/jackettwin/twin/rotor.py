@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from jackettwin.loads import read_rotor
 from jackettwin.loads.rotor import parked_closed_form
@@ -16,9 +18,12 @@ from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Residuals, Target
 from jackettwin.updating.extras import DASHPOTS
 
+FloatArray = npt.NDArray[np.float64]
+
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
 """How far the closed form may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
-_DIRECTIONS = {"fore_aft": "c_fore_aft", "side_side": "c_side_side"}
+_SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
+"""The tower top's DOFs that a rotor straight in the wind couples with each other."""
 
 States = dict[str, tuple[Residuals, Mapping[str, float]]]
 
@@ -32,24 +37,47 @@ def mean_wind(config: TwinConfig, found: Measured | None) -> float | None:
     return float(np.mean(known)) if known and len(known) == len(winds) else None
 
 
-def rotor_priors(
-    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float | None
-) -> dict[str, tuple[float, float]]:
-    """Return lognormal priors of the nacelle's dashpots from the rotor's geometry and the wind.
+@dataclass(frozen=True)
+class RotorDamping:
+    """What the rotor's geometry says of the nacelle's dashpots; empty without a rotor.
 
-    A dashpot c on the tower top takes from the first mode in its direction what the rotor's matrix does:
-    c = φᵀCφ/φ_j² with the mode's translations and rotations φ there.
+    A dashpot of c N·s/m takes from the first bending mode in its direction what c on the tower top's
+    translation would; the rotor's 6×6 matrix says what it takes from all others: in the second bending mode
+    the blades turn with the tower's slope.
+
+    Attributes
+    ----------
+    patterns : {dashpot: (6, 6)}
+    priors : {dashpot: median and standard deviation of ln c}
+        Known only with the wind.
     """
-    if config.update.rotor is None or wind is None:
-        return {}
-    C = parked_closed_form(read_rotor(config.update.rotor)[0], wind)
+
+    patterns: Mapping[str, FloatArray]
+    priors: Mapping[str, tuple[float, float]]
+
+
+def rotor_damping(
+    config: TwinConfig, assembly: Assembly, numbered: UndampedModes, wind: float | None
+) -> RotorDamping:
+    """Return the dashpots' patterns S and priors.
+
+    C = cS with c = φᵀCφ/φ_j², φ the tower top's motion in the first mode of that direction.
+    """
+    if config.update.rotor is None:
+        return RotorDamping({}, {})
+    per_wind = parked_closed_form(read_rotor(config.update.rotor)[0], 1.0, shaft=config.update.shaft)
     top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
-    priors = {}
+    patterns, priors = {}, {}
     for name in config.update.dashpots:
-        axis = DASHPOTS[name]
+        axis, dofs = DASHPOTS[name], np.ix_(_SIDES[name], _SIDES[name])
+        C = np.zeros((6, 6))
+        C[dofs] = per_wind[dofs]
         phi = top[:, int(np.argmax(np.abs(top[axis, :2])))]
-        priors[name] = (float(phi @ C @ phi / phi[axis] ** 2), _LOG_STD[name])
-    return priors
+        c = float(phi @ C @ phi / phi[axis] ** 2)
+        patterns[name] = C / c
+        if wind is not None:
+            priors[name] = (c * wind, _LOG_STD[name])
+    return RotorDamping(patterns, priors)
 
 
 def operating_states(
@@ -64,10 +92,13 @@ def operating_states(
     A parked rotor's damping is proportional to the wind (thin aerofoils at the same angle), so that one
     unknown serves every wind. The model's error stays where it is common to all winds: in the first state.
     """
-    if found is None or wind is None or residuals.relative or not config.update.dashpots:
+    if found is None or wind is None or residuals.relative or "c_side_side" not in config.update.dashpots:
         return {"": (residuals, {})}
-    apart = [m.mode for m in measured if m.fits_damping and _dashpot(m.label) in config.update.dashpots]
-    apart = [mode for mode in apart if mode in (1, 2) and len(_winds(found.sightings[mode])) > 1]
+    # fore-aft the rotor's drag is a small part: there its growth drowns in the records' scatter
+    wanted = [m.mode for m in measured if m.fits_damping and m.label.startswith("side_side")]
+    # a dashpot without the rotor's pattern touches the first modes alone
+    touched = (1, 2) if config.update.rotor is None else (1, 2, 4, 5)
+    apart = [mode for mode in wanted if mode in touched and len(_winds(found.sightings[mode])) > 1]
     if not apart:
         return {"": (residuals, {})}
     common = tuple(
@@ -85,10 +116,6 @@ def operating_states(
         factors = {name: v / wind for name in config.update.dashpots}
         states[f"{v:g} m/s"] = (Residuals(tuple(targets), relative=False), factors)
     return states
-
-
-def _dashpot(label: str) -> str | None:
-    return next((name for start, name in _DIRECTIONS.items() if label.startswith(start)), None)
 
 
 def _winds(seen: tuple[Sighting, ...]) -> set[float]:

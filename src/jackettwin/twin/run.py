@@ -14,7 +14,7 @@ from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
-from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_priors
+from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
 from jackettwin.updating import (
     Residuals,
     Target,
@@ -69,11 +69,13 @@ def run_twin(
     residuals = _residuals(config, measured)
     wind = mean_wind(config, found)
     states = operating_states(config, measured, found, residuals, wind)
-    priors = {**rotor_priors(config, assembly, numbered, wind), **config.update.priors}
+    rotor = rotor_damping(config, assembly, numbered, wind)
+    priors = {**rotor.priors, **config.update.priors}
+    extras = Extras(config.update.dashpots, patterns=rotor.patterns)
     updates = []
     for law in laws or config.update.laws:
         step(f"update {law}")
-        updates.append(_update(config, assembly, law, states, priors))
+        updates.append(_update(config, assembly, law, states, priors, extras))
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -105,9 +107,9 @@ def _update(
     law: str,
     states: States,
     priors: Mapping[str, tuple[float, float]],
+    extras: Extras,
 ) -> Update:
     chosen, s = family(law), config.update
-    extras = Extras(s.dashpots)
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
     try:
         model = support_model(
@@ -212,11 +214,8 @@ def _residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residu
 
 
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:
-    rows = []
-    for m, model in zip(measured, result.modes.damping_ratio, strict=True):
-        if m.fits_damping or m.damping_ratio is None or np.isnan(model):
-            continue
-        std = m.damping_ratio_std
-        explained = std is not None and abs(m.damping_ratio - model) <= 2.0 * std
-        rows.append(DampingExcess(m.label, m.damping_ratio, std, float(model), explained))
-    return tuple(rows)
+    return tuple(
+        DampingExcess(m.label, m.damping_ratio, m.damping_ratio_std, float(steel + soil), float(rotor))
+        for m, (steel, soil, rotor) in zip(measured, result.budget.damping_ratio, strict=True)
+        if m.damping_ratio is not None and not np.isnan(steel)
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
@@ -34,10 +35,13 @@ class Extras:
         Of ``DASHPOTS``.
     rayleigh : bool
         Whether ratio and frequency of the steel's smallest damping are free.
+    patterns : {dashpot: (6, 6)}
+        What a dashpot of 1 N·s/m is on the top node's translations and rotations; without, a translation's.
     """
 
     dashpots: tuple[str, ...] = ()
     rayleigh: bool = False
+    patterns: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in self.dashpots:
@@ -58,7 +62,7 @@ class Extras:
         for name, c in zip(self.dashpots, values, strict=False):
             direction = np.zeros((6, 6))
             direction[DASHPOTS[name], DASHPOTS[name]] = 1.0
-            springs.append(Spring(node, direction, Prony(c=float(c))))
+            springs.append(Spring(node, self.patterns.get(name, direction), Prony(c=float(c))))
         return tuple(springs)
 
     def steel(self, fixed: Rayleigh, values: FloatArray) -> Rayleigh:
