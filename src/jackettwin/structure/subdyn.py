@@ -242,7 +242,7 @@ def _reactions(deck: _Deck) -> tuple[Reaction, ...]:
 
 
 def _is_file_name(word: str) -> bool:
-    return bool(word) and not word.startswith(("!", "-"))
+    return bool(word) and not word.startswith(("!", "-", "#"))
 
 
 Matrix = tuple[tuple[float, ...], ...]
