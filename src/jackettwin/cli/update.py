@@ -5,8 +5,10 @@ from __future__ import annotations
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import number, output, print_json, progress
+from jackettwin.cli.console import output, print_json, progress
 from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import Update
 
 DEFAULT_TWIN = "openfast_pile"
 
@@ -28,43 +30,59 @@ def update_command(twin: str, law: str | None, as_json: bool) -> None:
 
 
 def print_updates(result: TwinResult) -> None:
-    """Print one table a law, then what no support explains and what to beware of."""
+    """Print parameters and modes of each law, what no support explains, and what to beware of."""
+    fitted = {m.label for m in result.measured if m.fits_frequency}
     for u, excess in zip(result.updates, result.excess, strict=True):
-        values = ", ".join(
-            f"{p.name} = {value:.3g} {p.unit}"
-            for p, value in zip(u.model.parameters, u.best.theta, strict=True)
-        )
-        table = Table(
-            "mode",
-            "label",
-            "measured f [Hz]",
-            "f [Hz]",
-            "undamped f [Hz]",
-            "measured ζ [%]",
-            "ζ [%]",
-            title=f"{u.law}: {values}",
-            title_justify="left",
-        )
-        for m, f, f0, zeta in zip(
-            result.measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio, strict=True
-        ):
-            table.add_row(
-                str(m.mode),
-                m.label,
-                number(m.frequency_hz) + ("" if m.fits_frequency else " (not fitted)"),
-                f"{f:.4f}",
-                f"{f0:.4f}",
-                number(None if m.damping_ratio is None else 100 * m.damping_ratio, 3)
-                + ("" if m.fits_damping or m.damping_ratio is None else " (not fitted)"),
-                f"{100 * zeta:.2f}",
-            )
-        output.print(table)
-        fitted = {m.label for m in result.measured if m.fits_frequency}
+        output.print(f"\n[bold]{u.law}[/bold]")
+        output.print(_parameters(u))
+        output.print(_modes(result.measured, u))
         for e in excess:
             if e.label in fitted and not e.explained:
                 output.print(f"  {e.label}: {_unexplained(e)}")
+    output.print()
     for warning in result.warnings:
         output.print(f"warning: {warning}")
+
+
+def _parameters(u: Update) -> Table:
+    table = Table("parameter", "value", "90 % interval", "verdict")
+    for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
+        span, verdict = "–", "–"
+        if u.uncertainty is not None:
+            low, high = u.uncertainty.interval_90[i]
+            span, verdict = f"{low:.2e} … {high:.2e}", u.uncertainty.verdicts[i].verdict
+        unit = "" if p.unit == "-" else f" {p.unit}"
+        bound = ", on its bound" if p.name in u.best.at_bound else ""
+        table.add_row(p.name, f"{value:.3g}{unit}", span, verdict + bound)
+    return table
+
+
+def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
+    table = Table("mode", "", "measured f [Hz]", "f [Hz]", "undamped f [Hz]", "measured ζ [%]", "ζ [%]")
+    columns = (measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio)
+    for m, f, f0, zeta in zip(*columns, strict=True):
+        table.add_row(
+            str(m.mode),
+            m.label,
+            _measured(m.frequency_hz, m.frequency_std_hz, 4, m.fits_frequency),
+            f"{f:.4f}",
+            f"{f0:.4f}",
+            _measured(_percent(m.damping_ratio), _percent(m.damping_ratio_std), 2, m.fits_damping),
+            f"{100 * zeta:.2f}",
+        )
+    return table
+
+
+def _percent(ratio: float | None) -> float | None:
+    return None if ratio is None else 100.0 * ratio
+
+
+def _measured(value: float | None, std: float | None, decimals: int, fitted: bool) -> str:
+    """Return value ± standard deviation, in brackets if it took no part in the fit."""
+    if value is None:
+        return "–"
+    text = f"{value:.{decimals}f}" + ("" if std is None else f" ± {std:.{decimals}f}")
+    return text if fitted else f"({text})"
 
 
 def _unexplained(e: DampingExcess) -> str:
