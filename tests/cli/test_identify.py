@@ -46,7 +46,7 @@ def test_two_records_are_fused_and_kept(tmp_path: Path) -> None:
     assert document["groups"][0]["wind_speed_m_s"] == [11.0, 13.0]
     assert document["modes"][0]["records_with_mode"] == 2
     assert sorted(p.name for p in (tmp_path / "day").iterdir()) == [
-        "modes.csv", "modes.json", "modes.nc", "records",
+        "modes.csv", "modes.json", "modes.nc", "picks.json", "records",
     ]  # fmt: skip
     assert len(list((tmp_path / "day" / "records").iterdir())) == 2
     code, out, _ = run(*paths, "--out", str(tmp_path / "day"))
@@ -68,3 +68,18 @@ def test_bad_input_is_one_message(arguments: list[str], message: str) -> None:
     assert code == 2
     assert out == ""
     assert message in err
+
+
+def test_picks_of_a_result_replay(tmp_path: Path) -> None:
+    record, out = str(RECORDS / "pile_U12_s301.parquet"), tmp_path / "day"
+    (tmp_path / "quick.yaml").write_text("{refine: false, blocks: 0}")
+    settings = ("--settings", str(tmp_path / "quick.yaml"))
+    _, first, _ = run(record, *settings, "--out", str(out), "--json")
+    for file in ("modes.json", "picks.json"):
+        code, again, _ = run(record, *settings, "--picks", str(out / file), "--json")
+        assert code == 0
+        assert json.loads(again)["modes"] == json.loads(first)["modes"]
+    (tmp_path / "mine.yaml").write_text("picks: [{frequency_hz: 9.0}]")
+    code, _, err = run(record, *settings, "--picks", str(tmp_path / "mine.yaml"))
+    assert code == 2
+    assert "no pole near the pick" in err

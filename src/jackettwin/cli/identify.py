@@ -12,8 +12,9 @@ from rich.table import Table
 
 from jackettwin.cli.console import messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
-from jackettwin.files import read_yaml
+from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.picks import Pick, parse_picks
 from jackettwin.twin import observation_document, observe
 from jackettwin.twin.export import WRITERS, export_modes
 from jackettwin.twin.many import observe_many, record_files
@@ -32,6 +33,11 @@ _SHOWN = 5
     help="How poles are found; default ssi-cov.",
 )
 @click.option(
+    "--picks",
+    "picks_file",
+    help="Poles to take instead of the automatic selection: the JSON of an earlier run, or YAML.",
+)
+@click.option(
     "--out",
     type=click.Path(path_type=Path),
     help="File to write (.json, .csv or .nc), or a folder for all three; a folder also keeps the result of "
@@ -46,6 +52,7 @@ def identify_command(
     records: tuple[str, ...],
     settings_file: str | None,
     method: str | None,
+    picks_file: str | None,
     out: Path | None,
     drop_dead: bool,
     workers: int | None,
@@ -56,18 +63,21 @@ def identify_command(
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
     settings = _settings(settings_file, method)
+    picks = _picks(picks_file)
     _refuse_format(out)
     files = record_files(records)
     if len(files) == 1:
         with progress(1, "identify") as step:
             step(f"identify {files[0].name}")
-            document = observation_document(observe(files[0], settings, drop_dead=drop_dead))
+            document = observation_document(observe(files[0], settings, drop_dead=drop_dead, picks=picks))
     else:
-        document = _many(files, settings, drop_dead, _folder(out), workers)
+        document = _many(files, settings, drop_dead, picks, _folder(out), workers)
     if out is not None:
         for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
             export_modes(document, path)
             messages.print(f"wrote {path}")
+        if _folder(out):
+            write_json({"picks": document["picks"]}, out / "picks.json")
     if as_json:
         print_json(document)
     elif len(files) == 1:
@@ -80,13 +90,14 @@ def _many(
     files: Sequence[Path],
     settings: IdentificationSettings,
     drop_dead: bool,
+    picks: tuple[Pick, ...],
     folder: Path | None,
     workers: int | None,
 ) -> dict[str, Any]:
     cache = None if folder is None else folder / "records"
     with progress(len(files), "identify") as step:
         seen, failed = observe_many(
-            files, settings, drop_dead=drop_dead, cache=cache, workers=workers, step=step
+            files, settings, drop_dead=drop_dead, picks=picks, cache=cache, workers=workers, step=step
         )
     if not seen:
         raise InputError(f"no record could be identified; the first: {failed[0].problem}")
@@ -99,6 +110,13 @@ def _settings(path: str | None, method: str | None) -> IdentificationSettings:
         with located(file=path):
             settings = IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
     return settings if method is None else settings.with_method(method)
+
+
+def _picks(path: str | None) -> tuple[Pick, ...]:
+    if path is None:
+        return ()
+    with located(file=path):
+        return parse_picks(read_mapping(path, what="file of picks"))
 
 
 def _folder(out: Path | None) -> Path | None:

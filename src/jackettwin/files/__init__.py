@@ -3,12 +3,13 @@
 from jackettwin.files.atomic import atomic_folder, atomic_path, write_json
 from jackettwin.files.schema import Schema, validate
 from jackettwin.files.shipped import find_file, shipped
-from jackettwin.files.yaml import read_yaml
+from jackettwin.files.yaml import read_mapping, read_yaml
 
 __all__ = [
     "atomic_folder",
     "atomic_path",
     "find_file",
+    "read_mapping",
     "read_yaml",
     "Schema",
     "shipped",

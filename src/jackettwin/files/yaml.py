@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -95,3 +96,22 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
             remedy="start from an example in the documentation",
         )
     return {str(key): value for key, value in data.items()}
+
+
+def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:
+    """Read a mapping from JSON, if the extension says so, else from YAML.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, cannot be understood, or is not a mapping.
+    """
+    if Path(path).suffix.lower() != ".json":
+        return read_yaml(path, what=what)
+    try:
+        data = json.loads(read_text(path, what=what))
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is not JSON: {error}", file=path, remedy="mend it at that place") from None
+    if not isinstance(data, dict):
+        raise InputError(f"{what} must be a mapping of keys to values", file=path, value=data)
+    return data

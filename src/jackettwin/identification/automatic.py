@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import InputError
 from jackettwin.identification.choice import chosen_modes
 from jackettwin.identification.clustering import clusters
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.fdd import fdd
+from jackettwin.identification.picks import Pick, of_record, picked_clusters, with_verdicts
 from jackettwin.identification.plscf import plscf_poles
 from jackettwin.identification.prepared import Prepared, prepare
 from jackettwin.identification.resolve import guarded_band_hz
@@ -29,8 +31,9 @@ from jackettwin.identification.ssi_uncertainty import (
 from jackettwin.identification.stabilisation import admissible, stabilisation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
+    from jackettwin.identification.selection import Candidate
     from jackettwin.records import Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -50,6 +53,7 @@ def identify(
     record: Record,
     settings: IdentificationSettings | None = None,
     *,
+    picks: Sequence[Pick] = (),
     progress: Callable[[str], None] | None = None,
 ) -> Identification:
     """Identify the modes of a record.
@@ -64,14 +68,17 @@ def identify(
         NaN marks a missing sample.
     settings : IdentificationSettings, optional
         What is not set follows from the data.
+    picks : sequence of Pick, optional
+        Poles to take instead of the automatic selection, e.g. ``Identification.picks`` of an earlier run;
+        picks of other records are passed over.
     progress : callable, optional
         Called with a few words at the start of every step.
 
     Raises
     ------
     InputError
-        If no usable channel is left, the band lies outside the record's, or the record is shorter than
-        its lag window needs.
+        If no usable channel is left, the band lies outside the record's, the record is shorter than its
+        lag window needs, or there is no pole where one is picked.
 
     Examples
     --------
@@ -86,7 +93,9 @@ def identify(
     [1.0]
     """
     settings = settings or IdentificationSettings()
+    wanted = of_record(picks, record.name)
     if settings.method == "efdd":
+        _refuse_picks(wanted)
         return fdd(record, settings)
     if settings.method != "ssi-cov":
         # what is compared is the method; without uncertainties, persistence alone tells modes from noise
@@ -101,9 +110,13 @@ def identify(
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
     tones = find_tones(poles, found, y / scale[:, None], resolved.sample_rate_hz, settings)
+    if wanted:
+        found = picked_clusters(poles, found, wanted)
     judged = candidates(
         poles, found, tones, settings, duration_s=record.duration_s, n_orders=len(resolved.orders)
     )
+    if wanted:
+        judged = with_verdicts(wanted, judged)
     say("refinement")
     chosen = chosen_modes(judged, y, scale, ready.channels, tones.values(), resolved, settings)
     label = poles.cluster.copy()
@@ -119,7 +132,25 @@ def identify(
         settings=resolved,
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *chosen.warnings),
+        picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
+
+
+def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:
+    """Return the pick that stands for a candidate."""
+    k = chosen.cluster.representative
+    return Pick(float(poles.frequency_hz[k]), int(poles.order[k]), record, chosen.doubt is not None)
+
+
+def _refuse_picks(picks: Sequence[Pick]) -> None:
+    if picks:
+        raise InputError(
+            "has no poles to pick from",
+            field="method",
+            value="efdd",
+            allowed="ssi-cov, ssi-dat or plscf",
+            remedy="leave the picks out, or choose another method",
+        )
 
 
 def _named(mode: ModalEstimate, settings: IdentificationSettings) -> ModalEstimate:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from jackettwin.identification.picks import Pick
     from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
@@ -172,3 +173,5 @@ class Identification:
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...] = ()
+    picks: tuple[Pick, ...] = ()
+    """The candidates that were considered; ``identify(…, picks=…)`` considers the same again."""

@@ -19,6 +19,7 @@ from jackettwin.identification.estimate import (
     Spectrum,
     Stabilisation,
 )
+from jackettwin.identification.picks import Pick, plain_picks
 from jackettwin.records import Channel
 
 _ARRAYS = ("log_covariance", "mode_shape_std", "cramer_rao_log_std")
@@ -45,6 +46,7 @@ def to_plain(found: Identification) -> dict[str, Any]:
         "settings": asdict(found.settings),
         "duration_s": found.duration_s,
         "warnings": list(found.warnings),
+        "picks": plain_picks(found.picks),
     }
 
 
@@ -67,6 +69,7 @@ def from_plain(data: dict[str, Any]) -> Identification:
         settings=ResolvedSettings(**{**settings, "orders": tuple(settings["orders"])}),
         duration_s=data["duration_s"],
         warnings=tuple(data["warnings"]),
+        picks=tuple(Pick(**pick) for pick in data["picks"]),
     )
     return slim(bare)
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.twin.truth import truth_document
@@ -249,6 +250,7 @@ def identification_document(found: Identification, quality: dict[str, Any]) -> d
             "lag_window_s": s.lag_window_s,
             "orders": list(s.orders),
         },
+        "picks": plain_picks(found.picks),
         "duration_s": found.duration_s,
         "quality": quality,
         "warnings": list(found.warnings),

@@ -20,6 +20,7 @@ from typing import Any
 from jackettwin.errors import InputError, JackettwinError
 from jackettwin.files import write_json
 from jackettwin.identification import Identification, IdentificationSettings
+from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.records.readers import FORMATS
 from jackettwin.twin.observe import Observation, observe
@@ -59,6 +60,15 @@ class Failed:
     problem: str
 
 
+@dataclass(frozen=True)
+class _Work:
+    """What is done with every record."""
+
+    settings: IdentificationSettings
+    drop_dead: bool
+    picks: tuple[Pick, ...]
+
+
 def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
     """Return the files meant by paths of records and of folders of records, folders in the order of names.
 
@@ -89,6 +99,7 @@ def observe_many(
     settings: IdentificationSettings,
     *,
     drop_dead: bool = False,
+    picks: tuple[Pick, ...] = (),
     cache: Path | None = None,
     workers: int | None = None,
     step: Callable[[str], None] = lambda _: None,
@@ -97,6 +108,8 @@ def observe_many(
 
     Parameters
     ----------
+    picks : tuple of Pick
+        Poles to take instead of the automatic selection, for the records they name.
     cache : Path, optional
         Folder of results so far: they are taken from there, and new ones put there as they come.
     workers : int, optional
@@ -109,19 +122,20 @@ def observe_many(
     (seen, failed)
         Both in the order of the files.
     """
+    work = _Work(settings, drop_dead, picks)
     done: dict[int, Seen | Failed] = {}
     left = []
     for i, file in enumerate(files):
-        kept = None if cache is None else _from_cache(_cache_path(cache, file, settings, drop_dead))
+        kept = None if cache is None else _from_cache(_cache_path(cache, file, work))
         if kept is None:
             left.append(i)
         else:
             done[i] = kept
             step(file.name)
-    for i, result in _computed(files, left, settings, drop_dead, workers):
+    for i, result in _computed(files, left, work, workers):
         done[i] = result
         if cache is not None and isinstance(result, Seen):
-            write_json(_plain(result), _cache_path(cache, files[i], settings, drop_dead))
+            write_json(_plain(result), _cache_path(cache, files[i], work))
         step(files[i].name)
     in_order = [done[i] for i in range(len(files))]
     return (
@@ -138,15 +152,14 @@ def kept(seen: Observation) -> Seen:
 def _computed(
     files: Sequence[Path],
     left: list[int],
-    settings: IdentificationSettings,
-    drop_dead: bool,
+    work: _Work,
     workers: int | None,
 ) -> Iterator[tuple[int, Seen | Failed]]:
     """Yield results as they come, with a bounded number of records under way."""
     n_workers = min(workers or os.cpu_count() or 1, len(left))
     if n_workers < 2 or (workers is None and len(left) < FEWEST_FOR_PROCESSES):
         for i in left:
-            yield i, _one(files[i], settings, drop_dead)
+            yield i, _one(files[i], work)
         return
     for name in THREADS:
         os.environ.setdefault(name, "1")
@@ -157,7 +170,7 @@ def _computed(
     try:
         while True:
             for i in waiting:
-                under_way[pool.submit(_one, files[i], settings, drop_dead)] = i
+                under_way[pool.submit(_one, files[i], work)] = i
                 if len(under_way) >= _AHEAD * n_workers:
                     break
             if not under_way:
@@ -173,20 +186,20 @@ def _ignore_interrupt() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _one(file: Path, settings: IdentificationSettings, drop_dead: bool) -> Seen | Failed:
+def _one(file: Path, work: _Work) -> Seen | Failed:
     try:
-        return kept(observe(file, settings, drop_dead=drop_dead))
+        return kept(observe(file, work.settings, drop_dead=work.drop_dead, picks=work.picks))
     except JackettwinError as error:
         return Failed(str(file), str(error))
 
 
-def _cache_path(cache: Path, file: Path, settings: IdentificationSettings, drop_dead: bool) -> Path:
+def _cache_path(cache: Path, file: Path, work: _Work) -> Path:
     stamps = [
         (p.name, p.stat().st_size, p.stat().st_mtime_ns)
         for p in (file, file.with_suffix(".json"))
         if p.exists()
     ]
-    key = json.dumps([str(file.resolve()), stamps, asdict(settings), drop_dead, __version__], default=str)
+    key = json.dumps([str(file.resolve()), stamps, asdict(work), __version__], default=str)
     return cache / f"{file.stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from jackettwin.errors import InputError
 from jackettwin.identification import FusedIdentification, FusedMode, fuse
 from jackettwin.identification.convergence import convergence
+from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.document import identification_document
 from jackettwin.twin.groups import Group, grouped
 from jackettwin.twin.many import Failed, Seen
@@ -52,6 +53,7 @@ def many_document(seen: Sequence[Seen], failed: Sequence[Failed]) -> dict[str, A
         "quality": [
             {"record": one.identification.records[0], "score": one.quality.get("score")} for one in seen
         ],
+        "picks": [pick for one in seen for pick in plain_picks(one.identification.picks)],
         "failed": [asdict(one) for one in failed],
         "duration_s": sum(one.duration_s for one in found),
         "warnings": [*warnings, *([] if fused is None else fused.warnings)],

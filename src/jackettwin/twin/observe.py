@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.identification import Identification, IdentificationSettings, identify
+from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.quality import Quality
 from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
@@ -40,6 +41,7 @@ def observe(
     *,
     sensors: tuple[Sensor, ...] = (),
     drop_dead: bool = False,
+    picks: tuple[Pick, ...] = (),
 ) -> Observation:
     """Read, judge, repair, turn to the rotor's axes and identify one record.
 
@@ -49,6 +51,8 @@ def observe(
         Only these channels, at these places; default: all that measure motion, where the record says.
     drop_dead : bool
         Leave channels that carry nothing out instead of refusing the record.
+    picks : tuple of Pick
+        Poles to take instead of the automatic selection, for the records they name.
 
     Raises
     ------
@@ -62,7 +66,7 @@ def observe(
         if not drop_dead:
             _refuse_dead(quality)
         ready, notes = in_rotor_axes(repair(chosen, quality), record)
-        found = identify(ready, settings)
+        found = identify(ready, settings, picks=picks)
         return Observation(ready, quality, replace(found, warnings=(*notes, *found.warnings)))
 
 
