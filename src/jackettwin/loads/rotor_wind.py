@@ -1,7 +1,8 @@
-"""Turbulent wind over a rotor and its tower, sampled on rings and spokes about the hub.
+"""Turbulent wind over a rotor and its tower.
 
-The rotor's disc stands across the wind, which blows along +x; blades that turn cut through the rings
-(rotational sampling). Heights count from still water.
+A rotor that stands sees the mean wind over pieces of each blade; the blades of one that turns cut through
+rings of points (rotational sampling). The disc stands across the wind, which blows along +x. Heights count
+from still water.
 """
 
 from __future__ import annotations
@@ -13,34 +14,50 @@ import numpy.typing as npt
 
 from jackettwin.loads.kernels import wind_on_blades
 from jackettwin.loads.rotor import Rotor, rotation
-from jackettwin.loads.wind import Wind, turbulence
+from jackettwin.loads.turbulence import Coherent, turbulence
+from jackettwin.loads.wind import Wind
 
 FloatArray = npt.NDArray[np.float64]
 
 RINGS = (0.3, 0.55, 0.8, 1.0)
 """Radii of the rings over the rotor's."""
 SPOKES = 12
-TOWER_SHARES = (0.1, 0.4, 0.7)
-"""Heights of the tower's points over the hub's."""
+PIECE_M = 10.0
+"""Longest piece of blade or tower that has a wind of its own."""
+_POINTS = 5
+"""Points over which a piece is averaged."""
 
 
 @dataclass(frozen=True)
 class RotorWind:
-    """Wind about the mean (n_times, n_points, 3) [m/s] at the hub, on the rings, then down the tower."""
+    """Wind about the mean, (n_times, n, 3) [m/s] each.
+
+    Attributes
+    ----------
+    hub : (n_times, 3)
+    rotor : on the pieces of the standing blades, root to tip, blade by blade; or at the hub and on the rings
+    tower : on pieces of the tower's axis, from still water to the hub
+    step_s : between samples
+    radius : of the rotor [m]
+    azimuth : of the first blade if the rotor stands [rad], None if it turns
+    """
 
     wind: Wind
-    fluctuation: FloatArray
+    hub: FloatArray
+    rotor: FloatArray
+    tower: FloatArray
     step_s: float
     radius: float
+    azimuth: float | None
 
     @property
     def n_times(self) -> int:
         """Number of samples; the wind repeats after them."""
-        return int(self.fluctuation.shape[0])
+        return int(self.hub.shape[0])
 
     def at_hub(self) -> FloatArray:
         """Return the hub's wind, mean included (n_times, 3) [m/s]."""
-        return np.asarray(self.fluctuation[:, 0] + [self.wind.speed_m_s, 0.0, 0.0])
+        return np.asarray(self.hub + [self.wind.speed_m_s, 0.0, 0.0])
 
     def on_blades(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float = 0.0) -> FloatArray:
         """Return the wind at the blade elements (n_times, n_elements, 3), in the nacelle's axes.
@@ -48,27 +65,32 @@ class RotorWind:
         Parameters
         ----------
         azimuth : (n_times,) [rad]
+            Of a rotor that turns; one that stands does so where its wind was made.
         yaw : heading of the nacelle, anticlockwise from +x seen from above [rad]
         """
-        blade, n_disc = rotor.blade, 1 + len(RINGS) * SPOKES
-        r = (rotor.hub_radius + blade.z) / self.radius
+        turn = rotation(np.array([0.0, 0.0, 1.0]), yaw)
+        r, n = rotor.hub_radius + rotor.blade.z, rotor.n_blades
+        if self.azimuth is not None:
+            pieces = self.rotor.shape[1] // n
+            piece = np.minimum((r * pieces / self.radius).astype(np.intp), pieces - 1)
+            spokes = self.azimuth + 2.0 * np.pi * np.arange(n) / n
+            height = self.wind.hub_height_m + np.outer(np.cos(spokes), r).ravel()
+            on = np.concatenate([piece + blade * pieces for blade in range(n)])
+            return np.asarray((self.rotor[:, on] + self._mean(height)) @ turn)
         knots = np.array([0.0, *RINGS])
-        ring = np.clip(np.searchsorted(knots, r, side="right") - 1, 0, len(RINGS) - 1)
-        share = np.clip((r - knots[ring]) / (knots[ring + 1] - knots[ring]), 0.0, 1.0)
-        spoke = np.repeat(np.arange(rotor.n_blades) * SPOKES / rotor.n_blades, r.size)
-        samples = self.fluctuation[:, :n_disc] + self._mean(_disc(self.wind.hub_height_m, self.radius)[:, 1])
-        turned = np.ascontiguousarray(samples @ rotation(np.array([0.0, 0.0, 1.0]), yaw))
-        n = rotor.n_blades
+        share_of_radius = r / self.radius
+        ring = np.clip(np.searchsorted(knots, share_of_radius, side="right") - 1, 0, len(RINGS) - 1)
+        share = np.clip((share_of_radius - knots[ring]) / (knots[ring + 1] - knots[ring]), 0.0, 1.0)
+        spoke = np.repeat(np.arange(n) * SPOKES / n, r.size)
+        samples = self.rotor + self._mean(_disc(self.wind.hub_height_m, self.radius)[:, 1])
+        turned = np.ascontiguousarray(samples @ turn)
         return np.asarray(wind_on_blades(turned, azimuth, spoke, np.tile(ring, n), np.tile(share, n), SPOKES))
 
     def at_heights(self, z: FloatArray) -> FloatArray:
         """Return the wind on the tower's axis at heights ``z`` (n,) [m], (n_times, n, 3)."""
-        hub = self.wind.hub_height_m
-        knots = np.array([*TOWER_SHARES, 1.0]) * hub
-        known = self.fluctuation[:, [*range(1 + len(RINGS) * SPOKES, self.fluctuation.shape[1]), 0]]
-        low = np.clip(np.searchsorted(knots, z) - 1, 0, knots.size - 2)
-        share = np.clip((z - knots[low]) / (knots[low + 1] - knots[low]), 0.0, 1.0)[:, None]
-        return np.asarray(known[:, low] * (1.0 - share) + known[:, low + 1] * share + self._mean(z))
+        pieces = self.tower.shape[1]
+        piece = np.clip((z * pieces / self.wind.hub_height_m).astype(np.intp), 0, pieces - 1)
+        return np.asarray(self.tower[:, piece] + self._mean(z))
 
     def _mean(self, z: FloatArray) -> FloatArray:
         mean = np.zeros((z.size, 3))
@@ -76,12 +98,70 @@ class RotorWind:
         return mean
 
 
-def rotor_wind(wind: Wind, *, radius: float, duration: float, step: float, seed: int) -> RotorWind:
-    """Return the wind of ``duration`` [s], which it repeats, in steps of ``step`` [s]."""
-    tower = np.array([[0.0, share * wind.hub_height_m] for share in TOWER_SHARES])
-    points = np.vstack([_disc(wind.hub_height_m, radius), tower])
-    fluctuation = turbulence(wind, points, duration=duration, sample_rate_hz=1.0 / step, seed=seed)
-    return RotorWind(wind, fluctuation, step, radius)
+def rotor_wind(
+    wind: Wind,
+    rotor: Rotor,
+    *,
+    duration: float,
+    step: float,
+    seed: int,
+    azimuth: float | None = 0.0,
+    coherent: Coherent = "all",
+    piece: float = PIECE_M,
+) -> RotorWind:
+    """Return the wind of ``duration`` [s], which it repeats, in steps of ``step`` [s].
+
+    Parameters
+    ----------
+    azimuth : float or None
+        Of the first blade of a rotor that stands [rad]; None if it turns.
+    piece : float
+        Longest piece of blade or tower with a wind of its own [m].
+    """
+    hub = wind.hub_height_m
+    on_rotor = _rings(hub, rotor.radius) if azimuth is None else _blades(hub, rotor, azimuth, piece)
+    tower = _pieces(np.zeros(2), np.array([0.0, hub]), piece)
+    places = [np.array([[[0.0, hub]]]), on_rotor, tower]
+    points = np.concatenate([group.reshape(-1, 2) for group in places])
+    size = np.concatenate([np.full(group.shape[0], group.shape[1]) for group in places])
+    fluctuation = turbulence(
+        wind,
+        points,
+        duration=duration,
+        sample_rate_hz=1.0 / step,
+        seed=seed,
+        pieces=np.repeat(np.arange(size.size), size),
+        coherent=coherent,
+    )
+    last = 1 + on_rotor.shape[0]
+    return RotorWind(
+        wind,
+        fluctuation[:, 0],
+        fluctuation[:, 1:last],
+        fluctuation[:, last:],
+        step,
+        rotor.radius,
+        azimuth,
+    )
+
+
+def _pieces(start: FloatArray, end: FloatArray, piece: float) -> FloatArray:
+    """Return points (n_pieces, n, 2) of the pieces of a line."""
+    n = int(np.ceil(np.linalg.norm(end - start) / piece))
+    share = (np.arange(n * _POINTS) + 0.5) / (n * _POINTS)
+    return np.asarray((start + share[:, None] * (end - start)).reshape(n, _POINTS, 2))
+
+
+def _blades(hub_height: float, rotor: Rotor, azimuth: float, piece: float) -> FloatArray:
+    """Return points (n_pieces, n, 2: y and z) of all blades, from the hub's centre to the tips."""
+    centre = np.array([0.0, hub_height])
+    angle = azimuth + 2.0 * np.pi * np.arange(rotor.n_blades) / rotor.n_blades
+    tips = centre + rotor.radius * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
+    return np.concatenate([_pieces(centre, tip, piece) for tip in tips])
+
+
+def _rings(hub_height: float, radius: float) -> FloatArray:
+    return _disc(hub_height, radius)[:, None, :]
 
 
 def _disc(hub_height: float, radius: float) -> FloatArray:

@@ -1,4 +1,4 @@
-r"""Wind: profile, the normal turbulence model with Kaimal spectra and coherence, and drag on the tower."""
+"""Wind: profile, the normal turbulence model with Kaimal spectra and coherence, and drag on the tower."""
 
 from __future__ import annotations
 
@@ -19,9 +19,6 @@ REFERENCE_INTENSITY = {"A+": 0.18, "A": 0.16, "B": 0.14, "C": 0.12}
 SIGMA_RATIOS = (1.0, 0.8, 0.5)
 SCALE_RATIOS = (8.1, 2.7, 0.66)
 """σ_k/σ_1 and L_k/Λ_1 of u, v, w: IEC 61400-1 (2019) table C.1."""
-
-_INCOHERENT = 1e-4
-"""Coherence below this is none: the highest frequencies need no Cholesky factor."""
 
 DECAY, SCALE_TERM = 12.0, 0.12
 """Coherence of u: exp(−12 √((f r/V)² + (0.12 r/L_1)²)), IEC 61400-1 (2019) eq. (C.16)."""
@@ -88,50 +85,6 @@ def coherence(wind: Wind, frequency_hz: FloatArray | float, distance_m: FloatArr
     L = SCALE_RATIOS[0] * wind.scale_m
     f, r = np.asarray(frequency_hz, dtype=np.float64), np.asarray(distance_m, dtype=np.float64)
     return np.asarray(np.exp(-DECAY * np.hypot(f * r / wind.speed_m_s, SCALE_TERM * r / L)))
-
-
-def turbulence(
-    wind: Wind, points: FloatArray, *, duration: float, sample_rate_hz: float, seed: int
-) -> FloatArray:
-    """Return u, v, w at points (n, 2: y and z [m]) about the mean, (n_times, n, 3) [m/s]; periodic.
-
-    Veers (1988): independent complex Gaussian amplitudes, coloured across the points by the Cholesky factor
-    of the coherence at each frequency. u is coherent; v and w are independent between points, as the
-    standard leaves them.
-    """
-    n_times = round(duration * sample_rate_hz)
-    f = np.asarray(np.fft.rfftfreq(n_times, 1.0 / sample_rate_hz)[1:], dtype=np.float64)
-    rng = np.random.default_rng(seed)
-    shape = (3, f.size, points.shape[0])
-    white = (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2.0)
-    distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    nearest = (distance + np.where(distance > 0.0, 0.0, np.inf)).min(initial=np.inf)
-    coherent = np.flatnonzero(coherence(wind, f, nearest) > _INCOHERENT)
-    for block in np.array_split(coherent, max(1, coherent.size * distance.size // 2_000_000)):
-        matrix = coherence(wind, f[block, None, None], distance) + 1e-9 * np.eye(points.shape[0])
-        white[0, block] = (np.linalg.cholesky(matrix) @ white[0, block, :, None])[..., 0]
-    field = np.zeros((3, points.shape[0], n_times // 2 + 1), dtype=np.complex128)
-    for component in range(3):
-        amplitude = np.sqrt(0.5 * _band_mean(wind, f, component) / duration)
-        field[component, :, 1:] = (amplitude[:, None] * white[component]).T
-    return np.ascontiguousarray(np.fft.irfft(field, n=n_times, axis=-1).T * n_times)
-
-
-def _band_mean(wind: Wind, f: FloatArray, component: int) -> FloatArray:
-    """Return the spectrum averaged over each line's band: keeps the variance of the steep low end.
-
-    The first band reaches down to zero frequency.
-    """
-    df = f[1] - f[0]
-    L = SCALE_RATIOS[component] * wind.scale_m / wind.speed_m_s
-    sigma = SIGMA_RATIOS[component] * wind.sigma
-
-    def cumulative(x: FloatArray) -> FloatArray:
-        return np.asarray(sigma**2 * (1.0 - (1.0 + 6.0 * x * L) ** (-2.0 / 3.0)))
-
-    low = f - 0.5 * df
-    low[0] = 0.0
-    return np.asarray((cumulative(f + 0.5 * df) - cumulative(low)) / df)
 
 
 def tower_drag(grid: MorisonPoints, wind: FloatArray, *, velocity: FloatArray | None = None) -> FloatArray:

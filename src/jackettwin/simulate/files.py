@@ -100,7 +100,7 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
     turbulence = 0.0 if w.turbulence == "none" else w.turbulence
     with located(field="wind"):
         wind = Wind(w.speed_m_s, top + turbine.rotor.hub_height, turbulence, w.shear)
-    return Air(wind, w.seed, radians(w.yaw_deg), w.tower_drag)
+    return Air(wind, w.seed, radians(w.yaw_deg), w.tower_drag, w.coherence, w.piece_m)
 
 
 def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:

@@ -105,6 +105,11 @@ class Aerodynamics:
     operation: Operation | None
     turbine: Turbine
 
+    @property
+    def turns(self) -> bool:
+        """Whether the rotor turns; an idling one is too slow to."""
+        return self.operation is not None
+
 
 def aerodynamics(air: Air, turbine: Turbine) -> Aerodynamics:
     """Return the rotor linearised about the mean wind at the hub."""

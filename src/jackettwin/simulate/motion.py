@@ -160,14 +160,15 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
     if scenario.air is not None and scenario.turbine is not None:
         air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
         field_ = wind_field(air, aero, duration=scenario.clock.total_s, step=step)
-        rotor, known = rotor_loads_in(field_, air, aero), aero.mean.damping
+        rotor = rotor_loads_in(field_, air, aero)
+        known = rotor.mean_damping()
         repeating += _closed(rotor.still) @ model.top
         signals["wind_hub_x"] = _closed(field_.at_hub()[:, 0])
         tower = tower_points(model.assembly, air)
         if tower is not None:
             repeating += _closed(tower_loads(field_, tower, np.asarray(tower.N.T @ basis)))
             damping.append(tower_damping(air, tower, basis))
-        model = with_aerodynamics(model, aero.mean)
+        model = with_aerodynamics(model, aero.mean._replace(damping=known))
     zero = np.zeros((model.reduced.n,) * 2)
     model = model.with_forces_of_motion(damping=sum(damping, zero), stiffness=zero)
     return _Loads(model, repeating, wave, rotor, known, signals)

@@ -10,6 +10,8 @@ from jackettwin.loads.bem import Control
 from jackettwin.loads.current import Current
 from jackettwin.loads.morison import Coefficients
 from jackettwin.loads.rotor import Rotor
+from jackettwin.loads.rotor_wind import PIECE_M
+from jackettwin.loads.turbulence import Coherent
 from jackettwin.loads.water import Water
 from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor
@@ -66,6 +68,10 @@ class Air:
     seed: int = 0
     yaw: float = 0.0
     tower_drag: float = 0.65
+    coherent: Coherent = "all"
+    """Which components of turbulence are coherent across rotor and tower."""
+    piece_m: float = PIECE_M
+    """Longest piece of a standing blade or of the tower with a wind of its own."""
 
 
 @dataclass(frozen=True)

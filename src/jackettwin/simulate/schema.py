@@ -8,6 +8,7 @@ from pydantic import Field
 
 from jackettwin.files import Schema
 from jackettwin.loads.morison import SEA_WATER_KG_M3
+from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.water import GROWTH_KG_M3
 from jackettwin.soil.foundation import (
     CurvesSchema,
@@ -113,6 +114,8 @@ class WindSchema(Schema):
     seed: Seed = 0
     yaw_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 0.0
     tower_drag: NotNegative = 0.65
+    coherence: Literal["all", "u"] = "all"
+    piece_m: Annotated[float, Field(ge=1.0, le=200.0)] = PIECE_M
 
 
 class RotorSchema(Schema):
