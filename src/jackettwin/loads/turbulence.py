@@ -85,7 +85,7 @@ def _factor(matrix: FloatArray, pieces: npt.NDArray[np.intp]) -> FloatArray:
     size = np.diff(np.append(first, pieces.size))
     means = np.add.reduceat(np.add.reduceat(matrix[np.ix_(order, order)], first, axis=0), first, axis=1)
     means /= np.outer(size, size)
-    return np.linalg.cholesky(means + 1e-9 * np.eye(first.size))
+    return np.asarray(np.linalg.cholesky(means + 1e-9 * np.eye(first.size)), dtype=np.float64)
 
 
 def _band_mean(wind: Wind, f: FloatArray, component: int) -> FloatArray:
