@@ -38,16 +38,19 @@ def straight() -> Observation:
 
 
 def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Observation, tmp_path: Path) -> None:
-    """Another ten minutes, turned by 60 degrees: MAC ≥ 0.95 with the modes of the first.
-
-    The side-side modes; within a pair 0.6 % apart the weaker shape is hardly determined by ten minutes,
-    whatever the axes.
-    """
+    """Another ten minutes, turned by 60 degrees: MAC ≥ 0.95 with each mode of the first two pairs."""
     other = replace(turned("pile_U12_s308", np.array(np.pi / 3)), conditions={"yaw_deg": 60.0})
-    modes = seen(other, tmp_path / "r.parquet").identification.modes
-    for mode in (straight.identification.modes[0], straight.identification.modes[2]):
-        near = [m for m in modes if abs(m.frequency_hz / mode.frequency_hz - 1.0) < 0.015]
-        assert max(float(mac(mode.mode_shape, m.mode_shape)) for m in near) >= 0.95
+    found = seen(other, tmp_path / "r.parquet").identification
+    for mode in straight.identification.modes[:4]:
+        near = [m for m in found.modes if abs(m.frequency_hz / mode.frequency_hz - 1.0) < 0.015]
+        twin = max(near, key=lambda m: float(mac(mode.mode_shape, m.mode_shape)))
+        assert mac(mode.mode_shape, twin.mode_shape) >= 0.95
+    # the first pair is 0.6 half bandwidths apart, and what ten minutes say of its shapes is kept
+    for one in (straight.identification, found):
+        raw = one.modes[1].mode_shape_unaligned
+        assert raw is not None
+        assert any("turned within their plane" in text for text in one.warnings)
+    assert mac(straight.identification.modes[1].mode_shape_unaligned, found.modes[1].mode_shape) < 0.95
 
 
 def test_yaw_as_a_channel(straight: Observation, tmp_path: Path) -> None:

@@ -49,6 +49,8 @@ class ModalEstimate:
         What the subspace method said of a mode whose numbers are of maximum likelihood.
     cramer_rao_log_std : (2,) or None
         Least standard deviations of ln f and ln ζ any unbiased method can have, of the fitted spectral model.
+    mode_shape_unaligned : (n_channels,) complex or None
+        The shape as identified, of a mode whose shape was turned within the plane of a close pair.
     status : str
         ``"ok"``, or a sentence on what to distrust.
     """
@@ -70,6 +72,7 @@ class ModalEstimate:
     damping_ratio_cov_limit: float | None = None
     unrefined: ModalEstimate | None = None
     cramer_rao_log_std: FloatArray | None = None
+    mode_shape_unaligned: ComplexArray | None = None
 
 
 @dataclass(frozen=True)

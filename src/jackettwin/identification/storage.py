@@ -103,7 +103,7 @@ def _mode(plain: dict[str, Any]) -> ModalEstimate:
 
 
 def _is_shape(name: str) -> bool:
-    return name == "mode_shape"
+    return name in ("mode_shape", "mode_shape_unaligned")
 
 
 def _complex(parts: list[list[float]]) -> npt.NDArray[np.complex128]:

@@ -18,6 +18,7 @@ from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
@@ -279,7 +280,11 @@ def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any
         },
     }
     if channels is not None:
-        document["mode_shape"] = {
-            name: [float(v.real), float(v.imag)] for name, v in zip(channels, m.mode_shape, strict=True)
-        }
+        document["mode_shape"] = _shape(m.mode_shape, channels)
+        raw = m.mode_shape_unaligned
+        document["mode_shape_unaligned"] = None if raw is None else _shape(raw, channels)
     return document
+
+
+def _shape(shape: ComplexArray, channels: list[str]) -> dict[str, list[float]]:
+    return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}

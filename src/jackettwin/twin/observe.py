@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.identification import Identification, IdentificationSettings, identify
+from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.quality import Quality
@@ -67,6 +68,8 @@ def observe(
             _refuse_dead(quality)
         ready, notes = in_rotor_axes(repair(chosen, quality), record)
         found = identify(ready, settings, picks=picks)
+        if knows_yaw(record) or record.metadata.get("axes") == "rotor":
+            found = along_axes(found)
         return Observation(ready, quality, replace(found, warnings=(*notes, *found.warnings)))
 
 

@@ -1,0 +1,116 @@
+r"""Close pairs: two modes of one shape in two directions, which one record does not tell apart.
+
+Within a pair closer than its bandwidth the plane of the two shapes is known well, the shapes in it are not:
+the stronger mode leaks into the weaker one. Where a symmetry of the structure says how the modes lie, as that
+of a rotor does in its own axes, the shapes are turned within their plane, and nothing outside it is invented:
+
+.. math:: \phi_{fa}, \phi_{ss} = \arg\max, \min_{\phi \in \mathrm{span}(\phi_1, \phi_2)}
+          \frac{\lVert P_{fa}\,\phi \rVert^2}{\lVert \phi \rVert^2}
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.records import Channel
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+CLOSE = 2.0
+"""Two modes are a pair if their frequencies differ by less than this times the sum of half bandwidths."""
+PURE = 0.95
+"""Share of its energy along one axis, above which the plane holds a shape of that axis."""
+HORIZONTAL = 0.9
+"""Length of the horizontal part of a channel's direction that counts."""
+
+
+def along_axes(found: Identification) -> Identification:
+    """Return the identification with the shapes of close pairs turned to the first two axes.
+
+    Only for pairs whose plane holds a shape of either axis; what they were before is kept in
+    ``mode_shape_unaligned``, and a warning says so.
+    """
+    first = _first_axis(found.channels)
+    if first is None:
+        return found
+    modes, notes = list(found.modes), []
+    for i, j in close_pairs(modes):
+        turned = _turned(modes[i], modes[j], first)
+        if turned is not None:
+            notes.append(_note(modes[i], modes[j], first))
+            modes[i], modes[j] = turned
+    return replace(found, modes=tuple(modes), warnings=(*found.warnings, *notes))
+
+
+def close_pairs(modes: Sequence[ModalEstimate]) -> list[tuple[int, int]]:
+    """Return neighbours in frequency that overlap, each mode in one pair at most, the closest first."""
+    gaps = []
+    for i, (a, b) in enumerate(zip(modes, modes[1:], strict=False)):
+        width = a.damping_ratio * a.frequency_hz + b.damping_ratio * b.frequency_hz
+        gaps.append(((b.frequency_hz - a.frequency_hz) / width, i))
+    taken: set[int] = set()
+    out = []
+    for gap, i in sorted(gaps):
+        if gap < CLOSE and not taken & {i, i + 1}:
+            taken |= {i, i + 1}
+            out.append((i, i + 1))
+    return sorted(out)
+
+
+def _first_axis(channels: Sequence[Channel]) -> FloatArray | None:
+    """Return the cosines with the first horizontal axis, squared; None unless all lie along the two axes."""
+    x, y = np.abs([c.direction[:2] for c in channels]).T
+    if np.any(np.maximum(x, y) < HORIZONTAL) or not np.any(x > y) or not np.any(y > x):
+        return None
+    return np.asarray((x > y).astype(float))
+
+
+def _share(shape: ComplexArray, first: FloatArray) -> float:
+    power = np.abs(shape) ** 2
+    return float(first @ power / power.sum())
+
+
+def _turned(
+    a: ModalEstimate, b: ModalEstimate, first: FloatArray
+) -> tuple[ModalEstimate, ModalEstimate] | None:
+    plane, _ = np.linalg.qr(np.array([a.mode_shape, b.mode_shape]).T)
+    shares, vectors = np.linalg.eigh(plane.conj().T @ (first[:, None] * plane))
+    if shares[0] > 1.0 - PURE or shares[1] < PURE:
+        return None
+    pure = (plane @ vectors).T
+    likeness = mac(np.array([a.mode_shape, b.mode_shape]), pure)
+    swapped = likeness[0, 1] + likeness[1, 0] > likeness[0, 0] + likeness[1, 1]
+    for_a, for_b = pure[::-1] if swapped else pure
+    return _with_shape(a, for_a), _with_shape(b, for_b)
+
+
+def _with_shape(mode: ModalEstimate, shape: ComplexArray) -> ModalEstimate:
+    """Return the mode with another shape; how well it is known rests on the symmetry, not on the record."""
+    shape = normalised(aligned(np.asarray(shape)))
+    return replace(
+        mode,
+        mode_shape=shape,
+        mode_shape_unaligned=mode.mode_shape,
+        mode_shape_std=None,
+        mpc=float(mpc(shape)),
+        mpd_rad=float(mpd_rad(shape)),
+    )
+
+
+def _note(a: ModalEstimate, b: ModalEstimate, first: FloatArray) -> str:
+    shares = " and ".join(f"{_share(m.mode_shape, first):.0%}" for m in (a, b))
+    return (
+        f"shapes of the pair at {a.frequency_hz:.4g} and {b.frequency_hz:.4g} Hz turned within their plane "
+        f"to fore-aft and side-side: one record does not tell them apart (fore-aft share before: {shares})"
+    )
