@@ -21,7 +21,7 @@ def steel() -> Rayleigh:
 def models(jacket15: Assembly, steel: Rayleigh) -> dict[str, SupportModel]:
     return {
         name: support_model(jacket15, family=family(name), rayleigh=steel)
-        for name in ("kelvin-voigt", "zener", "maxwell-3")
+        for name in ("kelvin-voigt", "zener", "maxwell-3", "springpot")
     }
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.soil.coefficients import law_rows
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import SupportModel, family, support_model
 
@@ -11,6 +12,7 @@ POINTS = {
     "kelvin-voigt": [2.5e9, 7.6e8],  # thesis table 8.1
     "zener": [2.62e9, 8.65e8, 9.99e9],  # thesis table 8.4, point 2
     "maxwell-3": [3e9, 0.2],
+    "springpot": [3e9, 0.06],
 }
 
 
@@ -39,6 +41,24 @@ def test_slopes_are_differences_of_poles(models: dict[str, SupportModel], law: s
         )
         # second order in h
         np.testing.assert_allclose(slopes[:, j], difference, rtol=1e-6, atol=1e-6 * np.abs(difference).max())
+
+
+@pytest.mark.parametrize("law", POINTS)
+def test_many_rows_are_those_of_the_laws(models: dict[str, SupportModel], law: str) -> None:
+    model, theta = models[law], np.array([POINTS[law], POINTS[law]]) * [[1.0], [0.7]]
+    rows = model.points(theta).rows
+    np.testing.assert_allclose(rows[:, 0], law_rows([model.laws(t)[0] for t in theta]), rtol=1e-14)
+
+
+def test_a_model_reaches_further_with_the_same_poles(models: dict[str, SupportModel]) -> None:
+    model, theta = models["zener"], np.array(POINTS["zener"])
+    assert model.reaching(8) is model
+    wide = model.reaching(12)
+    assert wide.highest_mode == 12
+    # both are exact: rounding alone
+    np.testing.assert_allclose(
+        wide.predict(theta, (1, 4)).poles, model.predict(theta, (1, 4)).poles, rtol=1e-9
+    )
 
 
 def test_untied_parameters_carry_their_place(jacket15: Assembly, steel: Rayleigh) -> None:

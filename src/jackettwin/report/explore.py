@@ -76,7 +76,7 @@ def _strides(poles: ComplexArray) -> FloatArray:
 
 def undamped_shapes(update: Update) -> FloatArray:
     """Return the undamped shapes (assembly.n_dof, n_modes) of the updated full model; NaN if not followed."""
-    model, modes = update.model, update.residuals.modes
+    model, modes = update.model, update.shown
     reference = numbered_modes(model.assembly, max(modes) + 2)
     undamped = undamped_modes(model.system(update.best.theta), max(modes) + 12)
     found = follow(model.assembly.mass, reference.omega, reference.shapes, undamped.shapes)[

@@ -100,7 +100,7 @@ def around_the_solution(result: TwinResult) -> list[Block]:
     ]
     labels = tuple(m.label for m in result.measured)
     for u in result.updates:
-        path = explore.locus(u.model, u.best.theta, u.residuals.modes, labels)
+        path = explore.locus(u.model, u.best.theta, u.shown, labels)
         caption = (
             f"{u.law}: poles of each mode as {path.parameter} of every support goes from bound to bound."
         )

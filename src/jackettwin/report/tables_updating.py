@@ -106,8 +106,8 @@ def parameter_table(updates: Sequence[Update]) -> Table:
 
 def solutions_table(result: TwinResult, u: Update) -> Table:
     """Return every distinct solution of a law, with the modes that took part in the fit."""
-    fitted = [m for m in result.measured if m.fits_frequency or m.fits_damping]
-    chosen = [m in fitted for m in result.measured]
+    of_solution = u.problem.states[0].residuals.modes
+    fitted = [m for m in result.measured if m.mode in of_solution]
     columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in fitted))
     rows, marked = [], set()
     for i, s in enumerate(u.solutions):
@@ -119,7 +119,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
             f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
             for p, v in zip(u.problem.parameters, s.theta, strict=True)
         ]
-        modes = zip(s.frequency_hz[chosen], s.undamped_hz[chosen], s.damping_ratio[chosen], strict=True)
+        modes = zip(s.frequency_hz, s.undamped_hz, s.damping_ratio, strict=True)
         cells = [f"{frequency(float(f))}\n{frequency(float(f0))}\n{percent(float(z))}" for f, f0, z in modes]
         head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
         rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))

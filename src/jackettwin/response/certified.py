@@ -123,9 +123,9 @@ def _attempt(model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact:
     real = values[np.abs(values.imag) <= _NEARLY_REAL * np.abs(values)].real
     law_poles = _law_poles(rows, 2.0 * model.radius)
     radius = _roomy(np.concatenate([np.abs(poles), np.abs(real), np.abs(law_poles)]), model.radius)
+    total, n_real = _counted(model, rows, rayleigh, real, radius, poles)
     inside = np.abs(poles) < radius
     poles, shapes = poles[inside], shapes[inside]
-    total, n_real = _counted(model, rows, rayleigh, real, radius)
     found = AllModes(poles, shapes, radius, n_real, _agrees(total, 2.0 * poles.size))
     sure = poles.imag > _NEARLY_REAL * np.abs(poles)
     if not found.certified and _agrees(total, 2.0 * sure.sum()):
@@ -134,11 +134,16 @@ def _attempt(model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact:
 
 
 def _counted(
-    model: Condensed, rows: FloatArray, rayleigh: FloatArray, real: FloatArray, radius: float
+    model: Condensed,
+    rows: FloatArray,
+    rayleigh: FloatArray,
+    real: FloatArray,
+    radius: float,
+    known: ComplexArray,
 ) -> tuple[float, int | None]:
     """Return twice the number of oscillating modes inside the disc by the contour, and that of real poles."""
     cut = bool((rows[:, K_ALPHA] > 0.0).any())
-    total = float(kernels().winding(model.arrays(), rows, *rayleigh, radius, cut, _ARC_POINTS))
+    total = float(kernels().winding(model.arrays(), rows, *rayleigh, radius, cut, _ARC_POINTS, known))
     if cut:
         return total, None
     n_real = _count_real(model, rows, rayleigh, real, radius)

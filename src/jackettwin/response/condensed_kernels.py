@@ -164,9 +164,14 @@ def slopes(model, rows, rayleigh, which, values, vectors, jacobian, rayleigh_jac
 
 
 @compiled
-def _phase(model, rows, a, b, s, F, dF, s0, s1, pivot):
+def _phase(model, rows, a, b, s, known, F, dF, s0, s1, pivot):
+    """Return the phase of det F(s)/Π(s − p)(s − p̄) over the known poles p."""
     fill(model, rows, a, b, s, F, dF, s0, s1)
-    return factor(F, pivot)
+    phase = factor(F, pivot)
+    for p in known:
+        away = (s - p) * (s - np.conj(p))
+        phase *= np.conj(away) / abs(away)
+    return phase
 
 
 @compiled
@@ -183,9 +188,10 @@ def _point(kind, u, radius, small):
 
 
 @compiled
-def winding(model, rows, a, b, radius, cut, n_points):
+def winding(model, rows, a, b, radius, cut, n_points, known):
     """Return the change of arg det F along the upper half circle in units of π, NaN if it runs over a pole.
 
+    Known poles are divided out, so that only unknown ones can turn the phase fast, and counted in the end.
     With a branch cut the path returns along the upper side of the cut and around the origin.
     """
     n = model[3].shape[0] + model[3].shape[1]
@@ -199,11 +205,13 @@ def winding(model, rows, a, b, radius, cut, n_points):
     for kind in range(3 if cut else 1):
         n_here = n_points if kind < 2 else 4
         u0 = 0.0
-        here = _phase(model, rows, a, b, _point(kind, 0.0, radius, small), F, dF, s0, s1, pivot)
+        here = _phase(model, rows, a, b, _point(kind, 0.0, radius, small), known, F, dF, s0, s1, pivot)
         for i in range(n_here):
             depth = 0
             stop[0] = (i + 1) / n_here
-            phase[0] = _phase(model, rows, a, b, _point(kind, stop[0], radius, small), F, dF, s0, s1, pivot)
+            phase[0] = _phase(
+                model, rows, a, b, _point(kind, stop[0], radius, small), known, F, dF, s0, s1, pivot
+            )
             while depth >= 0:
                 turn = np.angle(phase[depth] * np.conj(here))
                 if abs(turn) <= 0.7:
@@ -215,9 +223,13 @@ def winding(model, rows, a, b, radius, cut, n_points):
                     return np.nan
                 stop[depth + 1] = 0.5 * (u0 + stop[depth])
                 s = _point(kind, stop[depth + 1], radius, small)
-                phase[depth + 1] = _phase(model, rows, a, b, s, F, dF, s0, s1, pivot)
+                phase[depth + 1] = _phase(model, rows, a, b, s, known, F, dF, s0, s1, pivot)
                 depth += 1
-    return total / np.pi
+    inside = 0
+    for p in known:
+        if abs(p) < radius:
+            inside += 1
+    return total / np.pi + 2.0 * inside
 
 
 @compiled

@@ -251,14 +251,15 @@ def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
     """
     require_positive("f0", f0)
     fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
-    scale, response = maxwell_3_scale(loss_factor, f0)
+    common, response = maxwell_3_scale(loss_factor, f0)
+    scale = float(common)
     k0 = k / (1.0 + scale * response.real)
     return Prony(
         k0=k0, k=tuple(float(v) for v in scale * w * k0), tau=tuple(float(v) for v in 1.0 / (2.0 * pi * fc))
     )
 
 
-def maxwell_3_scale(loss_factor: float, f0: float) -> tuple[float, complex]:
+def maxwell_3_scale(loss_factor: FloatArray | float, f0: float) -> tuple[FloatArray, complex]:
     """Return the common scale s of the three branches and their unscaled response R + iI at ``f0`` [Hz].
 
     Raises
@@ -269,14 +270,15 @@ def maxwell_3_scale(loss_factor: float, f0: float) -> tuple[float, complex]:
     fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
     response = complex(np.sum(w * (1j * f0 / fc) / (1.0 + 1j * f0 / fc)))
     limit = response.imag / response.real
-    if not 0.0 <= loss_factor < limit:
+    eta = np.asarray(loss_factor)
+    if not ((eta >= 0.0) & (eta < limit)).all():
         raise InputError(
             "loss factor out of range",
             field="loss_factor",
             value=loss_factor,
             allowed=f"0 ≤ loss_factor < {limit:.3g}",
         )
-    return loss_factor / (response.imag - loss_factor * response.real), response
+    return np.asarray(eta / (response.imag - eta * response.real)), response
 
 
 def loss_factor(law: Law, frequency_hz: FloatArray | float) -> FloatArray:

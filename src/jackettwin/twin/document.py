@@ -56,6 +56,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
                 "cost": s.cost,
                 "locked_damper": s.locked_damper,
                 "locks_within_extent": s.locks_within,
+                "modes": list(u.problem.states[0].residuals.modes),
                 "frequency_hz": s.frequency_hz,
                 "undamped_frequency_hz": s.undamped_hz,
                 "damping_ratio": s.damping_ratio,

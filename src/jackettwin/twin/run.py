@@ -72,10 +72,11 @@ def run_twin(
     rotor = rotor_damping(config, assembly, numbered, wind)
     priors = {**rotor.priors, **config.update.priors}
     extras = Extras(config.update.dashpots, patterns=rotor.patterns)
+    shown = tuple(m.mode for m in measured)
     updates = []
     for law in laws or config.update.laws:
         step(f"update {law}")
-        updates.append(_update(config, assembly, law, states, priors, extras))
+        updates.append(_update(config, assembly, law, states, priors, extras, shown))
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -108,6 +109,7 @@ def _update(
     states: States,
     priors: Mapping[str, tuple[float, float]],
     extras: Extras,
+    modes: tuple[int, ...],
 ) -> Update:
     chosen, s = family(law), config.update
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
@@ -125,7 +127,7 @@ def _update(
         problem = joint(model, states)
     except InputError as error:
         raise error.at(file=config.path, field="update" if s.bounds or s.priors else None) from None
-    return update(problem, method=s.method, starts=s.starts, particles=s.particles, seed=s.seed)
+    return update(problem, modes=modes, method=s.method, starts=s.starts, particles=s.particles, seed=s.seed)
 
 
 def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:
@@ -179,7 +181,7 @@ def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighti
 
 
 def _residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residuals:
-    """Return the residuals of all measured modes; what takes no part in the fit keeps its place with None."""
+    """Return the residuals of all measured modes; what takes no part in the fit is None."""
     errors = [config.update.model_error(m.mode) for m in measured]
     complete = all(
         (m.frequency_std_hz is not None or e.frequency > 0.0 or not m.fits_frequency)

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, did_you_mean
-from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, C, law_rows
+from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
 from jackettwin.soil.viscoelastic import (
+    MAXWELL_3_CORNERS_HZ,
     MAXWELL_3_WEIGHTS,
     Law,
     Springpot,
@@ -73,53 +74,63 @@ class Family:
     """A law with free parameters.
 
     ``build(values, reference_hz)`` returns the law; ``reference_hz`` is where storage stiffness and loss
-    factor are stated. ``slopes(values, reference_hz, row)`` fills d row/d ln θ, (width, n_parameters), of the
-    law's row of numbers (:mod:`jackettwin.soil.coefficients`).
+    factor are stated. ``rows(values, reference_hz)`` returns the numbers of many laws at once, (n, width)
+    as in :mod:`jackettwin.soil.coefficients`, and d row/d ln θ (n, width, n_parameters).
     """
 
     name: str
     parameters: tuple[Parameter, ...]
     build: Callable[[FloatArray, float], Law]
-    slopes: Callable[[FloatArray, float, FloatArray], FloatArray]
-
-    def row(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
-        """Return the law's row (width,) and its derivatives d row/d ln θ (width, n_parameters)."""
-        row = law_rows([self.build(values, reference_hz)])[0]
-        return row, self.slopes(values, reference_hz, row)
+    rows: Callable[[FloatArray, float], tuple[FloatArray, FloatArray]]
 
 
-def _kelvin_voigt_slopes(values: FloatArray, _: float, row: FloatArray) -> FloatArray:
-    slopes = np.zeros((row.size, 2))
-    slopes[K0, 0], slopes[C, 1] = values
-    return slopes
+def _kelvin_voigt_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
+    rows, slopes = _empty(values, branches=0)
+    rows[:, K0], rows[:, C] = values.T
+    slopes[:, K0, 0], slopes[:, C, 1] = values.T
+    return rows, slopes
 
 
-def _zener_slopes(values: FloatArray, _: float, row: FloatArray) -> FloatArray:
-    slopes = np.zeros((row.size, 3))
-    tau = row[BRANCHES + 1]
-    slopes[K0, 0], slopes[BRANCHES, 2] = values[0], values[2]
-    slopes[BRANCHES + 1, 1], slopes[BRANCHES + 1, 2] = tau, -tau
-    return slopes
+def _zener_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
+    rows, slopes = _empty(values, branches=1)
+    k0, c, k1 = values.T
+    tau = c / k1
+    rows[:, K0], rows[:, BRANCHES], rows[:, BRANCHES + 1] = k0, k1, tau
+    slopes[:, K0, 0], slopes[:, BRANCHES, 2] = k0, k1
+    slopes[:, BRANCHES + 1, 1], slopes[:, BRANCHES + 1, 2] = tau, -tau
+    return rows, slopes
 
 
-def _maxwell_3_slopes(values: FloatArray, reference_hz: float, row: FloatArray) -> FloatArray:
-    eta = float(values[1])
+def _maxwell_3_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+    rows, slopes = _empty(values, branches=3)
+    k, eta = values.T
+    w = np.array(MAXWELL_3_WEIGHTS)
     s, response = maxwell_3_scale(eta, reference_hz)
     ds = eta * response.imag / (response.imag - eta * response.real) ** 2
-    slopes = np.zeros((row.size, 2))
-    slopes[K0, 0] = row[K0]
-    slopes[BRANCHES::2, 0] = row[BRANCHES::2]
     # k0 = k/(1 + sR), k_j = s w_j k0
     shrink = 1.0 / (1.0 + s * response.real)
-    slopes[K0, 1] = -row[K0] * response.real * shrink * ds
-    slopes[BRANCHES::2, 1] = row[K0] * np.array(MAXWELL_3_WEIGHTS) * shrink * ds
-    return slopes
+    k0 = k * shrink
+    rows[:, K0] = k0
+    rows[:, BRANCHES::2] = (s * k0)[:, None] * w
+    rows[:, BRANCHES + 1 :: 2] = 1.0 / (2.0 * pi * np.array(MAXWELL_3_CORNERS_HZ))
+    slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
+    slopes[:, K0, 1] = -k0 * response.real * shrink * ds
+    slopes[:, BRANCHES::2, 1] = (k0 * shrink * ds)[:, None] * w
+    return rows, slopes
 
 
-def _springpot_slopes(values: FloatArray, _: float, row: FloatArray) -> FloatArray:
-    slopes = np.zeros((row.size, 2))
-    slopes[K_ALPHA, 0], slopes[ALPHA, 1] = values
-    return slopes
+def _springpot_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+    rows, slopes = _empty(values, branches=0)
+    rows[:, K_ALPHA], rows[:, ALPHA] = values.T
+    rows[:, OMEGA0] = 2.0 * pi * reference_hz
+    slopes[:, K_ALPHA, 0], slopes[:, ALPHA, 1] = values.T
+    return rows, slopes
+
+
+def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray]:
+    rows = np.zeros((len(values), BRANCHES + 2 * branches))
+    rows[:, OMEGA0] = 1.0
+    return rows, np.zeros((*rows.shape, values.shape[1]))
 
 
 # Bounds of the thesis, (8.6)–(8.10).
@@ -133,25 +144,25 @@ FAMILIES: Mapping[str, Family] = {
             "kelvin-voigt",
             (Parameter("k", *_K), Parameter("c", *_C)),
             lambda v, _: kelvin_voigt(float(v[0]), float(v[1])),
-            _kelvin_voigt_slopes,
+            _kelvin_voigt_rows,
         ),
         Family(
             "zener",
             (Parameter("k0", *_K), Parameter("c", *_C), Parameter("k1", *_K)),
             lambda v, _: zener(float(v[0]), float(v[1]), float(v[2])),
-            _zener_slopes,
+            _zener_rows,
         ),
         Family(
             "maxwell-3",
             (Parameter("k", *_K), Parameter("loss_factor", 1e-4, 0.6, "-")),
             lambda v, f0: maxwell_3(float(v[0]), float(v[1]), f0),
-            _maxwell_3_slopes,
+            _maxwell_3_rows,
         ),
         Family(
             "springpot",
             (Parameter("k", *_K), Parameter("alpha", 1e-4, 0.5, "-")),
             lambda v, f0: Springpot(float(v[0]), float(v[1]), 2.0 * pi * f0),
-            _springpot_slopes,
+            _springpot_rows,
         ),
     )
 }

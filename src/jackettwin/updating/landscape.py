@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.solutions import cost
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,12 +23,9 @@ def sensitivity_curve(
     These are the thesis's figures 8.5 and 8.6.
     """
     factors = np.linspace(1.0 - span, 1.0 + span, n)
-    values = np.empty(n)
-    for i, factor in enumerate(factors):
-        moved = theta.copy()
-        moved[parameter] *= factor
-        values[i] = cost(problem, moved)
-    return factors, values
+    moved = np.tile(theta, (n, 1))
+    moved[:, parameter] *= factors
+    return factors, _costs(problem, theta, moved)
 
 
 def cost_surface(
@@ -40,10 +36,10 @@ def cost_surface(
     y: FloatArray,
 ) -> FloatArray:
     """Return the cost (n_y, n_x) over two parameters, the others held at ``theta`` (figures 8.2, 8.3)."""
-    surface = np.empty((y.size, x.size))
-    for i, second in enumerate(y):
-        for j, first in enumerate(x):
-            moved = theta.copy()
-            moved[axes[0]], moved[axes[1]] = first, second
-            surface[i, j] = cost(problem, moved)
-    return surface
+    moved = np.tile(theta, (y.size * x.size, 1))
+    moved[:, axes[0]], moved[:, axes[1]] = np.tile(x, y.size), np.repeat(y, x.size)
+    return _costs(problem, theta, moved).reshape(y.size, x.size)
+
+
+def _costs(problem: Problem, theta: FloatArray, moved: FloatArray) -> FloatArray:
+    return problem.costs(np.log(moved), problem.anchor(np.log(theta)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
@@ -84,6 +84,13 @@ class SupportModel:
     highest_mode: int
     extras: Extras = Extras()
 
+    def reaching(self, mode: int) -> SupportModel:
+        """Return the model with a band up to a numbered mode; itself if it reaches there."""
+        if mode <= self.highest_mode:
+            return self
+        condensed, _ = _condensed(self.assembly, self.suffixes, self.rayleigh, self.extras, mode)
+        return replace(self, condensed=condensed, highest_mode=mode)
+
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
         per_group = np.reshape(self._split(theta)[0], (len(self.suffixes), -1))
@@ -98,9 +105,8 @@ class SupportModel:
         """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
         own, extra = self._split(theta)
         n_sets, n_groups, p = len(theta), len(self.suffixes), len(self.family.parameters)
-        pairs = [self.family.row(v, self.reference_hz) for v in np.reshape(own, (-1, p))]
-        soil = np.array([row for row, _ in pairs]).reshape(n_sets, n_groups, -1)
-        slopes = np.array([slopes for _, slopes in pairs]).reshape(*soil.shape, p)
+        rows, slopes = self.family.rows(np.reshape(own, (-1, p)), self.reference_hz)
+        soil, slopes = rows.reshape(n_sets, n_groups, -1), slopes.reshape(n_sets, n_groups, -1, p)
         rotor, rotor_slopes = self.extras.rows(extra, soil.shape[2])
         rows = np.concatenate([soil, rotor], axis=1)
         jacobian = np.zeros((*rows.shape, theta.shape[1]))
@@ -275,6 +281,16 @@ def support_model(
     known |= {p.name for p in extras.parameters}
     for field, given in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, given, known, family)
+    condensed, first_hz = _condensed(assembly, suffixes, rayleigh, extras, highest_mode)
+    return SupportModel(
+        assembly, rayleigh, family, parameters, suffixes, condensed, first_hz, highest_mode, extras
+    )
+
+
+def _condensed(
+    assembly: Assembly, suffixes: tuple[str, ...], rayleigh: Rayleigh, extras: Extras, highest_mode: int
+) -> tuple[Condensed, float]:
+    """Return the structure on its support DOFs and the first pinned frequency [Hz]."""
     # distinct stand-in laws, so that every tie group stays a group of its own
     stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(suffixes))]
     system = build_system(
@@ -286,10 +302,7 @@ def support_model(
         ),
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
-    condensed = condense(system, below_hz=_ROOM * float(pinned_hz[-1]))
-    return SupportModel(
-        assembly, rayleigh, family, parameters, suffixes, condensed, float(pinned_hz[0]), highest_mode, extras
-    )
+    return condense(system, below_hz=_ROOM * float(pinned_hz[-1])), float(pinned_hz[0])
 
 
 def _suffixes(assembly: Assembly, tie: str) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.response.numbered import NumberedModes
+from jackettwin.response.numbered import NumberedModes, Status
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior
@@ -108,13 +108,10 @@ class Problem:
 
         The normal priors follow the data's residuals.
         """
-        values, rows, found = [], [], []
-        for i, state in enumerate(self.states):
+        values, rows = [], []
+        found = self._modes(z[None], near, slopes=True)
+        for state, modes in zip(self.states, found, strict=True):
             r = state.residuals
-            modes = self.model.predict_many(
-                self.vectors(z[None], state), r.modes, near=None if near is None else near[i]
-            )
-            found.append(modes)
             jacobian = np.zeros((r.count, z.size))
             if np.isnan(modes.poles).any():
                 values.append(np.full(r.count, _LOST))
@@ -127,29 +124,58 @@ class Problem:
             values.append(value)
             rows.append(jacobian)
         lost = any(np.isnan(modes.poles).any() for modes in found)
-        return np.concatenate(values), np.concatenate(rows), None if lost else tuple(found)
+        return np.concatenate(values), np.concatenate(rows), None if lost else found
 
     def anchor(self, z: FloatArray) -> Found | None:
         """Return the modes at one point (d,), for many others to start from; None if a mode is lost there."""
-        found = self.log_likelihood(z[None], None)[1]
+        found = self._modes(z[None], None, slopes=False)
         return None if any(np.isnan(modes.poles).any() for modes in found) else found
+
+    def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
+        """Return the cost (n,), (8.4) or χ² with the normal priors, at points (n, d)."""
+        cost = np.zeros(len(z))
+        for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
+            known = np.asarray(~np.isnan(modes.poles).any(axis=1))
+            r = state.residuals.values(modes.poles[known])
+            cost[known] += (r * r).sum(axis=1)
+            cost[~known] += state.residuals.count * _LOST**2
+        if not self.relative:
+            cost += [float(r @ r) for r, _ in map(self.prior.rows, z)]
+        return cost
 
     def log_likelihood(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, Found]:
         """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
-        log_l, found = np.zeros(len(z)), []
-        for i, state in enumerate(self.states):
-            modes = self.model.predict_many(
-                self.vectors(z, state),
-                state.residuals.modes,
-                near=None if near is None else near[i],
-                slopes=False,
-            )
+        log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)
+        for state, modes in zip(self.states, found, strict=True):
             known = np.asarray(~np.isnan(modes.poles).any(axis=1))
             r = state.residuals.values(modes.poles[known])
             log_l[known] += -0.5 * (r * r).sum(axis=1) - state.residuals.log_normalisation
             log_l[~known] = NEVER
-            found.append(modes)
-        return log_l, tuple(found)
+        return log_l, found
+
+    def _modes(self, z: FloatArray, near: Found | None, *, slopes: bool) -> Found:
+        """Return the modes of every state at points (n, d).
+
+        Without a neighbour the other states start from the first one's modes: only the rotor differs.
+        """
+        found: list[NumberedModes] = []
+        for i, state in enumerate(self.states):
+            modes = state.residuals.modes
+            start = None if near is None else near[i]
+            if start is None and found and set(modes) <= set(self.states[0].residuals.modes):
+                start = _some(found[0], [self.states[0].residuals.modes.index(m) for m in modes])
+            vectors = self.vectors(z, state)
+            found.append(self.model.predict_many(vectors, modes, near=start, slopes=slopes))
+        return tuple(found)
+
+
+def _some(found: NumberedModes, which: list[int]) -> NumberedModes:
+    """Return some of the modes; a set that lost one of them is no start."""
+    poles = found.poles[:, which]
+    status = np.where(np.isnan(poles).any(axis=1), Status.UNCERTIFIED, found.status)
+    return replace(
+        found, poles=poles, shapes=found.shapes[:, which], slopes=found.slopes[:, which], status=status
+    )
 
 
 def single(model: SupportModel, residuals: Residuals) -> Problem:

@@ -159,12 +159,6 @@ def search(
     )
 
 
-def cost(problem: Problem, theta: FloatArray) -> float:
-    """Return the cost, (8.4) or χ², at a parameter vector."""
-    r, _, _ = problem.evaluate(np.log(theta), None)
-    return float(r @ r)
-
-
 def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
     low, high = problem.prior.low, problem.prior.high
     sampler = qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))

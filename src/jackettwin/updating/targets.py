@@ -56,9 +56,14 @@ class Residuals:
         ]
 
     @property
+    def used(self) -> tuple[Target, ...]:
+        """The targets that have a value."""
+        return tuple(t for t in self.targets if t.frequency_hz is not None or t.damping_ratio is not None)
+
+    @property
     def modes(self) -> tuple[int, ...]:
-        """Mode numbers, in the order of the targets."""
-        return tuple(target.mode for target in self.targets)
+        """Mode numbers of the targets that have a value, in their order."""
+        return tuple(target.mode for target in self.used)
 
     @property
     def names(self) -> list[str]:
@@ -99,9 +104,9 @@ class Residuals:
         return float(np.sum(np.log(np.sqrt(2.0 * np.pi) * np.array(scales))))
 
     def values(self, poles: ComplexArray) -> FloatArray:
-        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_targets)."""
+        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_modes)."""
         columns = []
-        for target, pole in zip(self.targets, poles.T, strict=True):
+        for target, pole in zip(self.used, poles.T, strict=True):
             size = np.abs(pole)
             if target.frequency_hz is not None:
                 columns.append(
@@ -121,11 +126,11 @@ class Residuals:
 
         Parameters
         ----------
-        poles : (n_targets,) λ
-        slopes : (n_targets, n_parameters) dλ/d ln θ
+        poles : (n_modes,) λ of ``modes``
+        slopes : (n_modes, n_parameters) dλ/d ln θ
         """
         values, rows = [], []
-        for target, pole, slope in zip(self.targets, poles, slopes, strict=True):
+        for target, pole, slope in zip(self.used, poles, slopes, strict=True):
             size = abs(pole)
             radial = (np.conj(pole) * slope).real / size  # d|λ|
             if target.frequency_hz is not None:

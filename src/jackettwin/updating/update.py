@@ -20,7 +20,6 @@ from jackettwin.updating.predictive import Predictive, predict_quantities
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.profile import Profile, profile
 from jackettwin.updating.solutions import Method, Search, Solution, search
-from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -76,12 +75,16 @@ class Update:
     Attributes
     ----------
     problem : Problem
+    model : SupportModel
+        That was updated, reaching up to the highest mode shown.
+    shown : mode numbers
+        Of ``modes`` and ``budget``: measured ones, whether they were fitted or not.
     search : Search
         Every solution, best first, and how sure it is that these are all.
     best : Solution
         The cheapest one without a locked damper; the cheapest of all if every one is locked.
     modes : ExactModes
-        Of the full model at the best solution, in the order of ``residuals.modes``.
+        Of the full model at the best solution, in the order of ``shown``.
     budget : Budget
         Whose damping each of these modes has.
     uncertainty : Uncertainty or None
@@ -89,6 +92,8 @@ class Update:
     """
 
     problem: Problem
+    model: SupportModel
+    shown: tuple[int, ...]
     search: Search
     best: Solution
     modes: ExactModes
@@ -101,16 +106,6 @@ class Update:
         return self.search.solutions
 
     @property
-    def model(self) -> SupportModel:
-        """The model that was updated."""
-        return self.problem.model
-
-    @property
-    def residuals(self) -> Residuals:
-        """The data of the first operating state."""
-        return self.problem.states[0].residuals
-
-    @property
     def law(self) -> str:
         """Name of the law."""
         return self.model.family.name
@@ -119,6 +114,7 @@ class Update:
 def update(
     problem: Problem,
     *,
+    modes: tuple[int, ...] | None = None,
     method: Method = "least-squares",
     starts: int = 32,
     particles: int = 150,
@@ -129,6 +125,8 @@ def update(
 
     Parameters
     ----------
+    modes : mode numbers, optional
+        To show the full model's; default: those of the first operating state's data.
     particles : int
         Of each of the posterior's four islands; doubled once if they do not agree.
 
@@ -139,17 +137,21 @@ def update(
     """
     found = search(problem, method=method, starts=starts, seed=seed, progress=progress)
     best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
-    modes = problem.states[0].residuals.modes
-    uncertainty = _uncertainty(problem, best, particles, seed) if problem.weighted else None
+    shown = problem.states[0].residuals.modes if modes is None else modes
+    model = problem.model.reaching(max(shown))
+    uncertainty = _uncertainty(problem, model, shown, best, particles, seed) if problem.weighted else None
+    theta = _first(problem, np.log(best.theta)[None])[0]
     return Update(
         problem=problem,
+        model=model,
+        shown=shown,
         search=found,
         best=best,
-        modes=problem.model.exact_modes(_first(problem, np.log(best.theta)[None])[0], modes),
+        modes=model.exact_modes(theta, shown),
         budget=damping_budget(
-            problem.model,
-            _first(problem, np.log(best.theta)[None])[0],
-            modes,
+            model,
+            theta,
+            shown,
             draws=None if uncertainty is None else _first(problem, _thinned(uncertainty.log_theta)),
         ),
         uncertainty=uncertainty,
@@ -175,11 +177,13 @@ def _thinned(z: FloatArray) -> FloatArray:
     return z[:: max(1, len(z) // _DRAWS)][:_DRAWS]
 
 
-def _uncertainty(problem: Problem, best: Solution, particles: int, seed: int) -> Uncertainty:
+def _uncertainty(
+    problem: Problem, model: SupportModel, shown: tuple[int, ...], best: Solution, particles: int, seed: int
+) -> Uncertainty:
     posterior, status = _posterior(problem, particles, seed)
     z = laplace_draws(problem, best.theta, seed=seed) if posterior is None else posterior.log_theta
-    measured = [m for m in problem.states[0].residuals.modes if m not in _PREDICTED]
-    known = tuple(m for m in _PREDICTED if m <= problem.model.highest_mode)
+    beyond = [m for m in shown if m not in _PREDICTED]
+    known = tuple(m for m in _PREDICTED if m <= model.highest_mode)
     return Uncertainty(
         posterior=posterior,
         status=status,
@@ -187,7 +191,7 @@ def _uncertainty(problem: Problem, best: Solution, particles: int, seed: int) ->
         log_theta=z,
         verdicts=identifiability(problem, z, seed=seed),
         next_measurements=next_measurements(problem, z),
-        predictive=predict_quantities(problem.model, _first(problem, _thinned(z)), (*known, *measured)),
+        predictive=predict_quantities(model, _first(problem, _thinned(z)), (*known, *beyond)),
         profiles=tuple(profile(problem, best.theta, j) for j in range(len(problem.parameters))),
     )
 
