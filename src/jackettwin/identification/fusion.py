@@ -20,7 +20,8 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from jackettwin.errors import InputError
-from jackettwin.identification.mac import mac, normalised
+from jackettwin.identification.mac import mac
+from jackettwin.identification.setups import WEAK_TIE, all_channels, merged_shape, tie
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +53,7 @@ class FusedMode:
     log_covariance : (2, 2)
         Of (ln f, ln ζ).
     mode_shape : (n_channels,) complex
+        NaN at a channel that no record with this mode has.
     scatter_frequency, scatter_damping_ratio : float
         Between-record standard deviations of f and ζ, relative, beyond what the records' own uncertainty
         explains: wind, tide and temperature show here.
@@ -87,33 +89,30 @@ class FusedIdentification:
 
 
 def fuse(identifications: Sequence[Identification]) -> FusedIdentification:
-    """Fuse the modes of several records of the same channels.
+    """Fuse the modes of several records.
+
+    Modes are recognised by the channels that all records share; shapes hold every channel (``setups``).
 
     Raises
     ------
     InputError
-        If there is no record, or records share no channel.
+        If there is no record, records share no channel, or one name stands for different sensors.
     """
     if not identifications:
         raise InputError("nothing to fuse", field="records", allowed="at least one record")
     names = _common_channels(identifications)
-    first = identifications[0]
+    channels = all_channels(identifications)
     rows = [_rows(result, names) for result in identifications]
     tracks = _tracks(identifications, rows)
     fewest = max(1, round(FEWEST_SHARE * len(identifications)))
     kept = [track for track in tracks if len(track) >= fewest]
-    modes = [_fused_mode(identifications, rows, track) for track in kept]
-    warnings = []
-    for result in identifications:
-        gone = len(result.channels) - len(names)
-        if gone:
-            warnings.append(f"{result.records[0]}: {gone} channels are not in every record and were left out")
+    modes = [_fused_mode(identifications, channels, names, track) for track in kept]
     return FusedIdentification(
         records=tuple(name for result in identifications for name in result.records),
-        channels=tuple(first.channels[i] for i in rows[0]),
+        channels=channels,
         modes=tuple(sorted(modes, key=lambda mode: mode.frequency_hz)),
         duration_s=float(sum(result.duration_s for result in identifications)),
-        warnings=tuple(warnings),
+        warnings=_warnings(channels, names, modes),
     )
 
 
@@ -142,6 +141,23 @@ def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, fl
     fixed = 1.0 / weight.sum()
     spread = weight @ (values - mean) ** 2 / (n - 1) * fixed
     return float(mean), float(max(spread, fixed)), between
+
+
+def _warnings(channels: Sequence[Channel], shared: list[str], modes: list[FusedMode]) -> tuple[str, ...]:
+    """Say so if records hold different channels, and where those they share hardly move."""
+    if len(shared) == len(channels):
+        return ()
+    at = _places(channels, shared)
+    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_TIE]
+    return (
+        f"not every record has every channel: shapes are tied by {', '.join(shared)}",
+        *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),
+    )
+
+
+def _places(channels: Sequence[Channel], names: Sequence[str]) -> npt.NDArray[np.int64]:
+    order = [c.name for c in channels]
+    return np.array([order.index(name) for name in names], dtype=np.int64)
 
 
 def _common_channels(identifications: Sequence[Identification]) -> list[str]:
@@ -203,7 +219,10 @@ def _distance(
 
 
 def _fused_mode(
-    identifications: Sequence[Identification], rows: list[list[int]], track: dict[int, int]
+    identifications: Sequence[Identification],
+    channels: Sequence[Channel],
+    shared: list[str],
+    track: dict[int, int],
 ) -> FusedMode:
     order = sorted(track)
     members = [identifications[r].modes[track[r]] for r in order]
@@ -219,7 +238,12 @@ def _fused_mode(
     covariance = np.diag([var_f, var_zeta])
     f = float(np.exp(ln_f))
     std_f, std_zeta = np.sqrt([var_f, var_zeta])
-    shape = _mean_shape([mode.mode_shape[rows[r]] for r, mode in zip(order, members, strict=True)])
+    shape = merged_shape(
+        [mode.mode_shape for mode in members],
+        [_places(channels, [c.name for c in identifications[r].channels]) for r in order],
+        _places(channels, shared),
+        len(channels),
+    )
     return FusedMode(
         frequency_hz=f,
         damping_ratio=zeta,
@@ -257,10 +281,3 @@ def _variances(
         if mode.log_covariance is not None
     ]
     return np.asarray(limit * (np.median(claimed) if claimed else 1.0))
-
-
-def _mean_shape(shapes: list[ComplexArray]) -> ComplexArray:
-    """Return the principal direction of unit shapes, whatever their phase."""
-    unit = np.array([shape / np.linalg.norm(shape) for shape in shapes])
-    _, vectors = np.linalg.eigh(unit.T @ unit.conj())
-    return normalised(np.asarray(vectors[:, -1]))

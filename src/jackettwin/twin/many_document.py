@@ -73,7 +73,9 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
         "records_with_mode": len(mode.records),
         "mode_shape": {
-            name: [float(v.real), float(v.imag)] for name, v in zip(channels, mode.mode_shape, strict=True)
+            name: [float(v.real), float(v.imag)]
+            for name, v in zip(channels, mode.mode_shape, strict=True)
+            if v == v
         },
     }
 
