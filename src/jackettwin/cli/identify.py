@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,7 @@ _SHOWN = 5
     type=click.Choice(["ssi-cov", "ssi-dat", "plscf", "efdd"]),
     help="How poles are found; default ssi-cov.",
 )
+@click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
 @click.option(
     "--picks",
     "picks_file",
@@ -52,6 +54,7 @@ def identify_command(
     records: tuple[str, ...],
     settings_file: str | None,
     method: str | None,
+    real_poles: bool,
     picks_file: str | None,
     out: Path | None,
     drop_dead: bool,
@@ -62,7 +65,7 @@ def identify_command(
 
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
-    settings = _settings(settings_file, method)
+    settings = _settings(settings_file, method, real_poles)
     picks = _picks(picks_file)
     _refuse_format(out)
     files = record_files(records)
@@ -104,12 +107,13 @@ def _many(
     return many_document(seen, failed)
 
 
-def _settings(path: str | None, method: str | None) -> IdentificationSettings:
+def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:
     settings = IdentificationSettings()
     if path is not None:
         with located(file=path):
             settings = IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
-    return settings if method is None else settings.with_method(method)
+    settings = settings if method is None else settings.with_method(method)
+    return replace(settings, real_poles=True) if real_poles else settings
 
 
 def _picks(path: str | None) -> tuple[Pick, ...]:
@@ -142,6 +146,9 @@ def _print_one(document: Mapping[str, Any]) -> None:
     for m in document["modes"]:
         table.add_row(*_numbers(m), f"{m['mpc']:.3f}", m["status"])
     output.print(table)
+    for pole in document["real_poles"]:
+        low, high = pole["rate_interval_95"]
+        output.print(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
     _print_rejected(document["rejected"])
     for finding in document["quality"]["findings"]:
         output.print(f"quality: {finding['channel'] or 'record'}: {finding['text']}")

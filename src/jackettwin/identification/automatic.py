@@ -17,13 +17,15 @@ from jackettwin.identification.fdd import fdd
 from jackettwin.identification.picks import Pick, of_record, picked_clusters, with_verdicts
 from jackettwin.identification.plscf import plscf_poles
 from jackettwin.identification.prepared import Prepared, prepare
+from jackettwin.identification.real_poles import RealPole, real_poles
 from jackettwin.identification.resolve import guarded_band_hz
 from jackettwin.identification.selection import candidates, find_tones
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.spectra import welch
-from jackettwin.identification.ssi_cov import OrderPoles, order_poles, ssi_cov
+from jackettwin.identification.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
 from jackettwin.identification.ssi_dat import ssi_dat
 from jackettwin.identification.ssi_uncertainty import (
+    Propagation,
     block_deviations,
     order_poles_with_uncertainty,
     propagation,
@@ -132,6 +134,7 @@ def identify(
         settings=resolved,
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *chosen.warnings),
+        real_poles=_relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
 
@@ -182,22 +185,52 @@ def _ssi_cov_poles(
     ready: Prepared, settings: IdentificationSettings, keep: Callable[[ComplexArray], BoolArray]
 ) -> list[OrderPoles]:
     resolved = ready.settings
-    n_lags = 2 * resolved.block_rows
-    known = settings.blocks >= FEWEST_BLOCKS and (settings.weighting, settings.state_matrix) == (
-        "br",
-        "shift",
+    subspace = _subspace(ready, settings)
+    orders = subspace.orders(resolved.orders)
+    if not _uncertain(settings):
+        return order_poles(subspace, orders)
+    return order_poles_with_uncertainty(_propagation(ready, subspace, settings), orders, keep=keep)
+
+
+def _relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[RealPole, ...]:
+    if not _uncertain(settings):
+        raise InputError(
+            "real poles need the uncertainty of ssi-cov",
+            field="real_poles",
+            value=True,
+            allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
+            remedy="leave these settings at their defaults",
+        )
+    resolved, subspace = ready.settings, _subspace(ready, settings)
+    shared = _propagation(ready, subspace, settings)
+    return real_poles(
+        order_poles_with_uncertainty(shared, subspace.orders(resolved.orders), real=True),
+        settings,
+        sample_rate_hz=resolved.sample_rate_hz,
+        band_hz=(resolved.lowest_frequency_hz, resolved.highest_frequency_hz),
+        scale=ready.scale,
     )
-    subspace = ssi_cov(
-        covariances(ready.y, n_lags)[:, :, ready.references],
+
+
+def _uncertain(settings: IdentificationSettings) -> bool:
+    """Tell whether the uncertainty of the poles is wanted, and known for this variant."""
+    variant = (settings.method, settings.weighting, settings.state_matrix)
+    return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
+
+
+def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
+    resolved = ready.settings
+    return ssi_cov(
+        covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
         block_rows=resolved.block_rows,
         max_order=resolved.orders[-1],
         weighting=settings.weighting,
         state_matrix=settings.state_matrix,
-        factors=known,
+        factors=_uncertain(settings),
     )
-    orders = subspace.orders(resolved.orders)
-    if not known:
-        return order_poles(subspace, orders)
-    blocks = block_covariances(ready.y, n_lags, settings.blocks)[..., ready.references]
-    shared = propagation(subspace, block_deviations(blocks, resolved.block_rows))
-    return order_poles_with_uncertainty(shared, orders, keep=keep)
+
+
+def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
+    rows = ready.settings.block_rows
+    blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
+    return propagation(subspace, block_deviations(blocks, rows))

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 if TYPE_CHECKING:
     from jackettwin.identification.picks import Pick
+    from jackettwin.identification.real_poles import RealPole
     from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
@@ -176,5 +177,7 @@ class Identification:
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...] = ()
+    real_poles: tuple[RealPole, ...] = ()
+    """Relaxations, if they were asked for."""
     picks: tuple[Pick, ...] = ()
     """The candidates that were considered; ``identify(…, picks=…)`` considers the same again."""

@@ -38,7 +38,7 @@ _RANGES: dict[str, tuple[float, float]] = {
 }
 _MAY_BE_ZERO = {"min_mpc", "min_order_share"}
 _WHOLE = {"block_rows", "max_order", "order_step", "blocks"}
-_SWITCHES = {"refine"}
+_SWITCHES = {"refine", "real_poles"}
 
 
 @dataclass(frozen=True)
@@ -92,6 +92,9 @@ class IdentificationSettings:
         Whether the modes are refined by maximum likelihood.
     blocks : int
         Blocks of the record whose scatter gives the uncertainty (0 to 1000); 0 leaves it out.
+    real_poles : bool
+        Whether relaxations (poles that do not oscillate) are looked for as well. Method ssi-cov with
+        its uncertainty only.
     """
 
     method: Literal["ssi-cov", "ssi-dat", "plscf", "efdd"] = "ssi-cov"
@@ -116,6 +119,7 @@ class IdentificationSettings:
     min_order_share: float = 0.5
     blocks: int = 30
     refine: bool = True
+    real_poles: bool = False
 
     def __post_init__(self) -> None:
         for item in fields(self):

@@ -150,6 +150,8 @@ def order_poles_with_uncertainty(
     shared: Propagation,
     orders: Sequence[int],
     keep: Callable[[ComplexArray], BoolArray] | None = None,
+    *,
+    real: bool = False,
 ) -> list[OrderPoles]:
     """Return the poles of each order with the deviations of eigenvalues and shapes.
 
@@ -157,11 +159,14 @@ def order_poles_with_uncertainty(
     ----------
     keep : callable, optional
         Which of the eigenvalues (n,) to report; default all of positive frequency.
+    real : bool
+        Report real eigenvalues between 0 and 1 instead.
     """
     out = []
     for order in orders:
         eigenvalues, vectors = linalg.eig(shared.subspace.state_matrix(order), check_finite=False)
-        chosen = eigenvalues.imag > 0.0
+        mu = eigenvalues.real
+        chosen = (eigenvalues.imag == 0.0) & (mu > 0.0) & (mu < 1.0) if real else eigenvalues.imag > 0.0
         if keep is not None:
             chosen &= keep(eigenvalues)
         out.append(_one_order(shared, order, eigenvalues, vectors, np.flatnonzero(chosen)))

@@ -20,6 +20,7 @@ from jackettwin.identification.estimate import (
     Stabilisation,
 )
 from jackettwin.identification.picks import Pick, plain_picks
+from jackettwin.identification.real_poles import RealPole
 from jackettwin.records import Channel
 
 _ARRAYS = ("log_covariance", "mode_shape_std", "cramer_rao_log_std")
@@ -47,6 +48,10 @@ def to_plain(found: Identification) -> dict[str, Any]:
         "duration_s": found.duration_s,
         "warnings": list(found.warnings),
         "picks": plain_picks(found.picks),
+        "real_poles": [
+            {**vars(pole), "mode_shape": [pole.mode_shape.real.tolist(), pole.mode_shape.imag.tolist()]}
+            for pole in found.real_poles
+        ],
     }
 
 
@@ -70,6 +75,16 @@ def from_plain(data: dict[str, Any]) -> Identification:
         duration_s=data["duration_s"],
         warnings=tuple(data["warnings"]),
         picks=tuple(Pick(**pick) for pick in data["picks"]),
+        real_poles=tuple(
+            RealPole(
+                **{
+                    **pole,
+                    "mode_shape": _complex(pole["mode_shape"]),
+                    "rate_interval_95": tuple(pole["rate_interval_95"]),
+                }
+            )
+            for pole in data["real_poles"]
+        ),
     )
     return slim(bare)
 

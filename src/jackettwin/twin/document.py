@@ -252,6 +252,17 @@ def identification_document(found: Identification, quality: dict[str, Any]) -> d
             "lag_window_s": s.lag_window_s,
             "orders": list(s.orders),
         },
+        "real_poles": [
+            {
+                "rate_rad_s": pole.rate_rad_s,
+                "rate_std_rad_s": pole.rate_std_rad_s,
+                "rate_interval_95": pole.rate_interval_95,
+                "time_constant_s": pole.time_constant_s,
+                "order_share": pole.order_share,
+                "mode_shape": _shape(pole.mode_shape, names),
+            }
+            for pole in found.real_poles
+        ],
         "picks": plain_picks(found.picks),
         "duration_s": found.duration_s,
         "quality": quality,
