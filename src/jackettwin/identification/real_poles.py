@@ -1,7 +1,7 @@
 r"""Real poles: relaxations that do not oscillate, of a damper or a creeping soil.
 
-The discrete eigenvalue of :math:`\lambda = -a` is :math:`e^{-a\Delta t}`, real between 0 and 1. Models that fit
-noise are full of them, so a relaxation counts only if model orders agree on its rate and its uncertainty is
+The discrete eigenvalue of :math:`\lambda = -a` is :math:`e^{-a\Delta t}`, real between 0 and 1. Models fit
+noise with many of them, so a relaxation counts only if model orders agree on its rate and its uncertainty is
 known and moderate. No method beats :math:`\sigma_{\ln a} = \sqrt{2/(aT)}`, the limit of a first-order process
 observed alone for T.
 """
