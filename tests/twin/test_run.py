@@ -8,6 +8,7 @@ import pytest
 
 from jackettwin.files.atomic import null_for_nan
 from jackettwin.identification import ModalEstimate
+from jackettwin.identification.selection import with_covariance
 from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Sighting, fuse
@@ -123,9 +124,9 @@ def test_result_is_json_with_null_for_unknown(pile: TwinResult, thesis: TwinResu
 
 def sighting(f: float, zeta: float, f_std: float | None = None, zeta_std: float | None = None) -> Sighting:
     shape = np.array([1.0 + 0j])
-    estimate = ModalEstimate(
-        f, zeta, shape, 1.0, 0.0, 1.0, frequency_std_hz=f_std, damping_ratio_std=zeta_std
-    )
+    estimate = ModalEstimate(f, zeta, shape, 1.0, 0.0, 1.0)
+    if f_std is not None and zeta_std is not None:
+        estimate = with_covariance(estimate, np.diag([(f_std / f) ** 2, (zeta_std / zeta) ** 2]))
     return Sighting(estimate, 1.0, 600.0)
 
 

@@ -41,6 +41,24 @@ FEWEST_SHARE = 0.3
 
 
 @dataclass(frozen=True)
+class Average:
+    """Frequency and damping of one mode over records.
+
+    Attributes
+    ----------
+    log_std : (of ln f, of ln ζ)
+        Of the mean.
+    scatter : (of ln f, of ln ζ)
+        Between records, beyond their own uncertainty.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    log_std: tuple[float, float]
+    scatter: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class FusedMode:
     """A mode followed through several records.
 
@@ -160,6 +178,30 @@ def _places(channels: Sequence[Channel], names: Sequence[str]) -> npt.NDArray[np
     return np.array([order.index(name) for name in names], dtype=np.int64)
 
 
+def average(members: Sequence[ModalEstimate], duration_s: FloatArray) -> Average:
+    """Return the mean of one mode over records: ln f and ζ, with random effects.
+
+    Parameters
+    ----------
+    members : sequence of ModalEstimate
+        The mode in each record; one without a covariance takes the long-data limits.
+    duration_s : (n_records,)
+    """
+    own_zeta = np.array([mode.damping_ratio for mode in members])
+    zeta = float(np.mean(own_zeta))
+    for _ in range(3):
+        relative = random_effects(own_zeta / zeta, _variances(members, duration_s, 1, zeta))
+        zeta *= relative[0]
+    log_f = np.log([mode.frequency_hz for mode in members])
+    mean_f, variance_f, between_f = random_effects(log_f, _variances(members, duration_s, 0, zeta))
+    return Average(
+        frequency_hz=float(np.exp(mean_f)),
+        damping_ratio=zeta,
+        log_std=(float(np.sqrt(variance_f)), float(np.sqrt(relative[1]))),
+        scatter=(float(np.sqrt(between_f)), float(np.sqrt(relative[2]))),
+    )
+
+
 def _common_channels(identifications: Sequence[Identification]) -> list[str]:
     sets = [{c.name for c in result.channels} for result in identifications]
     common = set.intersection(*sets)
@@ -226,18 +268,9 @@ def _fused_mode(
 ) -> FusedMode:
     order = sorted(track)
     members = [identifications[r].modes[track[r]] for r in order]
-    log_f = np.log([mode.frequency_hz for mode in members])
-    own_zeta = np.array([mode.damping_ratio for mode in members])
-    duration = np.array([identifications[r].duration_s for r in order])
-    zeta = float(np.mean(own_zeta))
-    for _ in range(3):
-        relative = random_effects(own_zeta / zeta, _variances(members, duration, 1, zeta))
-        zeta *= relative[0]
-    _, var_zeta, between_zeta = relative
-    ln_f, var_f, between_f = random_effects(log_f, _variances(members, duration, 0, zeta))
-    covariance = np.diag([var_f, var_zeta])
-    f = float(np.exp(ln_f))
-    std_f, std_zeta = np.sqrt([var_f, var_zeta])
+    mean = average(members, np.array([identifications[r].duration_s for r in order]))
+    f, zeta = mean.frequency_hz, mean.damping_ratio
+    std_f, std_zeta = mean.log_std
     shape = merged_shape(
         [mode.mode_shape for mode in members],
         [_places(channels, [c.name for c in identifications[r].channels]) for r in order],
@@ -254,10 +287,10 @@ def _fused_mode(
             zeta * float(np.exp(-1.96 * std_zeta)),
             zeta * float(np.exp(1.96 * std_zeta)),
         ),
-        log_covariance=covariance,
+        log_covariance=np.diag(np.square(mean.log_std)),
         mode_shape=shape,
-        scatter_frequency=float(np.sqrt(between_f)),
-        scatter_damping_ratio=float(np.sqrt(between_zeta)),
+        scatter_frequency=mean.scatter[0],
+        scatter_damping_ratio=mean.scatter[1],
         records=tuple(order),
         members=tuple(members),
     )

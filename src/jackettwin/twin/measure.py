@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.errors import located
 from jackettwin.identification import ModalEstimate
+from jackettwin.identification.fusion import average
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
@@ -17,8 +17,6 @@ from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.updating.pairing import pair
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -96,42 +94,10 @@ def _wind(record: Record) -> float | None:
 
 
 def fuse(sightings: tuple[Sighting, ...]) -> tuple[float, float, float, float]:
-    """Return (f, std f, ζ, std ζ) over records: precision-weighted logarithms with between-record scatter.
-
-    The scatter is DerSimonian and Laird's (1986) moment estimate; a record without a standard deviation takes
-    Au's long-data limits, CoV f = √(ζ/2πfT) and CoV ζ = 1/√(2πζfT).
-    """
-    f = np.array([s.estimate.frequency_hz for s in sightings])
-    zeta = np.array([s.estimate.damping_ratio for s in sightings])
-    T = np.array([s.duration_s for s in sightings])
-    limit_f, limit_zeta = np.sqrt(zeta / (2 * np.pi * f * T)), 1.0 / np.sqrt(2 * np.pi * zeta * f * T)
-    known_f = [s.estimate.frequency_std_hz for s in sightings]
-    known_zeta = [s.estimate.damping_ratio_std for s in sightings]
-    cov_f = np.array(
-        [limit if std is None else std / v for std, v, limit in zip(known_f, f, limit_f, strict=True)]
-    )
-    cov_zeta = np.array(
-        [
-            limit if std is None else std / v
-            for std, v, limit in zip(known_zeta, zeta, limit_zeta, strict=True)
-        ]
-    )
-    mean_f, std_f = _pooled(np.log(f), cov_f)
-    mean_zeta, std_zeta = _pooled(np.log(zeta), cov_zeta)
-    F, Z = float(np.exp(mean_f)), float(np.exp(mean_zeta))
-    return F, F * std_f, Z, Z * std_zeta
-
-
-def _pooled(values: FloatArray, std: FloatArray) -> tuple[float, float]:
-    """Return mean and standard deviation of the mean under a random-effects model."""
-    w = std**-2.0
-    mean = float(w @ values / w.sum())
-    if values.size > 1:
-        excess = w @ (values - mean) ** 2 - (values.size - 1)
-        scatter = max(0.0, float(excess / (w.sum() - w @ w / w.sum())))
-        w = 1.0 / (std**2 + scatter)
-        mean = float(w @ values / w.sum())
-    return mean, float(w.sum() ** -0.5)
+    """Return (f, std f, ζ, std ζ) of one mode over records, as ``identification.fuse`` has them."""
+    mean = average([s.estimate for s in sightings], np.array([s.duration_s for s in sightings]))
+    f, zeta = mean.frequency_hz, mean.damping_ratio
+    return f, f * mean.log_std[0], zeta, zeta * mean.log_std[1]
 
 
 def _sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:
