@@ -7,7 +7,9 @@ from scipy.special import logsumexp
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.updating.convergence import convergence
 from jackettwin.updating.laplace import log_covariance
+from jackettwin.updating.nested import sample_nested
 from jackettwin.updating.posterior import Posterior, sample_posterior
 
 TRUTH = np.array([3e9, 0.15])
@@ -62,7 +64,20 @@ def test_log_evidence_is_that_of_quadrature(model: SupportModel, posterior: Post
 def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
     low, high = posterior.interval(0.9).T
     assert (low < TRUTH).all() and (high > TRUTH).all()
-    assert (posterior.rhat < 1.05).all()
+    assert (posterior.convergence.rhat < 1.05).all()
+    assert posterior.convergence.ess_bulk.min() > 100.0
+
+
+def test_nested_sampling_says_the_same(model: SupportModel, posterior: Posterior) -> None:
+    """It shares nothing with the swarm but the likelihood."""
+    pytest.importorskip("dynesty")
+    nested = sample_nested(single(model, record_of(model, 600.0)), live=60)
+    # dynesty's own ln Z has a standard deviation of √(H/live) ≈ 0.2 a run with H ≈ 4 nats
+    assert nested.log_evidence == pytest.approx(posterior.log_evidence, abs=0.5)
+    std = posterior.log_theta.std(axis=0)
+    apart = (nested.log_theta.mean(axis=0) - posterior.log_theta.mean(axis=0)) / std
+    assert np.abs(apart).max() < 0.3
+    np.testing.assert_allclose(nested.log_theta.std(axis=0), std, rtol=0.25)
 
 
 def test_with_much_data_it_is_the_laplace_approximation(model: SupportModel) -> None:
@@ -85,6 +100,16 @@ def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
 def test_islands_that_disagree_are_no_posterior(model: SupportModel) -> None:
     with pytest.raises(NumericalError, match="did not converge: R-hat"):
         sample_posterior(single(model, record_of(model, 6e5)), particles=6, islands=4)
+
+
+def test_runs_that_sit_apart_or_stand_still_are_noticed(rng: np.random.Generator) -> None:
+    good = rng.standard_normal((4, 100, 1))
+    assert convergence(good).problem is None
+    apart = good + np.array([0.0, 0.0, 0.0, 2.0])[:, None, None]
+    assert convergence(apart).problem.startswith("R-hat")
+    # four distinct values a run, equally spread in every run: they agree, but there are few of them
+    still = np.repeat(good[:1, :5], 20, axis=1) + np.zeros((4, 1, 1))
+    assert convergence(still).problem is not None
 
 
 def test_without_standard_deviations_there_is_no_likelihood(model: SupportModel) -> None:

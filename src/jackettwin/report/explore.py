@@ -44,7 +44,7 @@ def locus(
     Where the poles at a bound are the limits c → 0 and c → ∞ of a dashpot.
     """
     width = len(model.family.parameters)
-    n_law = width * len(model.suffixes)
+    n_law = width * len(model.feet.suffixes)
     p = model.parameters[_LOSSY]
 
     def poles_at(values: FloatArray) -> ComplexArray:

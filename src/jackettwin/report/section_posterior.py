@@ -53,7 +53,8 @@ def _status(k: Uncertainty) -> str:
         return f"no posterior: {k.status}. The intervals are Laplace's approximation."
     p = k.posterior
     return (
-        f"posterior of {len(p.log_theta)} draws, R-hat at most {p.rhat.max():.3f}, "
+        f"posterior of {len(p.log_theta)} draws, R-hat at most {p.convergence.rhat.max():.3f}, "
+        f"at least {min(p.convergence.ess_bulk.min(), p.convergence.ess_tail.min()):.0f} effective, "
         f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}."
     )
 

@@ -37,6 +37,7 @@ class UpdateSettings:
     starts: int = 32
     seed: int = 0
     particles: int = 150
+    sampler: Literal["smc", "nested"] = "smc"
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Lognormal priors: median and standard deviation of ln θ by parameter name; the others are flat."""
@@ -52,6 +53,8 @@ class UpdateSettings:
     """Whether the parked rotor turns with the nacelle."""
     wind_speed_m_s: float | None = None
     """Instead of the mean over the records' conditions."""
+    steel_damping: Literal["fixed", "free"] = "fixed"
+    """Whether ratio and frequency of the steel's least damping are updated as well."""
 
     def fits_damping(self, label: str) -> bool:
         """Return whether the damping of a mode takes part in the fit."""
@@ -82,6 +85,8 @@ class TwinConfig:
     rayleigh: Rayleigh
     rayleigh_ratio: float
     tie: str
+    heads: str | None
+    """Pile heads whose 6×6 stiffness the laws scale: a SUPPORT, ``own`` for the structure's."""
     sensors: tuple[Sensor, ...]
     records: tuple[Path, ...]
     targets: tuple[Target, ...]

@@ -138,7 +138,9 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
             "status": known.status,
             "intervals_from": "laplace" if posterior is None else "posterior",
             "draws": len(known.log_theta),
-            "rhat": None if posterior is None else dict(zip(names, posterior.rhat.tolist(), strict=True)),
+            "rhat": None if posterior is None else _named(names, posterior.convergence.rhat),
+            "ess_bulk": None if posterior is None else _named(names, posterior.convergence.ess_bulk),
+            "ess_tail": None if posterior is None else _named(names, posterior.convergence.ess_tail),
         },
         "identifiability_detail": {
             v.name: {
@@ -172,6 +174,10 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
             p.name: {"values": p.values.tolist(), "cost": p.cost.tolist()} for p in known.profiles
         },
     }
+
+
+def _named(names: list[str], values: FloatArray) -> dict[str, float]:
+    return dict(zip(names, values.tolist(), strict=True))
 
 
 def _quantiles(draws: FloatArray) -> dict[str, Any]:

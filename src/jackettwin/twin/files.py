@@ -64,10 +64,11 @@ class DampingSchema(Schema):
 
 
 class SupportSchema(Schema):
-    """``support``: the law to report first, and which translations share parameters."""
+    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale."""
 
     law: str | None = None
     tie: Literal["all", "horizontal-vertical", "per-leg"] = "all"
+    stiffness: str | None = None
 
 
 class SensorSchema(Schema):
@@ -112,6 +113,7 @@ class UpdateSchema(Schema):
     starts: Annotated[int, Field(ge=1, le=10000)] = 32
     seed: Annotated[int, Field(ge=0)] = 0
     particles: Annotated[int, Field(ge=20, le=100000)] = 150
+    sampler: Literal["smc", "nested"] = "smc"
     bounds: dict[str, tuple[float, float]] = {}
     priors: dict[str, PriorSchema] = {}
     weighting: Literal["auto", "relative", "covariance"] = "auto"
@@ -122,6 +124,7 @@ class UpdateSchema(Schema):
     rotor: str | None = None
     shaft: Literal["locked", "free"] = "locked"
     wind_speed_m_s: Positive | None = None
+    steel_damping: Literal["fixed", "free"] = "fixed"
 
 
 class TwinSchema(Schema):
@@ -189,6 +192,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         rayleigh=Rayleigh() if damping is None else Rayleigh.minimum(damping.ratio, damping.frequency_hz),
         rayleigh_ratio=0.0 if damping is None else damping.ratio,
         tie=schema.support.tie,
+        heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
         targets=tuple(Target(**target.model_dump()) for target in schema.targets),
@@ -201,7 +205,7 @@ def _check_update(update: UpdateSchema) -> None:
     """Refuse unknown laws, bounds and priors now, not after the records have been identified."""
     with located(field="laws"):
         known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
-    known |= {p.name for p in Extras(tuple(update.dashpots)).parameters}
+    known |= {p.name for p in Extras(tuple(update.dashpots), rayleigh=True).parameters}
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
             if not any(name == k or name.startswith(f"{k}_") for k in known):
@@ -245,6 +249,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         starts=u.starts,
         seed=u.seed,
         particles=u.particles,
+        sampler=u.sampler,
         bounds=dict(u.bounds),
         priors={name: (p.median, p.log_std) for name, p in u.priors.items()},
         weighting=u.weighting,
@@ -255,4 +260,5 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         rotor=None if u.rotor is None else _beside(u.rotor, folder),
         shaft=u.shaft,
         wind_speed_m_s=u.wind_speed_m_s,
+        steel_damping=u.steel_damping,
     )

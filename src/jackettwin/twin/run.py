@@ -9,6 +9,8 @@ import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.soil.files import read_support
+from jackettwin.soil.support import Support
 from jackettwin.structure import Assembly, assemble
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse, measure
@@ -71,12 +73,13 @@ def run_twin(
     states = operating_states(config, measured, found, residuals, wind)
     rotor = rotor_damping(config, assembly, numbered, wind)
     priors = {**rotor.priors, **config.update.priors}
-    extras = Extras(config.update.dashpots, patterns=rotor.patterns)
+    extras = Extras(config.update.dashpots, config.update.steel_damping == "free", rotor.patterns)
+    heads = _heads(config)
     shown = tuple(m.mode for m in measured)
     updates = []
     for law in laws or config.update.laws:
         step(f"update {law}")
-        updates.append(_update(config, assembly, law, states, priors, extras, shown))
+        updates.append(_update(config, assembly, law, states, priors, extras, heads, shown))
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -109,6 +112,7 @@ def _update(
     states: States,
     priors: Mapping[str, tuple[float, float]],
     extras: Extras,
+    heads: Support | None,
     modes: tuple[int, ...],
 ) -> Update:
     chosen, s = family(law), config.update
@@ -123,11 +127,30 @@ def _update(
             priors=_of_law(priors, own),
             highest_mode=max(mode for r, _ in states.values() for mode in r.modes),
             extras=extras,
+            heads=heads,
+            head_priors=not any(r.relative for r, _ in states.values()),
         )
         problem = joint(model, states)
     except InputError as error:
         raise error.at(file=config.path, field="update" if s.bounds or s.priors else None) from None
-    return update(problem, modes=modes, method=s.method, starts=s.starts, particles=s.particles, seed=s.seed)
+    return update(
+        problem,
+        modes=modes,
+        method=s.method,
+        starts=s.starts,
+        particles=s.particles,
+        sampler=s.sampler,
+        seed=s.seed,
+    )
+
+
+def _heads(config: TwinConfig) -> Support | None:
+    """Return the pile heads that the laws scale."""
+    if config.heads is None:
+        return None
+    with located(file=config.path, field="support.stiffness"):
+        source = None if config.heads == "own" else config.heads
+        return read_support(source, config.structure, folder=config.path.parent)
 
 
 def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:

@@ -109,7 +109,7 @@ def _shares(ratio: FloatArray) -> FloatArray:
 
 def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:
     """Return (n_sets, n_modes, n_sources) damping ratios."""
-    pencil, n_soil = model.condensed.pencil, len(model.suffixes)
+    pencil, n_soil = model.condensed.pencil, len(model.feet.suffixes)
     known = ~np.isnan(found.poles)
     x, pole = np.where(known[..., None], found.shapes, 1.0), np.where(known, found.poles, 1j)
     m = np.einsum("kmi,kmi->km", x.conj() @ pencil.M, x).real

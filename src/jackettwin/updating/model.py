@@ -16,12 +16,13 @@ from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
-from jackettwin.soil.support import Spring, Support, pinned
+from jackettwin.soil.support import Support, pinned
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.families import Family, Parameter
+from jackettwin.updating.feet import Feet, feet, priors_of
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -30,10 +31,8 @@ IntArray = npt.NDArray[np.intp]
 Lognormal = tuple[float, float]
 """Median and standard deviation of ln θ."""
 
-TIES = ("all", "horizontal-vertical", "per-leg")
 _ROOM = 1.2
 """The band ends this much above the highest mode on pinned supports, which supports can only lower."""
-_SIDES = {"_horizontal": np.diag([1.0, 1.0, 0, 0, 0, 0]), "_vertical": np.diag([0, 0, 1.0, 0, 0, 0])}
 
 
 @dataclass(frozen=True)
@@ -64,6 +63,8 @@ class SupportModel:
     family : Family
     parameters : tuple of Parameter
         One set of the family's for each tie group.
+    feet : Feet
+        The tie groups.
     condensed : Condensed
         The structure on its support DOFs; its groups are the tie groups.
     reference_hz : float
@@ -78,7 +79,7 @@ class SupportModel:
     rayleigh: Rayleigh
     family: Family
     parameters: tuple[Parameter, ...]
-    suffixes: tuple[str, ...]
+    feet: Feet
     condensed: Condensed
     reference_hz: float
     highest_mode: int
@@ -88,23 +89,23 @@ class SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""
         if mode <= self.highest_mode:
             return self
-        condensed, _ = _condensed(self.assembly, self.suffixes, self.rayleigh, self.extras, mode)
+        condensed = _condensed(self.assembly, self.feet, self.rayleigh, self.extras, mode)
         return replace(self, condensed=condensed, highest_mode=mode)
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
-        per_group = np.reshape(self._split(theta)[0], (len(self.suffixes), -1))
+        per_group = np.reshape(self._split(theta)[0], (len(self.feet.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
 
     def _split(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the parameters of the laws and the extra ones of one vector or many."""
-        n = len(self.suffixes) * len(self.family.parameters)
+        n = len(self.feet.suffixes) * len(self.family.parameters)
         return theta[..., :n], theta[..., n:]
 
     def points(self, theta: FloatArray) -> Points:
         """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
         own, extra = self._split(theta)
-        n_sets, n_groups, p = len(theta), len(self.suffixes), len(self.family.parameters)
+        n_sets, n_groups, p = len(theta), len(self.feet.suffixes), len(self.family.parameters)
         rows, slopes = self.family.rows(np.reshape(own, (-1, p)), self.reference_hz)
         soil, slopes = rows.reshape(n_sets, n_groups, -1), slopes.reshape(n_sets, n_groups, -1, p)
         rotor, rotor_slopes = self.extras.rows(extra, soil.shape[2])
@@ -164,11 +165,10 @@ class SupportModel:
 
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
-        springs = _springs(self.assembly, self.suffixes, self.laws(theta))
         extra = self._split(theta)[1]
         return build_system(
             self.assembly,
-            Support(springs=springs),
+            self.feet.support(self.laws(theta)),
             rayleigh=self.extras.steel(self.rayleigh, extra),
             dashpots=self.extras.springs(self.assembly.structure.top_node, extra),
         )
@@ -241,8 +241,10 @@ def support_model(
     priors: Mapping[str, Lognormal] | None = None,
     highest_mode: int = 8,
     extras: Extras | None = None,
+    heads: Support | None = None,
+    head_priors: bool = False,
 ) -> SupportModel:
-    """Return the model with one law on the three translations of every reaction node.
+    """Return the model with one law on the feet: their three translations, or what pile heads hold.
 
     Parameters
     ----------
@@ -256,70 +258,57 @@ def support_model(
         The last numbered mode that will be asked for.
     extras : Extras, optional
         Nacelle dashpots and steel damping to update as well.
+    heads : Support, optional
+        Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.feet.feet`).
+    head_priors : bool
+        Whether the heads give priors to the parameters that have none.
 
     Raises
     ------
     InputError
         If the tie is unknown, the structure has no reaction nodes, or a bound is wrong.
     """
-    if tie not in TIES:
-        raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
-    if not assembly.structure.reactions:
-        raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
-    suffixes, extras, bounds, priors = (
-        _suffixes(assembly, tie),
-        extras or Extras(),
-        bounds or {},
-        priors or {},
-    )
+    first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
+    groups = feet(assembly.structure, tie, heads=heads, reference_hz=first_hz)
+    suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
+    derived = priors_of(groups, first_hz) if head_priors else {}
     parameters = tuple(
-        _informed(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds, priors)
+        _informed(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds, priors, derived)
         for suffix in suffixes
         for p in family.parameters
-    ) + tuple(_informed(p, p.name, bounds, priors) for p in extras.parameters)
+    ) + tuple(_informed(p, p.name, bounds, priors, {}) for p in extras.parameters)
     known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
     known |= {p.name for p in extras.parameters}
-    for field, given in (("bounds", bounds), ("priors", priors)):
-        _no_unknown(field, given, known, family)
-    condensed, first_hz = _condensed(assembly, suffixes, rayleigh, extras, highest_mode)
+    for field, names in (("bounds", bounds), ("priors", priors)):
+        _no_unknown(field, names, known, family)
     return SupportModel(
-        assembly, rayleigh, family, parameters, suffixes, condensed, first_hz, highest_mode, extras
+        assembly,
+        rayleigh,
+        family,
+        parameters,
+        groups,
+        _condensed(assembly, groups, rayleigh, extras, highest_mode),
+        first_hz,
+        highest_mode,
+        extras,
     )
 
 
 def _condensed(
-    assembly: Assembly, suffixes: tuple[str, ...], rayleigh: Rayleigh, extras: Extras, highest_mode: int
-) -> tuple[Condensed, float]:
-    """Return the structure on its support DOFs and the first pinned frequency [Hz]."""
+    assembly: Assembly, groups: Feet, rayleigh: Rayleigh, extras: Extras, highest_mode: int
+) -> Condensed:
     # distinct stand-in laws, so that every tie group stays a group of its own
-    stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(suffixes))]
+    stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(groups.suffixes))]
     system = build_system(
         assembly,
-        Support(springs=_springs(assembly, suffixes, stand_ins)),
+        groups.support(stand_ins),
         rayleigh=rayleigh,
         dashpots=extras.springs(
             assembly.structure.top_node, np.array([1e3 + i for i in range(len(extras.dashpots))])
         ),
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
-    return condense(system, below_hz=_ROOM * float(pinned_hz[-1])), float(pinned_hz[0])
-
-
-def _suffixes(assembly: Assembly, tie: str) -> tuple[str, ...]:
-    if tie == "per-leg":
-        return tuple(f"_{node}" for node in assembly.structure.reaction_nodes)
-    return tuple(_SIDES) if tie == "horizontal-vertical" else ("",)
-
-
-def _springs(assembly: Assembly, suffixes: tuple[str, ...], laws: list[Law]) -> tuple[Spring, ...]:
-    translations = np.diag([1.0, 1.0, 1.0, 0, 0, 0])
-    nodes = assembly.structure.reaction_nodes
-    springs = []
-    for suffix, law in zip(suffixes, laws, strict=True):
-        matrix = _SIDES.get(suffix, translations)
-        chosen = [node for node in nodes if suffix == f"_{node}"] or nodes
-        springs += [Spring(node, matrix, law) for node in chosen]
-    return tuple(springs)
+    return condense(system, below_hz=_ROOM * float(pinned_hz[-1]))
 
 
 def _informed(
@@ -327,9 +316,12 @@ def _informed(
     family_name: str,
     bounds: Mapping[str, tuple[float, float]],
     priors: Mapping[str, Lognormal],
+    derived: Mapping[str, Lognormal],
 ) -> Parameter:
     low, high = bounds.get(p.name, bounds.get(family_name, (p.low, p.high)))
     median, log_std = priors.get(p.name, priors.get(family_name, (None, None)))
+    if median is None and p.name in derived and low <= derived[p.name][0] <= high:
+        median, log_std = derived[p.name]
     return Parameter(p.name, low, high, p.unit, median, log_std)
 
 

@@ -20,6 +20,7 @@ from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.numbered import NumberedModes
+from jackettwin.updating.convergence import Convergence, convergence
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import Found, Problem
 
@@ -31,7 +32,6 @@ _ESS = 0.5
 """Each rung of the ladder keeps this share of the particles effective."""
 _MOVES = 12
 """Moves of every particle on every rung."""
-_LARGEST_RHAT = 1.1
 _LARGEST_SPREAD = 0.5
 """Standard deviation of log Z between islands beyond which it is not known."""
 
@@ -47,7 +47,8 @@ class Posterior:
     log_likelihood : (n_draws,)
     log_evidence, log_evidence_std : float
         Mean over the islands and its standard deviation.
-    rhat : (n_parameters,) spread between islands over spread within; 1 when they agree
+    convergence : Convergence
+        How well the islands agree.
     """
 
     log_theta: FloatArray
@@ -55,7 +56,7 @@ class Posterior:
     log_likelihood: FloatArray
     log_evidence: float
     log_evidence_std: float
-    rhat: FloatArray
+    convergence: Convergence
 
     def interval(self, level: float = 0.9) -> FloatArray:
         """Return the central interval of every parameter, (n_parameters, 2)."""
@@ -122,23 +123,47 @@ def sample_posterior(
     runs = [
         _island(problem, prior or problem.prior, particles, child, progress) for child in rng.spawn(islands)
     ]
-    z = np.array([swarm.z for swarm, _ in runs])
-    log_z = np.array([value for _, value in runs])
-    rhat = _rhat(z)
-    spread = float(log_z.std(ddof=1))
-    if float(rhat.max()) > _LARGEST_RHAT or spread > _LARGEST_SPREAD:
-        worst = problem.parameters[int(np.argmax(rhat))].name
+    return gathered(
+        problem,
+        z=np.array([swarm.z for swarm, _ in runs]),
+        poles=np.array([swarm.found[0].poles for swarm, _ in runs]),
+        log_l=np.array([swarm.log_l for swarm, _ in runs]),
+        log_z=np.array([value for _, value in runs]),
+    )
+
+
+def gathered(
+    problem: Problem, *, z: FloatArray, poles: ComplexArray, log_l: FloatArray, log_z: FloatArray
+) -> Posterior:
+    """Return the posterior of independent runs.
+
+    Parameters
+    ----------
+    z : (n_runs, n_draws, n_parameters)
+    poles : (n_runs, n_draws, n_modes)
+    log_l : (n_runs, n_draws)
+    log_z : (n_runs,)
+
+    Raises
+    ------
+    NumericalError
+        If the runs do not agree: there are draws, but they are no posterior.
+    """
+    found, spread = convergence(z), float(log_z.std(ddof=1))
+    if found.problem is not None or not spread <= _LARGEST_SPREAD:
+        worst = problem.parameters[int(np.argmax(found.rhat))].name
+        why = found.problem or "runs apart"
         raise NumericalError(
-            f"the posterior did not converge: R-hat {rhat.max():.2f} ({worst}), log evidence ±{spread:.2f}; "
+            f"the posterior did not converge: {why} ({worst}), log evidence ±{spread:.2f}; "
             "more particles may help"
         )
     return Posterior(
         log_theta=z.reshape(-1, z.shape[2]),
-        poles=np.concatenate([swarm.found[0].poles for swarm, _ in runs]),
-        log_likelihood=np.concatenate([swarm.log_l for swarm, _ in runs]),
-        log_evidence=float(logsumexp(log_z) - np.log(islands)),
-        log_evidence_std=spread / np.sqrt(islands),
-        rhat=rhat,
+        poles=poles.reshape(-1, poles.shape[2]),
+        log_likelihood=log_l.ravel(),
+        log_evidence=float(logsumexp(log_z) - np.log(log_z.size)),
+        log_evidence_std=spread / np.sqrt(log_z.size),
+        convergence=found,
     )
 
 
@@ -204,13 +229,6 @@ def _proposal(z: FloatArray, rng: np.random.Generator, *, wide: bool) -> FloatAr
     gamma = 1.0 if wide else 2.38 / np.sqrt(2.0 * d) * rng.uniform(0.2, 1.0)
     jitter = 0.02 * z.std(axis=0) * rng.standard_normal(z.shape)
     return np.asarray(z + gamma * (z[a] - z[b]) + jitter)
-
-
-def _rhat(z: FloatArray) -> FloatArray:
-    """Return √(total/within variance) of each parameter over islands (n_islands, n, d)."""
-    within = z.var(axis=1, ddof=1).mean(axis=0)
-    between = z.mean(axis=1).var(axis=0, ddof=1)
-    return np.asarray(np.sqrt(1.0 + between / np.maximum(within, 1e-300)))
 
 
 def _either(yes: BoolArray, new: NumberedModes, old: NumberedModes) -> NumberedModes:

@@ -73,7 +73,10 @@ class BoxPrior:
 
     def draw(self, n: int, rng: np.random.Generator) -> FloatArray:
         """Return draws (n, d)."""
-        u = rng.random((n, self.low.size))
+        return self.from_unit(rng.random((n, self.low.size)))
+
+    def from_unit(self, u: FloatArray) -> FloatArray:
+        """Return the z whose cumulative probabilities are u (..., d)."""
         a, _, mass = self._standard()
         with np.errstate(invalid="ignore"):
             normal = self.mean + self.scale * ndtri(ndtr(a) + u * mass)

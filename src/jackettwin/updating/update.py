@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,7 @@ from jackettwin.updating.budget import Budget, damping_budget
 from jackettwin.updating.identifiability import Verdict, identifiability
 from jackettwin.updating.laplace import laplace_draws, log_covariance
 from jackettwin.updating.model import ExactModes, SupportModel
+from jackettwin.updating.nested import sample_nested
 from jackettwin.updating.next_measurement import Measurement, next_measurements
 from jackettwin.updating.posterior import Posterior, sample_posterior
 from jackettwin.updating.predictive import Predictive, predict_quantities
@@ -22,6 +24,8 @@ from jackettwin.updating.profile import Profile, profile
 from jackettwin.updating.solutions import Method, Search, Solution, search
 
 FloatArray = npt.NDArray[np.float64]
+
+Sampler = Literal["smc", "nested"]
 
 _PREDICTED = (1, 2, 3, 4, 5)
 """Modes that are predicted whether they were measured or not."""
@@ -118,6 +122,7 @@ def update(
     method: Method = "least-squares",
     starts: int = 32,
     particles: int = 150,
+    sampler: Sampler = "smc",
     seed: int = 0,
     progress: Callable[[], None] | None = None,
 ) -> Update:
@@ -128,7 +133,10 @@ def update(
     modes : mode numbers, optional
         To show the full model's; default: those of the first operating state's data.
     particles : int
-        Of each of the posterior's four islands; doubled once if they do not agree.
+        Of each of the posterior's four islands, or live points of each nested run; doubled once if they do
+        not agree.
+    sampler : {"smc", "nested"}
+        Tempered sequential Monte Carlo, or dynesty.
 
     Raises
     ------
@@ -139,7 +147,10 @@ def update(
     best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
-    uncertainty = _uncertainty(problem, model, shown, best, particles, seed) if problem.weighted else None
+    uncertainty = None
+    if problem.weighted:
+        posterior, status = _posterior(problem, sampler, particles, seed)
+        uncertainty = _uncertainty(problem, model, shown, best, posterior, status, seed)
     theta = _first(problem, np.log(best.theta)[None])[0]
     return Update(
         problem=problem,
@@ -178,9 +189,14 @@ def _thinned(z: FloatArray) -> FloatArray:
 
 
 def _uncertainty(
-    problem: Problem, model: SupportModel, shown: tuple[int, ...], best: Solution, particles: int, seed: int
+    problem: Problem,
+    model: SupportModel,
+    shown: tuple[int, ...],
+    best: Solution,
+    posterior: Posterior | None,
+    status: str,
+    seed: int,
 ) -> Uncertainty:
-    posterior, status = _posterior(problem, particles, seed)
     z = laplace_draws(problem, best.theta, seed=seed) if posterior is None else posterior.log_theta
     beyond = [m for m in shown if m not in _PREDICTED]
     known = tuple(m for m in _PREDICTED if m <= model.highest_mode)
@@ -196,10 +212,12 @@ def _uncertainty(
     )
 
 
-def _posterior(problem: Problem, particles: int, seed: int) -> tuple[Posterior | None, str]:
+def _posterior(problem: Problem, sampler: Sampler, particles: int, seed: int) -> tuple[Posterior | None, str]:
     status = "ok"
     for n in (particles, 2 * particles):
         try:
+            if sampler == "nested":
+                return sample_nested(problem, live=n, seed=seed), "ok"
             return sample_posterior(problem, particles=n, seed=seed), "ok"
         except NumericalError as error:
             status = str(error)

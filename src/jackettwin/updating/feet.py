@@ -1,0 +1,157 @@
+"""What the laws stand on: which DOFs of which feet share parameters, and in what proportion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.soil.support import Spring, Support
+from jackettwin.soil.viscoelastic import Law
+from jackettwin.structure.model import Structure
+
+FloatArray = npt.NDArray[np.float64]
+
+Group = tuple[tuple[int, ...], tuple[str, ...]]
+"""The DOFs and the feet that share parameters."""
+
+TIES = ("all", "horizontal-vertical", "per-leg")
+_HORIZONTAL, _VERTICAL = (0, 1, 3, 4, 5), (2,)
+"""A pile's sway and rotation are one spring; its axis is another."""
+_SIDES = {"_horizontal": _HORIZONTAL, "_vertical": _VERTICAL}
+_EVERY = (0, 1, 2, 3, 4, 5)
+_TRANSLATIONS = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+
+
+_STIFFNESS_LOG_STD, _LOSS_LOG_STD = 0.7, 1.0
+"""How far designers' stiffness and loss factor may be off: standard deviations of ln θ."""
+
+
+@dataclass(frozen=True)
+class Feet:
+    """Patterns of the tie groups: D of a group times its pattern is what holds a foot.
+
+    Attributes
+    ----------
+    suffixes : of each group's parameters
+    patterns : (group, node, 6×6) of every foot
+    stiffness : (n_groups,) storage stiffness [N/m] of each group in the support the patterns come from, or
+        None: then they are plain translations
+    loss_factor : of that support at the reference frequency
+    masses : (node, 6×6) of what moves with the feet
+    """
+
+    suffixes: tuple[str, ...]
+    patterns: tuple[tuple[int, str, FloatArray], ...]
+    stiffness: tuple[float, ...] | None = None
+    loss_factor: tuple[float, ...] | None = None
+    masses: tuple[tuple[str, FloatArray], ...] = ()
+
+    def support(self, laws: list[Law]) -> Support:
+        """Return the support with one law a group."""
+        springs = tuple(Spring(node, pattern, laws[g]) for g, node, pattern in self.patterns)
+        return Support(springs=springs, masses=self.masses)
+
+
+def feet(
+    structure: Structure, tie: str, *, heads: Support | None = None, reference_hz: float | None = None
+) -> Feet:
+    """Return the tie groups of a structure's feet.
+
+    Parameters
+    ----------
+    tie : {"all", "horizontal-vertical", "per-leg"}
+    heads : Support, optional
+        Pile heads whose 6×6 storage stiffness at ``reference_hz`` the laws scale: a law's stiffness is then
+        the head's along its axis (horizontally for ``_horizontal``), and all else keeps its proportion.
+        Without, the laws act on the three translations alone.
+
+    Raises
+    ------
+    InputError
+        If the tie is unknown, there are no reaction nodes, or the heads hold a foot rigidly or not at all.
+    """
+    if tie not in TIES:
+        raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
+    if not structure.reactions:
+        raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
+    nodes = structure.reaction_nodes
+    groups: dict[str, Group] = {"": (_EVERY, nodes)}
+    if tie == "per-leg":
+        groups = {f"_{node}": (_EVERY, (node,)) for node in nodes}
+    elif tie == "horizontal-vertical":
+        groups = {suffix: (dofs, nodes) for suffix, dofs in _SIDES.items()}
+    plain = Feet(
+        tuple(groups),
+        tuple(
+            (g, node, _part(_TRANSLATIONS, dofs))
+            for g, (dofs, members) in enumerate(groups.values())
+            for node in members
+        ),
+    )
+    return plain if heads is None else _on_heads(plain, list(groups.values()), heads, reference_hz or 1.0)
+
+
+def priors_of(groups: Feet, reference_hz: float) -> dict[str, tuple[float, float]]:
+    """Return lognormal priors, median and standard deviation of ln θ, from the heads behind the patterns.
+
+    Linearised p-y and t-z curves miss the small-strain stiffness by a factor of two or three, and the loss
+    by more.
+    """
+    priors: dict[str, tuple[float, float]] = {}
+    if groups.stiffness is None or groups.loss_factor is None:
+        return priors
+    for suffix, k, loss in zip(groups.suffixes, groups.stiffness, groups.loss_factor, strict=True):
+        priors |= {f"{name}{suffix}": (k, _STIFFNESS_LOG_STD) for name in ("k", "k0")}
+        if loss > 0.0:
+            alpha = 2.0 / pi * float(np.arctan(loss))
+            c = loss * k / (2.0 * pi * reference_hz)
+            lossy = {"loss_factor": loss, "alpha": alpha, "c": c}
+            priors |= {f"{name}{suffix}": (value, _LOSS_LOG_STD) for name, value in lossy.items()}
+    return priors
+
+
+def _on_heads(plain: Feet, groups: list[Group], heads: Support, reference_hz: float) -> Feet:
+    K = _impedance(plain, heads, reference_hz)
+    stiffness, loss, patterns = [], [], []
+    for g, (dofs, members) in enumerate(groups):
+        along = [2] if 2 in dofs else [0, 1]
+        mean = np.mean([K[node][i, i] for node in members for i in along])
+        stiffness.append(float(mean.real))
+        loss.append(float(mean.imag / mean.real))
+        patterns += [(g, node, _part(K[node].real, dofs) / mean.real) for node in members]
+    return replace(
+        plain,
+        patterns=tuple(patterns),
+        stiffness=tuple(stiffness),
+        loss_factor=tuple(loss),
+        masses=heads.masses,
+    )
+
+
+def _impedance(plain: Feet, heads: Support, reference_hz: float) -> dict[str, npt.NDArray[np.complex128]]:
+    """Return the 6×6 complex stiffness of every foot at a frequency."""
+    nodes = {node for _, node, _ in plain.patterns}
+    K = {node: np.zeros((6, 6), complex) for node in nodes}
+    for spring in heads.springs:
+        if spring.node in K:
+            K[spring.node] += spring.law.stiffness(2j * np.pi * reference_hz) * spring.matrix
+    for node in sorted(nodes):
+        if not (np.diag(K[node])[:3].real > 0.0).all():
+            raise InputError(
+                "this support has no stiffness that a law could scale",
+                field="support.stiffness",
+                value=node,
+                allowed="springs on the translations of every reaction node",
+                remedy="a foundation, or a support file with 6×6 stiffness",
+            )
+    return K
+
+
+def _part(K: FloatArray, dofs: tuple[int, ...]) -> FloatArray:
+    part = np.zeros((6, 6))
+    part[np.ix_(dofs, dofs)] = K[np.ix_(dofs, dofs)]
+    return part

@@ -1,0 +1,82 @@
+"""Laws on pile heads: 6×6 stiffness scaled, in proportion, with priors from it."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.response.modal import undamped_modes
+from jackettwin.response.system import build_system
+from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil.support import Support, pinned
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import family, support_model
+from jackettwin.updating.feet import TIES, feet, priors_of
+from jackettwin.updating.model import SupportModel
+
+F1 = 0.1832
+
+
+@pytest.fixture(scope="module")
+def heads(jacket15: Assembly) -> Support:
+    return read_foundation("jacket15_records").heads(jacket15.structure)
+
+
+def on_heads(jacket15: Assembly, heads: Support, tie: str, **options: object) -> SupportModel:
+    steel = Rayleigh.minimum(0.0055, F1)
+    return support_model(
+        jacket15, family=family("maxwell-3"), rayleigh=steel, tie=tie, heads=heads, highest_mode=5, **options
+    )
+
+
+@pytest.mark.parametrize("tie", TIES)
+def test_at_their_own_stiffness_the_heads_are_themselves(
+    jacket15: Assembly, heads: Support, tie: str
+) -> None:
+    model = on_heads(jacket15, heads, tie)
+    theta = np.array([value for k in model.feet.stiffness for value in (k, 1e-4)])
+    exact = undamped_modes(build_system(jacket15, heads), 5).frequency_hz
+    # a loss factor of 1e-4 and the heads' own 2 % move frequencies by less than 1e-5; with one law for both
+    # sides the parts keep their proportion
+    np.testing.assert_allclose(np.abs(model.predict(theta, (1, 2)).poles) / (2 * np.pi), exact[:2], rtol=2e-5)
+    np.testing.assert_allclose(
+        model.exact_modes(theta, (1, 2)).poles, model.predict(theta, (1, 2)).poles, rtol=1e-8
+    )
+
+
+def test_the_axial_stiffness_is_the_closed_form(jacket15: Assembly, heads: Support) -> None:
+    """√(k EA)·(tanh λL + κ)/(1 + κ tanh λL) with κ = tip/√(k EA): 4.1e9 N/m."""
+    k, tip, EA, L = 1.6e8, 4.0e8, 2.1e11 * np.pi / 4 * (2.8**2 - 2.68**2), 60.0
+    root = np.sqrt(k * EA)
+    t, kappa = np.tanh(np.sqrt(k / EA) * L), tip / root
+    found = feet(jacket15.structure, "horizontal-vertical", heads=heads, reference_hz=F1)
+    # finite elements of the pile
+    assert found.stiffness[1] == pytest.approx(root * (t + kappa) / (1 + kappa * t), rel=1e-2)
+    # dashpots of eq. (5.4) with ζ = 0.02 lose 4 % at the reference frequency in the soil, less in the steel
+    assert 0.02 < found.loss_factor[1] < 0.04
+
+
+def test_heads_give_priors_where_there_are_none(jacket15: Assembly, heads: Support) -> None:
+    given = {"k_vertical": (3e9, 0.2)}
+    model = on_heads(jacket15, heads, "horizontal-vertical", head_priors=True, priors=given)
+    known = {p.name: (p.median, p.log_std) for p in model.parameters}
+    assert known["k_vertical"] == (3e9, 0.2)
+    assert known["k_horizontal"][0] == pytest.approx(model.feet.stiffness[0])
+    assert known["loss_factor_vertical"][0] == pytest.approx(model.feet.loss_factor[1])
+    assert priors_of(feet(jacket15.structure, "all"), F1) == {}
+
+
+def test_gradients_on_heads_are_differences(jacket15: Assembly, heads: Support) -> None:
+    model, theta, h = on_heads(jacket15, heads, "all"), np.array([4e9, 0.1]), 1e-3
+    slopes = model.predict(theta, (1, 4)).slopes
+    for j in range(2):
+        step = np.exp(h * (np.arange(2) == j))
+        difference = (
+            model.predict(theta * step, (1, 4)).poles - model.predict(theta / step, (1, 4)).poles
+        ) / (2 * h)
+        # second order in h
+        np.testing.assert_allclose(slopes[:, j], difference, rtol=1e-6, atol=1e-6 * np.abs(difference).max())
+
+
+def test_rigid_heads_are_refused(jacket15: Assembly) -> None:
+    with pytest.raises(InputError, match="no stiffness that a law could scale"):
+        feet(jacket15.structure, "all", heads=pinned(jacket15.structure))
