@@ -29,7 +29,7 @@ def test_resultant_of_inertia_is_the_closed_form(cylinder) -> None:
     """F = ρ C_M (π/4)D² g (H/2) tanh kd; about still water its arm is −(cosh kd − 1)/(k sinh kd)."""
     grid = morison_points(cylinder, highest_z=5.0, coefficients=Coefficients(drag=0.0), spacing=0.5)
     wave = airy_wave(height=4.0, period=T, depth=DEPTH)
-    loads = wave_series(grid, wave, resultant_columns(grid), depth=DEPTH, period=T).loads
+    loads = wave_series(grid, wave, resultant_columns(grid.points), depth=DEPTH, period=T).loads
     k = float(wave.k[0])
     F = SEA_WATER_KG_M3 * 2.0 * 0.25 * np.pi * D**2 * 9.80665 * 2.0 * np.tanh(k * DEPTH)
     arm = (np.cosh(k * DEPTH) - 1.0) / (k * np.sinh(k * DEPTH))
@@ -56,7 +56,7 @@ def test_the_spread_is_that_of_the_water(cylinder) -> None:
     """σ² at the surface of a cylinder: Σ ½ a² ω² coth² kd along the wave, half of it each way across."""
     sea = irregular_sea(Hs=5.0, Tp=9.0, depth=DEPTH, duration=400.0, seed=2, stretching="none")
     grid = morison_points(cylinder, highest_z=0.0, spacing=1.0)
-    series = wave_series(grid, sea, resultant_columns(grid), depth=DEPTH, period=400.0)
+    series = wave_series(grid, sea, resultant_columns(grid.points), depth=DEPTH, period=400.0)
     top = int(np.argmin(np.abs(grid.points[:, 2])))
     z = min(grid.points[top, 2], 0.0)
     amplitude = sea.amplitude * sea.omega * np.cosh(sea.k * (z + DEPTH)) / np.sinh(sea.k * DEPTH)
@@ -71,7 +71,9 @@ def test_long_pieces_are_enough_for_the_jacket() -> None:
     spread = []
     for spacing in (1.0, 8.0):
         grid = morison_points(assembly, highest_z=7.0, spacing=spacing)
-        spread.append(wave_series(grid, sea, resultant_columns(grid), depth=72.0, period=200.0).loads.std(0))
+        spread.append(
+            wave_series(grid, sea, resultant_columns(grid.points), depth=72.0, period=200.0).loads.std(0)
+        )
     np.testing.assert_allclose(spread[1][[0, 4]], spread[0][[0, 4]], rtol=2e-3)
 
 

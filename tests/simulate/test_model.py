@@ -93,6 +93,27 @@ def test_openfasts_linear_modes_of_the_pile_asset(parked, speed, side_side, fore
     model = with_aerodynamics(model, aerodynamics(air, parked.turbine).mean)
     tower = tower_points(model.assembly, air)
     drag = tower_damping(air, tower, model.reduced.basis)
-    found = ratios(model.with_forces_of_motion(damping=drag, stiffness=0.0 * drag))
+    found = ratios(model.with_forces_of_motion("water", damping=drag, stiffness=0.0 * drag))
     assert found["side_side_1"] == pytest.approx(side_side, rel=0.02)
     assert found["fore_aft_1"] == pytest.approx(fore_aft, abs=1e-4)
+
+
+def test_damping_by_source_adds_up_and_is_what_each_source_adds(scenario_file) -> None:
+    """Parts sum to ζ; a rotor's dashpot adds its part to the modes without it, to first order."""
+    scenario = read_scenario(scenario_file(support="kelvin-voigt:k=2.5e9,c=7.6e8", damping={"coupled": 0.02}))
+    still = build_model(scenario)
+    push = np.zeros((6, 6))
+    push[1, 1] = 2e4
+    C = still.top.T @ push @ still.top
+    with_rotor = still.with_forces_of_motion("rotor", damping=C, stiffness=np.zeros_like(C))
+    before = {m.label: m for m in true_modes(still, below_hz=0.9)}
+    after = {m.label: m for m in true_modes(with_rotor, below_hz=0.9)}
+    for mode in after.values():
+        # the rotor's matrices aside, F is symmetric: the sum is exact to rounding
+        assert sum(mode.damping_by_source.values()) == pytest.approx(mode.damping_ratio, rel=1e-9)
+    one, other = before["side_side_1"], after["side_side_1"]
+    added = other.damping_ratio - one.damping_ratio
+    assert added > 0.002
+    assert other.damping_by_source["rotor"] == pytest.approx(added, rel=0.02)
+    assert other.damping_by_source["soil"] == pytest.approx(one.damping_by_source["soil"], rel=0.02)
+    assert one.damping_by_source["water"] == 0.0

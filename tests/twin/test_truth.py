@@ -29,7 +29,7 @@ sensors:
 
 
 def test_the_loop_closes(tmp_path: Path) -> None:
-    """Asset → records → modes → supports: first frequencies within 1 %, stiffness within a factor 2.5."""
+    """Asset → records → modes → supports: frequencies within 1 %, k and c inside their own 90 % intervals."""
     (tmp_path / "base.yaml").write_text(SCENARIO, encoding="utf-8")
     (tmp_path / "set.yaml").write_text(
         "{scenario: base.yaml, bins: [{speed_m_s: 12}], seeds: 2}", encoding="utf-8"
@@ -45,9 +45,12 @@ def test_the_loop_closes(tmp_path: Path) -> None:
     for label in ("fore_aft_1", "side_side_1"):
         assert measured[label]["frequency_hz"] == pytest.approx(truth[label]["frequency_hz"], rel=0.01)
     parameters = {p["name"]: p for p in document["truth"]["parameters"]}
-    assert parameters["k"]["true"] == 2.5e9
-    # wind falls steeply with frequency and pulls the peaks down by up to 0.3 %; that alone is half of k
-    assert 2.5e9 / 2.5 < parameters["k"]["value"] < 2.5e9 * 2.5
+    assert {name: p["true"] for name, p in parameters.items()} == {"k": 2.5e9, "c": 7.6e8}
+    # the seeds are fixed; over many, qualify/closing_loop.py counts how often the intervals hold the truth
+    assert all(p["covered"] for p in parameters.values()), parameters
+    for p in parameters.values():
+        low, high = p["interval_90"]
+        assert high / low < 20.0  # an interval over the whole prior would hold anything
     assert (tmp_path / "out" / "records" / "manifest.json").exists()
     assert "Against the known truth" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 

@@ -50,19 +50,38 @@ class RegularWave:
 
     def motion(self, points: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return velocity and total acceleration Du/Dt, each (n_times, n_points, 3)."""
-        theta = self._phase(points, t)
-        z = np.minimum(points[:, 2], self.elevation(points, t))
-        j = np.arange(1, self.u.size + 1)
-        kj, cos, sin = j * self.k, np.cos(theta[..., None] * j), np.sin(theta[..., None] * j)
-        down, up = np.exp(kj * z[..., None]), np.exp(-kj * (z[..., None] + 2.0 * self.depth))
-        base = 1.0 + np.exp(-2.0 * kj * self.depth)
-        C, S = self.u * (down + up) / base, self.u * (down - up) / base
+        C, S, kj, cos, sin = self._harmonics_at(points, t)
         u, w = (C * cos).sum(-1), -(S * sin).sum(-1)
         u_x, u_z = (kj * C * sin).sum(-1), (kj * S * cos).sum(-1)
         # irrotational and incompressible: w_x = u_z, w_z = −u_x; permanent form: ∂/∂t = −(ω/k) ∂/∂x
         relative = u - self.omega / self.k
         du, dw = relative * u_x + w * u_z, relative * u_z - w * u_x
         return self._heading(u, w), self._heading(du, dw)
+
+    def pressure(self, points: FloatArray, t: FloatArray) -> FloatArray:
+        """Return cu − (u² + w²)/2 [m²/s²], shifted to gη at the crest (Bernoulli), (n_times, n_points)."""
+
+        def total(points: FloatArray, t: FloatArray) -> FloatArray:
+            C, S, _, cos, sin = self._harmonics_at(points, t)
+            u, w = (C * cos).sum(-1), -(S * sin).sum(-1)
+            return np.asarray(self.omega / self.k * u - 0.5 * (u**2 + w**2))
+
+        crest = float(self.eta.sum())
+        at_crest = total(np.array([[0.0, 0.0, crest]]), np.zeros(1))[0, 0]
+        return np.asarray(total(points, t) + GRAVITY_M_S2 * crest - at_crest)
+
+    def _harmonics_at(
+        self, points: FloatArray, t: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Return harmonics of u and w at the points, jk, cos jθ and sin jθ, (n_times, n_points, n)."""
+        theta = self._phase(points, t)
+        z = np.minimum(points[:, 2], self.elevation(points, t))
+        j = np.arange(1, self.u.size + 1)
+        kj, cos, sin = j * self.k, np.cos(theta[..., None] * j), np.sin(theta[..., None] * j)
+        down, up = np.exp(kj * z[..., None]), np.exp(-kj * (z[..., None] + 2.0 * self.depth))
+        base = 1.0 + np.exp(-2.0 * kj * self.depth)
+        C, S = np.asarray(self.u * (down + up) / base), np.asarray(self.u * (down - up) / base)
+        return C, S, np.asarray(kj), np.asarray(cos), np.asarray(sin)
 
     def _phase(self, points: FloatArray, t: FloatArray) -> FloatArray:
         along = points[:, 0] * np.cos(self.direction) + points[:, 1] * np.sin(self.direction)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.loads.current import Current
+from jackettwin.loads.ends import Ends, end_forces
 from jackettwin.loads.morison import MorisonPoints, point_forces, wetness
 from jackettwin.loads.sea_series import sea_series
 from jackettwin.loads.waves import AirySea, Waves
@@ -38,11 +39,11 @@ class WaveSeries(NamedTuple):
         return float(self.step_s * self.loads.shape[0])
 
 
-def resultant_columns(grid: MorisonPoints) -> FloatArray:
-    """Return (3n, 6): force and moment about the still water's origin from forces at the points."""
-    columns = np.zeros((grid.weight.size, 3, 6))
+def resultant_columns(points: FloatArray) -> FloatArray:
+    """Return (3n, 6): force and moment about the still water's origin from forces at points (n, 3)."""
+    columns = np.zeros((points.shape[0], 3, 6))
     columns[:, :, :3] = np.eye(3)
-    x, y, z = grid.points.T
+    x, y, z = points.T
     columns[:, 2, 3], columns[:, 1, 3] = y, -z
     columns[:, 0, 4], columns[:, 2, 4] = z, -x
     columns[:, 1, 5], columns[:, 0, 5] = x, -y
@@ -58,6 +59,7 @@ def wave_series(
     period: float,
     step: float = 0.25,
     current: Current | None = None,
+    ends: tuple[Ends, FloatArray] | None = None,
 ) -> WaveSeries:
     """Return the loads of waves that repeat after ``period`` [s].
 
@@ -69,6 +71,8 @@ def wave_series(
         Water depth [m]; nothing below the bed is loaded.
     step : float
         Longest time between samples of a random sea [s].
+    ends : (Ends, (3n, n_columns)), optional
+        Ends of members and the work of forces on them.
     """
     random = isinstance(waves, AirySea) and waves.omega.size > 1
     n_times = 2 * int(np.ceil(0.5 * period / step)) if random else _REGULAR_SAMPLES
@@ -92,6 +96,9 @@ def wave_series(
         spread = u - u.mean(axis=0)
         covariance = np.einsum("tni,tnj->nij", spread[::4], spread[::4]) / spread[::4].shape[0]
         sigma[here] = np.sqrt(0.5 * np.maximum(np.einsum("nij,nij->n", part.normal, covariance), 0.0))
+    if ends is not None:
+        on_ends = end_forces(ends[0], waves, t, current=current)
+        loads += on_ends.reshape(n_times, -1) @ ends[1]
     return WaveSeries(loads, period / n_times, sigma)
 
 

@@ -40,6 +40,10 @@ class Waves(Protocol):
         """
         ...
 
+    def pressure(self, points: FloatArray, t: FloatArray) -> FloatArray:
+        """Return the dynamic pressure over the density [m²/s²], (m, n)."""
+        ...
+
 
 def wave_number(omega: FloatArray | float, depth: float) -> FloatArray:
     """Return k [rad/m] of ω² = g k tanh kd, by Newton's method from Guo's (2002) approximation.
@@ -135,13 +139,31 @@ class AirySea:
         spatial, z = self._spatial(points), points[:, 2]
         if self.stretching == "none":
             return self._fields(np.exp(1j * np.outer(t, self.omega)), spatial, np.minimum(z, 0.0))
-        eta = self.elevation(points, t)
-        level = np.minimum((z - eta) * self.depth / (self.depth + eta), 0.0)
         steps = [
             self._fields(np.exp(1j * self.omega * time)[None], spatial, row)
-            for time, row in zip(t, level, strict=True)
+            for time, row in zip(t, self._stretched(points, t), strict=True)
         ]
         return np.concatenate([u for u, _ in steps]), np.concatenate([du for _, du in steps])
+
+    def pressure(self, points: FloatArray, t: FloatArray) -> FloatArray:
+        """Return Σ a g cosh k(z+d)/cosh kd cos θ [m²/s²], (n_times, n_points)."""
+        t = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        steady = self.amplitude * self.omega**2 / self.k * np.exp(1j * self.phase) * self._spatial(points)
+        rotating = np.exp(1j * np.outer(t, self.omega))
+        if self.stretching == "none":
+            horizontal, _ = depth_functions(self.k, np.minimum(points[:, 2], 0.0), self.depth)
+            return np.asarray((rotating @ (steady * horizontal).T).real)
+        levels = self._stretched(points, t)
+        steps = [
+            (row * steady * depth_functions(self.k, z, self.depth)[0]).sum(axis=1).real
+            for row, z in zip(rotating, levels, strict=True)
+        ]
+        return np.array(steps)
+
+    def _stretched(self, points: FloatArray, t: FloatArray) -> FloatArray:
+        """Return Wheeler's levels (n_times, n_points)."""
+        eta = self.elevation(points, t)
+        return np.minimum((points[:, 2] - eta) * self.depth / (self.depth + eta), 0.0)
 
     def _spatial(self, points: FloatArray) -> npt.NDArray[np.complex128]:
         """Return e^{−ik·x}, (n_points, n_waves)."""

@@ -9,6 +9,7 @@ from typing import Any
 from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
+from jackettwin.loads.ends import EndCoefficients
 from jackettwin.loads.files import read_rotor
 from jackettwin.loads.morison import Coefficients
 from jackettwin.loads.water import Water
@@ -113,8 +114,9 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
     current = (
         None if c is None else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg))
     )
+    ends = EndCoefficients(given.ends.pressure, given.ends.added_mass, given.ends.drag)
     if w is None:
-        return Sea(depth, coefficients, water, current=current)
+        return Sea(depth, coefficients, water, current=current, ends=ends)
     with located(field="waves"):
         height, period = _size(w)
         return Sea(
@@ -131,6 +133,7 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
             spreading=w.spreading,
             relative_velocity=w.relative_velocity,
             current=current,
+            ends=ends,
         )
 
 

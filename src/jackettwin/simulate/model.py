@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
@@ -27,6 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 BAND_HZ = 5.0
 """Modes inside the structure are kept up to here."""
 _OVERDAMPED = 0.5
+SOURCES = ("structure", "soil", "rotor", "water")
 
 
 @dataclass(frozen=True)
@@ -38,28 +39,32 @@ class Model:
     assembly : Assembly
     reduced : Reduced
     top : (6, n) motion of the top node from the coordinates
+    sources : what each group of the pencil belongs to, of ``SOURCES``
     """
 
     assembly: Assembly
     reduced: Reduced
     top: FloatArray
+    sources: tuple[str, ...]
 
-    def with_forces_of_motion(self, *, damping: FloatArray, stiffness: FloatArray) -> Model:
+    def with_forces_of_motion(self, source: str, *, damping: FloatArray, stiffness: FloatArray) -> Model:
         """Return the model with forces −C q̇ − K q on its coordinates, (n, n); they need not be symmetric."""
         pencil = self.reduced.pencil
         everywhere = np.arange(pencil.n)
         added = (Group(Prony(c=1.0), damping, everywhere), Group(Prony(k0=1.0), stiffness, everywhere))
         pencil = replace(pencil, groups=(*pencil.groups, *added))
-        return replace(self, reduced=replace(self.reduced, pencil=pencil))
+        sources = (*self.sources, source, source)
+        return replace(self, reduced=replace(self.reduced, pencil=pencil), sources=sources)
 
 
 @dataclass(frozen=True)
 class TrueMode:
-    """A mode of the linear model, aerodynamics and water included."""
+    """A mode of the linear model, aerodynamics and water included; its damping also by source."""
 
     label: str
     frequency_hz: float
     damping_ratio: float
+    damping_by_source: dict[str, float] = field(default_factory=dict)
 
 
 def build_model(scenario: Scenario) -> Model:
@@ -90,11 +95,11 @@ def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Mo
     system = build_system(assembly, asset.support, rayleigh=asset.rayleigh)
     small = reduced(system, below_hz=BAND_HZ, keep=tuple(assembly.dofs(top_node)))
     rows = assembly.expand[assembly.mesh.node_dofs(top_node)]
-    model = Model(assembly, small, np.asarray(rows @ small.basis))
+    model = Model(assembly, small, np.asarray(rows @ small.basis), ("soil",) * len(small.pencil.groups))
     if asset.coupled_damping is None:
         return model
     damping = tuned_tower(assembly, small, asset.coupled_damping)
-    return model.with_forces_of_motion(damping=damping, stiffness=np.zeros_like(damping))
+    return model.with_forces_of_motion("structure", damping=damping, stiffness=np.zeros_like(damping))
 
 
 @dataclass(frozen=True)
@@ -139,7 +144,7 @@ def with_aerodynamics(model: Model, mean: Linearised) -> Model:
     """Return the model with the rotor's mean damping and stiffness at its top."""
     top = model.top
     return model.with_forces_of_motion(
-        damping=top.T @ mean.damping @ top, stiffness=top.T @ mean.stiffness @ top
+        "rotor", damping=top.T @ mean.damping @ top, stiffness=top.T @ mean.stiffness @ top
     )
 
 
@@ -153,6 +158,31 @@ def true_modes(model: Model, *, below_hz: float) -> tuple[TrueMode, ...]:
     shapes = model.reduced.basis @ states[: pencil.n, order]
     labels = mode_labels(mode_kinds(model.assembly, shapes))
     return tuple(
-        TrueMode(label, float(abs(v)) / (2.0 * pi), float(-v.real / abs(v)))
-        for label, v in zip(labels, values[order], strict=True)
+        TrueMode(
+            label,
+            float(abs(v)) / (2.0 * pi),
+            float(-v.real / abs(v)),
+            damping_by_source(model, complex(v), states[: pencil.n, i]),
+        )
+        for label, v, i in zip(labels, values[order], order, strict=True)
     )
+
+
+def damping_by_source(model: Model, pole: complex, x: npt.NDArray[np.complex128]) -> dict[str, float]:
+    """Return each source's part of the damping ratio of a mode with shape x (n,).
+
+    The imaginary part of xᴴF(λ)x = 0 is a sum over the parts of F; what is not symmetric in the rotor's
+    matrices belongs to it.
+    """
+    pencil = model.reduced.pencil
+    parts = dict.fromkeys(SOURCES, 0.0)
+
+    def form(matrix: FloatArray) -> complex:
+        return complex(x.conj() @ matrix @ x)
+
+    m = form(pencil.M).real
+    steel = pencil.rayleigh.alpha * m + pencil.rayleigh.beta * form(pencil.K).real
+    parts["structure"] = steel
+    for group, source in zip(pencil.groups, model.sources, strict=True):
+        parts[source] += (complex(group.law.stiffness(pole)) * form(group.S)).imag / pole.imag
+    return {source: part / (2.0 * abs(pole) * m) for source, part in parts.items()}

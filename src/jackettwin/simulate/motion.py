@@ -25,7 +25,7 @@ from jackettwin.simulate.model import (
     with_aerodynamics,
 )
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import WaterLoads, relative_drag, water_loads, water_points
+from jackettwin.simulate.water import WaterLoads, relative_drag, water_ends, water_loads, water_points
 from jackettwin.simulate.wind import (
     RotorLoads,
     rotor_loads_in,
@@ -140,17 +140,24 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
     basis, step = model.reduced.basis, scenario.clock.load_step_s
     t = np.arange(n_steps + 1, dtype=np.float64) * step
     repeating = np.zeros((n_steps + 1, model.reduced.n))
-    damping: list[FloatArray] = []
+    drag = {source: np.zeros((model.reduced.n,) * 2) for source in ("water", "rotor")}
     signals: dict[str, FloatArray] = {}
     wave: WaterLoads | None = None
     rotor: RotorLoads | None = None
     known = np.zeros((6, 6))
     if scenario.sea is not None:
         grid = water_points(model.assembly, scenario.sea)
-        water = water_loads(scenario.sea, grid, np.asarray(grid.N.T @ basis), duration=scenario.clock.total_s)
+        ends = water_ends(model.assembly, scenario.sea)
+        water = water_loads(
+            scenario.sea,
+            grid,
+            np.asarray(grid.N.T @ basis),
+            duration=scenario.clock.total_s,
+            ends=None if ends is None else (ends, np.asarray(ends.N.T @ basis)),
+        )
         if water is not None:
             if scenario.sea.relative_velocity != "none":
-                damping.append(relative_drag(grid, water, basis))
+                drag["water"] += relative_drag(grid, water, basis)
             if scenario.sea.waves is not None:
                 signals["wave_elevation"] = water.elevation(t)
             if abs(water.series.period_s - scenario.clock.total_s) < 1e-9:
@@ -167,10 +174,10 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
         tower = tower_points(model.assembly, air)
         if tower is not None:
             repeating += _closed(tower_loads(field_, tower, np.asarray(tower.N.T @ basis)))
-            damping.append(tower_damping(air, tower, basis))
+            drag["rotor"] += tower_damping(air, tower, basis)
         model = with_aerodynamics(model, aero.mean._replace(damping=known))
-    zero = np.zeros((model.reduced.n,) * 2)
-    model = model.with_forces_of_motion(damping=sum(damping, zero), stiffness=zero)
+    for source, matrix in drag.items():
+        model = model.with_forces_of_motion(source, damping=matrix, stiffness=np.zeros_like(matrix))
     return _Loads(model, repeating, wave, rotor, known, signals)
 
 

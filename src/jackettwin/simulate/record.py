@@ -72,7 +72,12 @@ def simulate(scenario: Scenario) -> Simulation:
             "scenario": scenario.name,
             "true_support": scenario.asset.support_text,
             "true_modes": [
-                {"label": m.label, "frequency_hz": m.frequency_hz, "damping_ratio": m.damping_ratio}
+                {
+                    "label": m.label,
+                    "frequency_hz": m.frequency_hz,
+                    "damping_ratio": m.damping_ratio,
+                    "damping_by_source": m.damping_by_source,
+                }
                 for m in motion.modes
             ],
         },

@@ -11,7 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_loads, water_points
+from jackettwin.simulate.water import water_ends, water_loads, water_points
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import assemble
 
@@ -37,7 +37,14 @@ def resultants(scenario: Scenario) -> dict[str, FloatArray]:
     total_s = scenario.clock.total_s
     if scenario.sea is not None:
         grid = water_points(assembly, scenario.sea, spacing=_FINE_M)
-        water = water_loads(scenario.sea, grid, resultant_columns(grid), duration=total_s)
+        ends = water_ends(assembly, scenario.sea)
+        water = water_loads(
+            scenario.sea,
+            grid,
+            resultant_columns(grid.points),
+            duration=total_s,
+            ends=None if ends is None else (ends, resultant_columns(ends.points)),
+        )
         if water is not None:
             parts["water"] = water.series.loads
     if scenario.air is not None and scenario.turbine is not None:
@@ -49,7 +56,7 @@ def resultants(scenario: Scenario) -> dict[str, FloatArray]:
         total = np.hstack([still[:, :3], still[:, 3:] + np.cross(arm, still[:, :3])])
         tower = tower_points(assembly, air)
         if tower is not None:
-            total = total + tower_loads(field, tower, resultant_columns(tower))
+            total = total + tower_loads(field, tower, resultant_columns(tower.points))
         parts["wind"] = total
     if not parts:
         raise InputError(

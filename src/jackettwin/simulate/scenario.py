@@ -8,6 +8,7 @@ from pathlib import Path
 
 from jackettwin.loads.bem import Control
 from jackettwin.loads.current import Current
+from jackettwin.loads.ends import EndCoefficients
 from jackettwin.loads.morison import Coefficients
 from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
@@ -58,6 +59,7 @@ class Sea:
     relative_velocity: str = "linearised"
     """How drag knows the motion of the structure: ``none`` or ``linearised``."""
     current: Current | None = None
+    ends: EndCoefficients = EndCoefficients()
 
 
 @dataclass(frozen=True)

@@ -68,6 +68,14 @@ class GrowthSchema(Schema):
     thickness_m: NotNegative
 
 
+class EndsSchema(Schema):
+    """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
+
+    pressure: NotNegative = 0.0
+    added_mass: NotNegative = 0.0
+    drag: NotNegative = 0.0
+
+
 class WaterSchema(Schema):
     """``water``: one drag and one added-mass coefficient for all members (C_M = 1 + C_a)."""
 
@@ -78,6 +86,7 @@ class WaterSchema(Schema):
     marine_growth: list[GrowthSchema] = []
     growth_density: Positive = GROWTH_KG_M3
     flooded: bool | list[str] = []
+    ends: EndsSchema = EndsSchema()
     adds_mass: bool | None = None
 
 

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from jackettwin.errors import InputError
+from jackettwin.loads.ends import Ends, member_ends
 from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
 from jackettwin.loads.regular_waves import regular_wave
 from jackettwin.loads.wave_series import WaveSeries, wave_series
@@ -107,10 +108,26 @@ def water_points(assembly: Assembly, sea: Sea, *, spacing: float = SPACING_M) ->
     )
 
 
-def water_loads(sea: Sea, grid: MorisonPoints, columns: FloatArray, *, duration: float) -> WaterLoads | None:
+def water_ends(assembly: Assembly, sea: Sea) -> Ends | None:
+    """Return the loaded ends of members; None if they have no coefficients."""
+    if not sea.ends.any:
+        return None
+    crest = 0.0 if sea.waves is None else 1.2 * sea.height_m
+    return member_ends(assembly, sea.ends, sea.coefficients, highest_z=crest, lowest_z=-sea.depth_m)
+
+
+def water_loads(
+    sea: Sea,
+    grid: MorisonPoints,
+    columns: FloatArray,
+    *,
+    duration: float,
+    ends: tuple[Ends, FloatArray] | None = None,
+) -> WaterLoads | None:
     """Return loads on ``columns`` (3n, n_columns) of motion of the points; None in still water.
 
-    A regular wave repeats after its own period, a random sea after ``duration`` [s].
+    A regular wave repeats after its own period, a random sea after ``duration`` [s]. ``ends`` come with
+    columns of their own.
     """
     waves = wave_field(sea, duration=duration)
     if waves is None and sea.current is None:
@@ -124,6 +141,7 @@ def water_loads(sea: Sea, grid: MorisonPoints, columns: FloatArray, *, duration:
         depth=sea.depth_m,
         period=sea.period_s if regular else duration if waves is not None else 10.0,
         current=sea.current,
+        ends=ends,
     )
     return WaterLoads(series, grid, waves)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,11 +13,12 @@ from jackettwin.twin.result import TwinResult
 
 @dataclass(frozen=True)
 class TrueMode:
-    """A mode as the records state it: the mean over them; None is not stated."""
+    """A mode as the records state it: the mean over them; its damping by source if they state that."""
 
     label: str
     frequency_hz: float
     damping_ratio: float
+    damping_by_source: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -41,16 +42,21 @@ class TrueParameter:
 
 def true_modes(result: TwinResult) -> tuple[TrueMode, ...]:
     """Return the true modes of the measured ones, averaged over all records that state them."""
-    stated: dict[str, list[tuple[float, float]]] = {}
+    stated: dict[str, list[dict[str, Any]]] = {}
     for metadata in _metadata(result):
         for mode in metadata.get("true_modes") or []:
-            stated.setdefault(mode["label"], []).append((mode["frequency_hz"], mode["damping_ratio"]))
-    found = []
-    for measured in result.measured:
-        if measured.label in stated:
-            f, zeta = np.mean(stated[measured.label], axis=0)
-            found.append(TrueMode(measured.label, float(f), float(zeta)))
-    return tuple(found)
+            stated.setdefault(mode["label"], []).append(mode)
+    return tuple(_mean(m.label, stated[m.label]) for m in result.measured if m.label in stated)
+
+
+def _mean(label: str, modes: list[dict[str, Any]]) -> TrueMode:
+    sources = modes[0].get("damping_by_source") or {}
+    return TrueMode(
+        label,
+        float(np.mean([m["frequency_hz"] for m in modes])),
+        float(np.mean([m["damping_ratio"] for m in modes])),
+        {s: float(np.mean([m["damping_by_source"][s] for m in modes])) for s in sources},
+    )
 
 
 def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
@@ -85,7 +91,12 @@ def truth_document(result: TwinResult) -> dict[str, Any] | None:
         return None
     return {
         "modes": [
-            {"label": m.label, "frequency_hz": m.frequency_hz, "damping_ratio": m.damping_ratio}
+            {
+                "label": m.label,
+                "frequency_hz": m.frequency_hz,
+                "damping_ratio": m.damping_ratio,
+                "damping_by_source": m.damping_by_source or None,
+            }
             for m in modes
         ],
         "parameters": [

@@ -1,0 +1,124 @@
+r"""Loads on the ends of members, where axial coefficients are given.
+
+At a joint, with the outward normals n of all member ends there,
+
+.. math:: F = -C_{p} p A + \rho C_{a} \frac{V V^T}{|V|} \dot u + \frac{\rho C_{d}}{4|A|^2} |u·A| (u·A) A,
+          \qquad A = \sum πR^2 n, \quad V = \sum \tfrac{2π}{3}R^3 n
+
+as in OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison), R with marine growth. Where legs
+run through, their ends cancel; those of braces count as if they stood free in the water: C_p = 1 is an upper
+bound on a jacket. All are 0 by default.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from jackettwin.errors import InputError
+from jackettwin.loads.current import Current
+from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.waves import Waves
+from jackettwin.structure import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EndCoefficients:
+    """Axial coefficients of dynamic pressure, of the water's acceleration and of drag."""
+
+    pressure: float = 0.0
+    added_mass: float = 0.0
+    drag: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in ("pressure", "added_mass", "drag"):
+            value = getattr(self, field)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InputError("out of range", field=field, value=value, allowed="≥ 0")
+
+    @property
+    def any(self) -> bool:
+        """Whether ends are loaded at all."""
+        return max(self.pressure, self.added_mass, self.drag) > 0.0
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The joints with ends in the water.
+
+    Attributes
+    ----------
+    points : (n, 3) z up from still water [m]
+    area : (n, 3) A [m²]
+    volume : (n, 3) V [m³]
+    N : (assembly.n_dof, 3n) nodal loads from forces at the joints
+    """
+
+    points: FloatArray
+    area: FloatArray
+    volume: FloatArray
+    N: sp.csr_array
+    coefficients: EndCoefficients
+    density_kg_m3: float
+
+
+def member_ends(
+    assembly: Assembly,
+    coefficients: EndCoefficients,
+    water: Coefficients,
+    *,
+    highest_z: float,
+    lowest_z: float,
+    exclude_parts: tuple[str, ...] = ("piles",),
+) -> Ends:
+    """Return the ends of members at joints between two heights [m] from still water."""
+    structure = assembly.structure
+    area: dict[str, FloatArray] = {}
+    volume: dict[str, FloatArray] = {}
+    for member in structure.members:
+        if member.part in exclude_parts:
+            continue
+        along = np.subtract(structure.nodes[member.end], structure.nodes[member.start])
+        along = along / np.linalg.norm(along)
+        for node, section, outward in (
+            (member.start, member.section_start, -along),
+            (member.end, member.section_end, along),
+        ):
+            z = structure.nodes[node][2] - structure.sea_level_z_m
+            R = 0.5 * section.outer_diameter_m + float(water.thickness(np.array([z]))[0])
+            area[node] = area.get(node, np.zeros(3)) + np.pi * R**2 * outward
+            volume[node] = volume.get(node, np.zeros(3)) + 2.0 * np.pi / 3.0 * R**3 * outward
+    sea = np.array([0.0, 0.0, structure.sea_level_z_m])
+    # 1 cm: a foot on the bed stays in the water whatever the rounding
+    names = [n for n in area if lowest_z - 0.01 <= structure.nodes[n][2] - sea[2] <= highest_z]
+    rows = [assembly.expand[assembly.mesh.node_dofs(name)[:3]] for name in names]
+    blank = sp.csr_array((0, assembly.n_dof))
+    return Ends(
+        points=np.array([structure.nodes[name] for name in names]).reshape(-1, 3) - sea,
+        area=np.array([area[name] for name in names]).reshape(-1, 3),
+        volume=np.array([volume[name] for name in names]).reshape(-1, 3),
+        N=sp.csr_array((sp.vstack(rows) if rows else blank).T),
+        coefficients=coefficients,
+        density_kg_m3=water.density_kg_m3,
+    )
+
+
+def end_forces(ends: Ends, waves: Waves, t: FloatArray, *, current: Current | None = None) -> FloatArray:
+    """Return the forces at the joints (n_times, n, 3) [N]; joints above the surface have none."""
+    c, rho = ends.coefficients, ends.density_kg_m3
+    u, du = waves.motion(ends.points, t)
+    if current is not None:
+        u = u + current.velocity(ends.points[:, 2])
+    forces = -c.pressure * rho * waves.pressure(ends.points, t)[..., None] * ends.area
+    size = np.maximum(np.linalg.norm(ends.volume, axis=1), 1e-12)
+    forces += rho * c.added_mass * ((du * ends.volume).sum(-1) / size)[..., None] * ends.volume
+    through = (u * ends.area).sum(-1)
+    square = np.maximum((ends.area**2).sum(-1), 1e-24)
+    forces += 0.25 * rho * c.drag * (np.abs(through) * through / square)[..., None] * ends.area
+    wet = ends.points[:, 2] <= waves.surface(ends.points, t)
+    return np.asarray(forces * wet[..., None])

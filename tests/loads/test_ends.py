@@ -1,0 +1,112 @@
+"""Loads on member ends against closed forms, and against what they leave of a short member."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.loads.current import Current
+from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
+from jackettwin.loads.morison import SEA_WATER_KG_M3, Coefficients
+from jackettwin.loads.regular_waves import RegularWave
+from jackettwin.loads.waves import airy_wave, irregular_sea
+from jackettwin.structure import Section, Structure, assemble
+from jackettwin.structure.model import STEEL, Member
+
+DEPTH, T, D = 50.0, 10.0, 2.0
+TUBE = Section(D, 0.05)
+WAVE = airy_wave(height=4.0, period=T, depth=DEPTH)
+TIMES = np.linspace(0.0, T, 41)
+
+
+def ends_of(*members: tuple[tuple[float, ...], tuple[float, ...]], growth=(), **coefficients: float):
+    """Ends of tubes between points given in z from still water; equal points are one joint."""
+    nodes: dict[tuple[float, ...], str] = {}
+    for pair in members:
+        for point in pair:
+            nodes.setdefault(point, f"n{len(nodes)}")
+    structure = Structure(
+        "ends",
+        {name: point for point, name in nodes.items()},
+        tuple(Member(f"m{i}", nodes[a], nodes[b], TUBE, TUBE, STEEL) for i, (a, b) in enumerate(members)),
+        sea_level_z_m=0.0,
+    )
+    water = Coefficients(growth=growth)
+    return member_ends(
+        assemble(structure), EndCoefficients(**coefficients), water, highest_z=0.0, lowest_z=-DEPTH
+    )
+
+
+def test_pressure_on_a_standing_tube() -> None:
+    """−pA up on its top, +pA on its bottom; p = ρ g a cosh k(z+d)/cosh kd cos ωt."""
+    ends = ends_of(((0.0, 0.0, -40.0), (0.0, 0.0, -10.0)), pressure=1.0)
+    forces = end_forces(ends, WAVE, TIMES)
+    k = float(WAVE.k[0])
+    for i, (z, sign) in enumerate(((-40.0, 1.0), (-10.0, -1.0))):
+        p = SEA_WATER_KG_M3 * 9.80665 * 2.0 * np.cosh(k * (z + DEPTH)) / np.cosh(k * DEPTH)
+        wanted = sign * p * 0.25 * np.pi * D**2 * np.cos(2.0 * np.pi * TIMES / T)
+        np.testing.assert_allclose(forces[:, i, 2], wanted, atol=1e-9 * p)
+    np.testing.assert_allclose(forces[..., :2], 0.0, atol=1e-9)
+
+
+def test_pressure_on_both_ends_is_the_froude_krylov_force_along_a_short_member() -> None:
+    """−A dp = ρ A L u̇ along the member: Euler's equation, in any of the linear theories."""
+    ends = ends_of(((0.0, 0.0, -12.0), (0.1, 0.0, -12.05)), pressure=1.0)
+    middle, along = ends.points.mean(axis=0)[None], np.array([0.1, 0.0, -0.05])
+    for wave in (WAVE, irregular_sea(Hs=3.0, Tp=9.0, depth=DEPTH, duration=200.0, seed=1, stretching="none")):
+        total = end_forces(ends, wave, TIMES).sum(axis=1)
+        du = wave.motion(middle, TIMES)[1][:, 0]
+        wanted = SEA_WATER_KG_M3 * 0.25 * np.pi * D**2 * np.outer(du @ along, along / np.linalg.norm(along))
+        # 0.1 m of 10 s waves: differences of p to 1e-5 of the force
+        np.testing.assert_allclose(total, wanted, atol=1e-4 * np.abs(wanted).max())
+
+
+def test_legs_run_through_and_braces_do_not() -> None:
+    """A leg in two pieces has no end at the joint; two braces meeting it at 45° leave 2A cos 45° = √2 A."""
+    joint = (0.0, 0.0, -20.0)
+    ends = ends_of(
+        ((0.0, 0.0, -30.0), joint),
+        (joint, (0.0, 0.0, -10.0)),
+        (joint, (10.0, 0.0, -10.0)),
+        (joint, (10.0, 0.0, -30.0)),
+        pressure=1.0,
+    )
+    at = int(np.flatnonzero(ends.points[:, 2] == -20.0)[0])
+    A = 0.25 * np.pi * D**2
+    np.testing.assert_allclose(ends.area[at], [-np.sqrt(2.0) * A, 0.0, 0.0], atol=1e-12)
+
+
+def test_acceleration_and_drag_at_an_end() -> None:
+    """ρ C_a (2π/3)R³ u̇ across a free end along x, and ¼ρC_d A|u|u in a current; growth widens both."""
+    R = 0.5 * D + 0.1
+    growth = ((0.0, -50.0, 0.1),)
+    line = ((0.0, 0.0, -20.0), (8.0, 0.0, -20.0))
+    ends = ends_of(line, growth=growth, added_mass=0.7)
+    du = WAVE.motion(ends.points, TIMES)[1]
+    wanted = SEA_WATER_KG_M3 * 0.7 * 2.0 * np.pi / 3.0 * R**3 * du[..., 0]
+    np.testing.assert_allclose(end_forces(ends, WAVE, TIMES)[..., 0], wanted, rtol=1e-9, atol=1e-6)
+    calm = airy_wave(height=0.0, period=T, depth=DEPTH)
+    ends = ends_of(line, growth=growth, drag=0.8)
+    force = end_forces(ends, calm, np.zeros(1), current=Current(DEPTH, subsurface_m_s=2.0))[0, :, 0]
+    u = 2.0 * (30.0 / 50.0) ** (1.0 / 7.0)
+    np.testing.assert_allclose(force, 0.25 * SEA_WATER_KG_M3 * 0.8 * np.pi * R**2 * u**2, rtol=1e-9)
+
+
+def test_joints_above_the_surface_are_dry() -> None:
+    ends = ends_of(((0.0, 0.0, -5.0), (0.0, 0.0, 5.0)), pressure=1.0)
+    assert ends.points.shape == (1, 3)
+
+
+def test_pressure_of_a_steep_wave_is_that_of_a_small_one_when_it_is_small() -> None:
+    """A single harmonic of 2 mm: Bernoulli's square is 1e-4 of the pressure."""
+    k, omega, a = float(WAVE.k[0]), 2.0 * np.pi / T, 1e-3
+    small = airy_wave(height=2.0 * a, period=T, depth=DEPTH)
+    u = a * omega / np.tanh(k * DEPTH)
+    steep = RegularWave(k, omega, DEPTH, np.array([a]), np.array([u]))
+    points = np.array([[0.0, 0.0, -10.0], [3.0, 1.0, -30.0]])
+    p = small.pressure(points, TIMES)
+    np.testing.assert_allclose(steep.pressure(points, TIMES), p, atol=1e-3 * np.abs(p).max())
+
+
+def test_negative_coefficients_are_refused() -> None:
+    with pytest.raises(InputError, match="pressure"):
+        EndCoefficients(pressure=-1.0)
