@@ -1,12 +1,18 @@
 """From a known asset through its records back to the asset."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.response.modal import damped_modes
+from jackettwin.response.system import build_system
+from jackettwin.simulate import read_scenario
+from jackettwin.simulate.model import asset_model, true_modes
+from jackettwin.structure import assemble
 from jackettwin.twin.truth import TrueParameter
 
 SCENARIO = """
@@ -59,3 +65,18 @@ def test_coverage_is_said_only_of_intervals() -> None:
     assert TrueParameter("kelvin-voigt", "k", 2.0, 3.0, (1.0, 4.0)).covered is True
     assert TrueParameter("kelvin-voigt", "k", 5.0, 3.0, (1.0, 4.0)).covered is False
     assert TrueParameter("kelvin-voigt", "k", 5.0, 3.0, None).covered is None
+
+
+def test_the_simulated_model_has_the_modes_of_the_twin() -> None:
+    """Same steel, same feet, still air, modes below 5 Hz kept: frequencies are the full model's to 1e-4."""
+    scenario = read_scenario("known_feet")
+    asset = scenario.asset
+    system = build_system(
+        assemble(asset.structure, gravity=asset.gravity), asset.support, rayleigh=asset.rayleigh
+    )
+    full = damped_modes(system, below_hz=0.8)
+    simulated = true_modes(asset_model(asset), below_hz=0.8)
+    assert len(simulated) == 5
+    for mode, pole in zip(simulated, full.eigenvalues, strict=True):
+        assert mode.frequency_hz == pytest.approx(abs(pole) / (2.0 * math.pi), rel=1e-4)
+        assert mode.damping_ratio == pytest.approx(-pole.real / abs(pole), rel=1e-3)
