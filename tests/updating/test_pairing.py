@@ -53,6 +53,11 @@ def test_the_right_frequency_with_the_wrong_shape_is_not_paired() -> None:
     assert pair((estimate(0.65, SHAPES[:, 4]),), FREQUENCY, SHAPES).keys() <= {3, 4}
 
 
+def test_a_shape_that_leans_across_the_modes_direction_is_not_paired() -> None:
+    across = 0.8 * SHAPES[:, 3] + 0.6 * np.linalg.norm(SHAPES[:, 3]) * np.array([0.0, 0.0, 1.0, 0.0])
+    assert pair((estimate(0.78, across),), FREQUENCY[3:4], SHAPES[:, 3:4]) == {}
+
+
 def test_a_mode_the_sensors_cannot_see_is_not_paired() -> None:
     blind = SHAPES.copy()
     blind[:, 2] *= 1e-3

@@ -66,7 +66,8 @@ def cautions(
         if u.best.at_bound:
             lines.append(f"{u.law}: {', '.join(u.best.at_bound)} ended on a bound.")
         lines += [
-            f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %."
+            f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %"
+            f"{'.' if m.fits_frequency else '; it was not fitted: the measured one may be another.'}"
             for m, f in zip(measured, u.modes.frequency_hz, strict=True)
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
@@ -84,8 +85,9 @@ def _strangers(found: Measured) -> list[str]:
 
 
 def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:
-    """Return whether a fitted frequency is off by more than 1 % and three standard deviations."""
-    if m.frequency_hz is None or not m.fits_frequency:
+    """Return whether a fitted frequency is off by 1 % and three standard deviations, any by a tenth."""
+    if m.frequency_hz is None:
         return False
     std = hypot(m.frequency_std_hz or 0.0, config.update.model_error(m.mode).frequency * m.frequency_hz)
-    return abs(f - m.frequency_hz) > max(3.0 * std, 0.01 * m.frequency_hz)
+    least = 0.01 if m.fits_frequency else 0.1
+    return abs(f - m.frequency_hz) > max(3.0 * std, least * m.frequency_hz)
