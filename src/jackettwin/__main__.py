@@ -10,8 +10,11 @@ def main() -> None:
     """Run a command on one BLAS thread: our matrices are small, and two threads are slower than one."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
-    from jackettwin.cli import main as command  # after the limits: NumPy reads them once
-
+    try:
+        from jackettwin.cli import main as command  # after the limits: NumPy reads them once
+    except KeyboardInterrupt:
+        sys.stderr.write("interrupted\n")
+        sys.exit(130)
     sys.exit(command())
 
 

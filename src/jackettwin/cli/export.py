@@ -24,21 +24,21 @@ from jackettwin.updating import numbered_modes
 )
 @click.option(
     "--out",
-    required=True,
     type=click.Path(dir_okay=False, path_type=Path),
-    help="FILE.dat: a SubDyn input file.",
+    help="FILE.dat: a SubDyn input file; default out/NAME_SubDyn.dat.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def export_command(structure: str, support: str | None, out: Path, as_json: bool) -> None:
+def export_command(structure: str, support: str | None, out: Path | None, as_json: bool) -> None:
     """Write what stands below the interface of STRUCTURE as a SubDyn input file."""
-    if out.suffix.lower() != ".dat":
+    if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
     whole = read_structure(structure)
     held = read_support(
         support, whole, first_frequency_hz=lambda: float(numbered_modes(assemble(whole), 1).frequency_hz[0])
     )
     foundation, _ = at_interface(whole)
-    files = [str(path) for path in write_subdyn(with_static_reactions(foundation, held), out)]
+    path = out or Path("out") / f"{whole.name}_SubDyn.dat"
+    files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path)]
     warnings = _warnings(whole, held)
     if as_json:
         print_json({"structure": whole.name, "files": files, "warnings": warnings})

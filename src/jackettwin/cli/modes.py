@@ -10,7 +10,6 @@ import click
 import numpy as np
 from rich.table import Table
 
-from jackettwin.cli.console import number as show
 from jackettwin.cli.console import output, print_json
 from jackettwin.errors import InputError
 from jackettwin.response.follow import follow
@@ -148,7 +147,8 @@ def _print(document: dict[str, Any]) -> None:
     x, y, z = document["center_of_mass_m"]
     output.print(
         f"{document['structure']}: {document['mass_kg'] / 1e3:,.1f} t, "
-        f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m, {document['n_dof']} degrees of freedom"
+        f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m in the structure's frame, "
+        f"{document['n_dof']} degrees of freedom"
     )
     table = Table("mode", "label", "f [Hz]", "ζ [%]", "undamped f [Hz]", "difference [%]")
     for row in document["modes"]:
@@ -158,9 +158,9 @@ def _print(document: dict[str, Any]) -> None:
             str(row["mode"] or "–"),
             row["label"],
             f"{f:.4f}",
-            f"{100 * row['damping_ratio']:.3f}",
+            f"{_whole(100 * row['damping_ratio'], 3):.3f}",
             "–" if f0 is None else f"{f0:.4f}",
-            show(apart, 3),
+            "–" if apart is None else f"{_whole(apart, 3):.3f}",
         )
     output.print(table)
     if document["overdamped_poles"]:
@@ -174,3 +174,8 @@ def _print(document: dict[str, Any]) -> None:
             f"{slow.size} real poles (relaxation) from {slow.min():.3g} to {slow.max():.3g} rad/s; "
             f"slowest time constant {1.0 / slow.min():.3g} s ({slow.min() / (2 * pi):.3g} Hz)"
         )
+
+
+def _whole(value: float, decimals: int) -> float:
+    """Return the value as it is printed: rounding error is no damping, and zero has no sign."""
+    return round(value, decimals) + 0.0

@@ -83,9 +83,8 @@ from jackettwin.updating import numbered_modes
 )
 @click.option(
     "--out",
-    required=True,
     type=click.Path(dir_okay=False, path_type=Path),
-    help="FILE.npz, or FILE.dat for OpenFAST's ExtPtfm.",
+    help="FILE.npz, or FILE.dat for OpenFAST's ExtPtfm; default out/NAME.npz.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def superelement_command(
@@ -98,13 +97,14 @@ def superelement_command(
     step_s: float | None,
     beam: str | None,
     subdivide: int | None,
-    out: Path,
+    out: Path | None,
     as_json: bool,
 ) -> None:
     """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is.
 
     STRUCTURE may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
     """
+    out = out or Path("out") / f"{Path(structure).stem}.npz"
     require_format(out)
     if is_superelement(Path(structure)):
         _report(_rewritten(Path(structure), out), as_json)

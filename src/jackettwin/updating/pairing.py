@@ -18,8 +18,8 @@ FREQUENCY_WIDTH = 0.15
 MIXING = 0.06
 """Modes closer than this (relative) mix in a measured shape: half-power bands, 2ζf, of 1 to 3 % overlap."""
 LEAST_MAC = 0.8
-"""A shape less like the model's than this is no match: true pairs of OpenFAST records reach 0.87 and more, false
-ones (another direction, a blade mode) 0.73 and less."""
+"""A shape less like the model's is no match: true pairs of OpenFAST records reach 0.87 and more,
+false ones (another direction, a blade mode) 0.73 and less."""
 LEAST_VISIBLE = 0.1
 """A mode that moves the sensors less than this share of the most visible one cannot have been measured."""
 
