@@ -42,12 +42,13 @@ def _levels(assembly: Assembly) -> npt.NDArray[np.float64]:
     mesh, structure = assembly.mesh, assembly.structure
     x, y, _ = structure.nodes[structure.top_node]
     size = max(1.0, float(np.ptp(mesh.coordinates[:, 2])))
-    every = np.eye(len(mesh.coordinates))
+    every: npt.NDArray[np.float64] = np.eye(len(mesh.coordinates))
     axis = np.flatnonzero((np.abs(mesh.coordinates[:, :2] - [x, y]) < 1e-6 * size).all(axis=1))
     if axis.size > 1 or not structure.interface_nodes:
         return every[axis]
     interface = [mesh.node_names.index(name) for name in structure.interface_nodes]
-    return every[interface].mean(axis=0, keepdims=True)
+    mean: npt.NDArray[np.float64] = every[interface].mean(axis=0, keepdims=True)
+    return mean
 
 
 def mode_labels(kinds: tuple[str, ...]) -> tuple[str, ...]:
