@@ -77,6 +77,7 @@ def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:
         curves=ground.curves,
         damping=ground.damping,
         law=ground.law,
+        radiation=ground.radiation,
     )
     with located(field="soil"):
         return whole.build()

@@ -16,6 +16,7 @@ from jackettwin.soil.foundation import (
     LayerSchema,
     LinearSchema,
     PileSchema,
+    RadiationSchema,
     ScourSchema,
 )
 from jackettwin.soil.law_files import LawSchema
@@ -58,6 +59,7 @@ class GroundSchema(Schema):
     curves: CurvesSchema = CurvesSchema()
     damping: DampingSchema | None = None
     law: LawSchema | None = None
+    radiation: RadiationSchema | None = None
 
 
 class GrowthSchema(Schema):

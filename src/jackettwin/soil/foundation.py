@@ -25,6 +25,7 @@ from jackettwin.soil.piles import (
     with_piles,
 )
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.radiation import Radiation
 from jackettwin.soil.scour import Scour
 from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.soil.viscoelastic import Law
@@ -38,14 +39,21 @@ class Foundation:
     pile: Pile
     springs: PileSprings
     law: Law = ELASTIC
+    radiation: Radiation | None = None
+
+    @property
+    def dashpots(self) -> PileSprings | None:
+        """What the ground radiates [N·s/m], beside its law."""
+        return None if self.radiation is None else self.radiation.on(self.pile, self.springs)
 
     def piled(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure on its piles, every node of them."""
-        return with_piles(structure, self.pile, self.springs, law=self.law)
+        return with_piles(structure, self.pile, self.springs, law=self.law, dashpots=self.dashpots)
 
     def heads(self, structure: Structure) -> Support:
         """Return pile heads lumped at the feet: as many unknowns as without piles."""
-        return on_pile_heads(structure, lumped_head(self.pile, self.springs, law=self.law))
+        head = lumped_head(self.pile, self.springs, law=self.law, dashpots=self.dashpots)
+        return on_pile_heads(structure, head)
 
     def lumped(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""
@@ -159,6 +167,21 @@ class DampingSchema(Schema):
     frequency_hz: Positive
 
 
+class RadiationSchema(Schema):
+    """``radiation``: ground that carries waves away, and their frequency."""
+
+    density_kg_m3: Positive
+    shear_wave_m_s: Positive
+    frequency_hz: Positive
+    poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5)] = 0.5
+
+    def build(self) -> Radiation:
+        """Return it at its frequency."""
+        return Radiation(
+            self.density_kg_m3, self.shear_wave_m_s, 2.0 * pi * self.frequency_hz, self.poisson_ratio
+        )
+
+
 class FoundationSchema(Schema):
     """A foundation file."""
 
@@ -168,6 +191,7 @@ class FoundationSchema(Schema):
     curves: CurvesSchema = CurvesSchema()
     damping: DampingSchema | None = None
     law: LawSchema | None = None
+    radiation: RadiationSchema | None = None
 
     def build(self) -> Foundation:
         """Return the foundation."""
@@ -179,7 +203,8 @@ class FoundationSchema(Schema):
         elif self.law is not None:
             law = self.law.build()
         pile = self.pile.build()
-        return Foundation(pile, self._springs(pile), law)
+        radiation = None if self.radiation is None else self.radiation.build()
+        return Foundation(pile, self._springs(pile), law, radiation)
 
     def _springs(self, pile: Pile) -> PileSprings:
         layers, linear = self.soil.layers, self.soil.linear

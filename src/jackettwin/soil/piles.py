@@ -282,12 +282,17 @@ def dashpots(damping_ratio: float, omega1: float) -> Prony:
 
 
 def with_piles(
-    structure: Structure, pile: Pile, springs: PileSprings, *, law: Law = ELASTIC
+    structure: Structure,
+    pile: Pile,
+    springs: PileSprings,
+    *,
+    law: Law = ELASTIC,
+    dashpots: PileSprings | None = None,
 ) -> tuple[Structure, Support]:
     """Return the structure with a vertical pile under every reaction node, and the springs that hold it.
 
     The feet stay the reaction nodes (gravity's axial forces are found with these held). ``law`` scales every
-    spring and is 1 at its static stiffness.
+    spring and is 1 at its static stiffness; ``dashpots`` [N·s/m] stand beside them (radiation).
 
     Raises
     ------
@@ -301,15 +306,19 @@ def with_piles(
         below, tubes = pile_beams(foot, nodes[foot], pile, springs.node_depth)
         nodes |= below
         members += tubes
-        held += [
-            Spring(name, np.diag([k_h, k_h, k_v, 0.0, 0.0, k_t]), law)
-            for name, k_h, k_v, k_t in zip(
-                (foot, *below), springs.lateral, springs.axial, springs.torsional, strict=True
-            )
-        ]
+        held += _held((foot, *below), springs, law)
+        if dashpots is not None:
+            held += _held((foot, *below), dashpots, Prony(c=1.0))
     reactions = tuple(Reaction(foot) for foot in structure.reaction_nodes)
     piled = replace(structure, nodes=nodes, members=tuple(members), reactions=reactions)
     return piled, Support(springs=tuple(held))
+
+
+def _held(names: tuple[str, ...], springs: PileSprings, law: Law) -> list[Spring]:
+    return [
+        Spring(name, np.diag([h, h, v, 0.0, 0.0, t]), law)
+        for name, h, v, t in zip(names, springs.lateral, springs.axial, springs.torsional, strict=True)
+    ]
 
 
 def pile_beams(

@@ -7,9 +7,50 @@ first modes is hysteretic (``dashpots``, springpots).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from jackettwin.errors import InputError
+from jackettwin.soil.piles import Pile, PileSprings
+
+SHALLOW_DIAMETERS = 2.5
+"""Down to here a pile sends surface waves rather than waves of compression."""
+
+
+@dataclass(frozen=True)
+class Radiation:
+    """Ground into which a pile sends waves of frequency ``omega`` [rad/s]."""
+
+    density_kg_m3: float
+    shear_wave_m_s: float
+    omega: float
+    poisson_ratio: float = 0.5
+
+    def on(self, pile: Pile, springs: PileSprings) -> PileSprings:
+        """Return the dashpots at the nodes of a pile [N·s/m]; none where the springs have nothing to hold.
+
+        Each node stands for half of the elements beside it.
+        """
+        z, D = springs.node_depth, pile.section.outer_diameter_m
+        half = 0.5 * np.diff(z)
+        length = np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
+        deep, shallow = (
+            lateral_radiation(
+                density_kg_m3=self.density_kg_m3,
+                shear_wave_m_s=self.shear_wave_m_s,
+                D=D,
+                omega=self.omega,
+                poisson_ratio=self.poisson_ratio,
+                shallow=near,
+            )
+            for near in (False, True)
+        )
+        axial = axial_radiation(
+            density_kg_m3=self.density_kg_m3, shear_wave_m_s=self.shear_wave_m_s, D=D, omega=self.omega
+        )
+        lateral = np.where(z < SHALLOW_DIAMETERS * D, shallow, deep) * length * (springs.lateral > 0.0)
+        return PileSprings(z, lateral, axial * length * (springs.axial > 0.0), np.zeros_like(z))
 
 
 def lateral_radiation(
