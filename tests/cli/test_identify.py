@@ -83,3 +83,18 @@ def test_picks_of_a_result_replay(tmp_path: Path) -> None:
     code, _, err = run(record, *settings, "--picks", str(tmp_path / "mine.yaml"))
     assert code == 2
     assert "no pole near the pick" in err
+
+
+def test_methods_side_by_side(tmp_path: Path) -> None:
+    record = str(RECORDS / "pile_U12_s301.parquet")
+    (tmp_path / "quick.yaml").write_text("{refine: false}")
+    settings = ("--settings", str(tmp_path / "quick.yaml"))
+    code, out, _ = run(record, *settings, "--compare", "--json")
+    assert code == 0
+    document = json.loads(out)
+    methods = document["methods"]["modes"]
+    assert list(methods) == ["ssi-cov", "ssi-dat", "plscf", "efdd"]
+    assert all(len(modes) == len(document["modes"]) for modes in methods.values())
+    code, _, err = run(record, record, "--compare")
+    assert code == 2
+    assert "--compare: takes one record" in err

@@ -15,8 +15,10 @@ from jackettwin.cli.console import messages, number, output, print_json, progres
 from jackettwin.errors import InputError, located
 from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.picks import Pick, parse_picks
 from jackettwin.twin import observation_document, observe
+from jackettwin.twin.document import comparison_document
 from jackettwin.twin.export import WRITERS, export_modes
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -33,6 +35,7 @@ _SHOWN = 5
     type=click.Choice(["ssi-cov", "ssi-dat", "plscf", "efdd"]),
     help="How poles are found; default ssi-cov.",
 )
+@click.option("--compare", is_flag=True, help="One record by every method, side by side.")
 @click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
 @click.option(
     "--picks",
@@ -54,6 +57,7 @@ def identify_command(
     records: tuple[str, ...],
     settings_file: str | None,
     method: str | None,
+    compare: bool,
     real_poles: bool,
     picks_file: str | None,
     out: Path | None,
@@ -69,10 +73,17 @@ def identify_command(
     picks = _picks(picks_file)
     _refuse_format(out)
     files = record_files(records)
+    if compare and len(files) > 1:
+        raise InputError("takes one record", field="--compare", value=f"{len(files)} records")
     if len(files) == 1:
-        with progress(1, "identify") as step:
+        with progress(2 if compare else 1, "identify") as step:
             step(f"identify {files[0].name}")
-            document = observation_document(observe(files[0], settings, drop_dead=drop_dead, picks=picks))
+            seen = observe(files[0], settings, drop_dead=drop_dead, picks=picks)
+            document = observation_document(seen)
+            if compare:
+                step("by every method")
+                compared = compare_methods(seen.record, seen.identification, settings)
+                document["methods"] = comparison_document(compared)
     else:
         document = _many(files, settings, drop_dead, picks, _folder(out), workers)
     if out is not None:
@@ -146,6 +157,8 @@ def _print_one(document: Mapping[str, Any]) -> None:
     for m in document["modes"]:
         table.add_row(*_numbers(m), f"{m['mpc']:.3f}", m["status"])
     output.print(table)
+    if "methods" in document:
+        _print_methods(document)
     for pole in document["real_poles"]:
         low, high = pole["rate_interval_95"]
         output.print(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
@@ -154,6 +167,21 @@ def _print_one(document: Mapping[str, Any]) -> None:
         output.print(f"quality: {finding['channel'] or 'record'}: {finding['text']}")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
+
+
+def _print_methods(document: Mapping[str, Any]) -> None:
+    methods = document["methods"]
+    table = Table("f [Hz] / ζ [%]", *methods["modes"], title="the same modes by every method, not refined")
+    for i, mode in enumerate(document["modes"]):
+        others = [found[i] for found in methods["modes"].values()]
+        table.add_row(*("–" if m is None else _both(m) for m in (mode, *others)))
+    output.print(table)
+    for method, why in methods["refused"].items():
+        output.print(f"{method} not applied: {why}", soft_wrap=True, markup=False)
+
+
+def _both(m: Mapping[str, Any]) -> str:
+    return f"{m['frequency_hz']:.4f} / {100 * m['damping_ratio']:.2f}"
 
 
 def _print_many(document: Mapping[str, Any]) -> None:

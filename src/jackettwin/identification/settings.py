@@ -12,8 +12,9 @@ from jackettwin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+METHODS = ("ssi-cov", "ssi-dat", "plscf", "efdd")
 _CHOICES: dict[str, tuple[str, ...]] = {
-    "method": ("ssi-cov", "ssi-dat", "plscf", "efdd"),
+    "method": METHODS,
     "weighting": ("br", "cva"),
     "state_matrix": ("shift", "one-lag"),
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from jackettwin.identification import Identification, fuse
+from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.convergence import convergence
 from jackettwin.report import figures_identification, figures_likeness, figures_record
 from jackettwin.report import tables_records as tables
@@ -41,6 +42,9 @@ def what_was_identified(result: TwinResult) -> list[Block]:
         blocks.append(tables.identified_table(found, names, folded=i > 0))
     if result.identifications:
         first = result.identifications[0]
+        if first.modes and result.record is not None:
+            compared = compare_methods(result.record, first)
+            blocks.append(tables.method_table(compared, result.names[0]))
         if first.rejected:
             blocks.append(tables.rejected_table(first))
         blocks += _history(result)

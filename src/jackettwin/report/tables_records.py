@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification.comparison import Comparison
 from jackettwin.report.figures_identification import damping_interval, frequency_interval
 from jackettwin.report.figures_record import plain
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, scientific, words
@@ -39,6 +40,30 @@ def quality_table(seen: Observation) -> Table:
         "clipped [%]",
     )
     return Table(f"{seen.record.name}: quality of every channel.", columns, tuple(rows), 3)
+
+
+def method_table(compared: Comparison, names: Sequence[str]) -> Table:
+    """Return f and ζ of each mode by every method side by side."""
+    titles = {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}
+
+    def said(mode: ModalEstimate | None) -> str:
+        return UNKNOWN if mode is None else f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}"
+
+    rows = [
+        (
+            words(name) if name else f"{frequency(mode.frequency_hz)} Hz",
+            said(mode),
+            *(said(found[i]) for found in compared.modes.values()),
+        )
+        for i, (name, mode) in enumerate(zip(names, compared.reference.modes, strict=True))
+    ]
+    caption = (
+        f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, none "
+        "refined. Dash: not found. EFDD finds one mode of a close pair and lends light modes damping."
+    )
+    caption += "".join(f" {titles[method]} not applied: {why}." for method, why in compared.refused.items())
+    columns = ("mode", "reported", *(titles[method] for method in compared.modes))
+    return Table(caption, columns, tuple(rows))
 
 
 def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:

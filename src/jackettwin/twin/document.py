@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, TwinResult
@@ -306,3 +307,15 @@ def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any
 
 def _shape(shape: ComplexArray, channels: list[str]) -> dict[str, list[float]]:
     return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}
+
+
+def comparison_document(compared: Comparison) -> dict[str, Any]:
+    """Return what every method has for each mode of the reference, null where it has none."""
+    names = [channel.name for channel in compared.reference.channels]
+    return {
+        "modes": {
+            method: [None if m is None else mode_document(m, names) for m in modes]
+            for method, modes in compared.modes.items()
+        },
+        "refused": dict(compared.refused),
+    }

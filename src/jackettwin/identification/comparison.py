@@ -1,0 +1,90 @@
+"""The same record by every method: how far the numbers depend on who asks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from jackettwin.errors import InputError
+from jackettwin.identification.automatic import identify
+from jackettwin.identification.mac import mac
+from jackettwin.identification.settings import METHODS, IdentificationSettings
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.records import Record
+
+FREQUENCY_SCALE = 0.03
+"""Relative change of frequency that counts as much as shapes at right angles."""
+SAME_MODE = 1.0
+"""Largest distance, frequency and shape together, of one mode by two methods."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Modes of one record by several methods.
+
+    Attributes
+    ----------
+    reference : Identification
+    modes : mapping of str to tuple
+        By method, what it has for each mode of the reference; None where it has none.
+    refused : mapping of str to str
+        Methods that could not take the record, and why.
+    """
+
+    reference: Identification
+    modes: Mapping[str, tuple[ModalEstimate | None, ...]]
+    refused: Mapping[str, str]
+
+
+def compare_methods(
+    record: Record, reference: Identification, settings: IdentificationSettings | None = None
+) -> Comparison:
+    """Identify a record by every method in the band of the reference, unrefined.
+
+    Parameters
+    ----------
+    record : Record
+        The one the reference was identified from.
+    """
+    band = reference.settings
+    plain = replace(
+        settings or IdentificationSettings(),
+        lowest_frequency_hz=band.lowest_frequency_hz,
+        highest_frequency_hz=band.highest_frequency_hz,
+        weighting="br",
+        state_matrix="shift",
+        refine=False,
+        real_poles=False,
+    )
+    modes, refused = {}, {}
+    for method in METHODS:
+        try:
+            modes[method] = paired(reference.modes, identify(record, plain.with_method(method)).modes)
+        except InputError as error:
+            refused[method] = str(error)
+    return Comparison(reference, modes, refused)
+
+
+def paired(
+    wanted: Sequence[ModalEstimate], found: Sequence[ModalEstimate]
+) -> tuple[ModalEstimate | None, ...]:
+    """Return for each wanted mode the found one nearest in frequency and shape, none twice."""
+    out: list[ModalEstimate | None] = [None] * len(wanted)
+    if not wanted or not found:
+        return tuple(out)
+    f = np.log([mode.frequency_hz for mode in wanted])
+    g = np.log([mode.frequency_hz for mode in found])
+    shapes = np.array([mode.mode_shape for mode in wanted])
+    apart = np.abs(np.subtract.outer(f, g)) / FREQUENCY_SCALE
+    apart += 1.0 - mac(shapes, np.array([mode.mode_shape for mode in found]))
+    for i, j in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
+        if apart[i, j] < SAME_MODE:
+            out[int(i)] = found[int(j)]
+    return tuple(out)
