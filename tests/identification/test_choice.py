@@ -76,7 +76,13 @@ def test_a_fit_that_breaks_down_leaves_what_the_subspace_method_found(tower, rng
     def broken(*args, **kwargs):
         raise np.linalg.LinAlgError("singular")
 
+    record = simulate(tower, rng, sample_rate_hz=5.0)
     monkeypatch.setattr(choice, "refine", broken)
-    result = identify(simulate(tower, rng, sample_rate_hz=5.0))
+    # what does not fit the whole band is refined in narrow ones
+    narrow = identify(record)
+    assert not narrow.warnings
+    assert {mode.method for mode in narrow.modes} == {"maximum likelihood"}
+    monkeypatch.setattr(choice, "refine_group", broken)
+    result = identify(record)
     assert any("broke down" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,7 +67,7 @@ def test_score_equals_finite_differences(fitted):
 def test_information_is_the_mean_curvature(fitted):
     """With the model itself as data, minus the slope of the score is the Fisher information."""
     data, p = fitted
-    exact = type(data)(data.omega, data.count, expected(data, p).matrix, data.floor, data.duration_s)
+    exact = replace(data, density=expected(data, p, 0.0).matrix)
     prior = likelihood.prior_of(exact, p)
     _, fisher = likelihood.scoring(exact, prior, p)
     size = np.sqrt(np.diag(fisher))

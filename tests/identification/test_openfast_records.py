@@ -17,7 +17,14 @@ RIGID = sorted(
     for path in RECORDS.iterdir()
     if path.name.endswith(".json") and "flexible" not in path.name
 )
-BENDING = ("side_side_1", "fore_aft_1", "side_side_2", "fore_aft_2")
+PAIRS = (("side_side_1", "fore_aft_1"), ("side_side_2", "fore_aft_2"))
+IN_TURBULENCE = 0.855
+"""Mean aerodynamic damping of side-side modes in turbulence over that of a steady wind: 0.82 to 0.89."""
+STILL = {
+    "pile": {"side_side_1": 0.0057, "side_side_2": 0.0130},
+    "kv": {"side_side_1": 0.0083, "side_side_2": 0.0321},
+}
+"""Damping without wind: stated for the pile asset, extrapolated for the other; the rest is aerodynamic."""
 
 
 @pytest.fixture(scope="module")
@@ -26,42 +33,62 @@ def results():
 
 
 def truth(name):
+    """Return frequency and mean damping in turbulence of each mode."""
     text = (RECORDS / f"{name}.json").read_text(encoding="utf-8")
-    return {m["label"]: (m["frequency_hz"], m["damping_ratio"]) for m in json.loads(text)["true_modes"]}
+    steady = {m["label"]: (m["frequency_hz"], m["damping_ratio"]) for m in json.loads(text)["true_modes"]}
+    still = STILL[name.split("_")[0]]
+    return {
+        label: (f, still[label] + IN_TURBULENCE * (zeta - still[label]) if label in still else zeta)
+        for label, (f, zeta) in steady.items()
+    }
 
 
-def near(modes, f, width):
-    return [m for m in modes if abs(m.frequency_hz / f - 1.0) < width]
+def fore_aft_share(mode):
+    size = np.abs(mode.mode_shape) ** 2
+    return size[::2].sum() / size.sum()
+
+
+def pair(modes, true, labels):
+    """Return the modes near a pair, the one that moves least along the wind first."""
+    centre = np.mean([true[label][0] for label in labels])
+    near = [m for m in modes if abs(m.frequency_hz / centre - 1.0) < 0.07]
+    return sorted(near, key=fore_aft_share)
 
 
 @pytest.mark.parametrize("name", RIGID)
-def test_both_bending_pairs_are_found_apart(results, name):
-    modes, true = results[name].modes, truth(name)
-    first = near(modes, 0.5 * (true["side_side_1"][0] + true["fore_aft_1"][0]), 0.05)
-    second = near(modes, 0.5 * (true["side_side_2"][0] + true["fore_aft_2"][0]), 0.07)
-    assert len(first) == 2
-    assert len(second) == 2
+def test_both_bending_pairs_are_found_apart_and_refined(results, name):
+    for labels in PAIRS:
+        found = pair(results[name].modes, truth(name), labels)
+        assert len(found) == 2
+        assert {mode.method for mode in found} == {"maximum likelihood"}
+        assert fore_aft_share(found[0]) < 0.2
 
 
 def test_damping_lies_inside_its_interval_in_nine_of_ten(results):
-    """Seven records, four modes: in 28 trials at least 25.
-
-    Side-side damping is known for steady wind; in turbulence its mean is up to 18 % lower.
-    """
+    """Seven records, four modes: in 28 trials at least 25, with a probability of 95 % at 95 % coverage."""
     inside = 0
     for name, result in results.items():
         true = truth(name)
-        for pair in (BENDING[:2], BENDING[2:]):
-            centre = np.mean([true[label][0] for label in pair])
-            found = sorted(near(result.modes, centre, 0.07), key=lambda m: m.damping_ratio)
-            known = sorted(true[label][1] for label in pair)
-            for mode, zeta in zip(found, known, strict=True):
+        for labels in PAIRS:
+            for mode, label in zip(pair(result.modes, true, labels), labels, strict=True):
                 low, high = mode.damping_ratio_interval_95
-                inside += low < zeta < high
+                inside += low < true[label][1] < high
     assert inside >= 25
 
 
-def test_fused_frequencies_are_within_one_per_cent(results):
-    fused = fuse([result for name, result in results.items() if name.startswith("pile")])
-    for f, _ in (truth("pile_U12_s301")[label] for label in BENDING):
-        assert min(abs(mode.frequency_hz / f - 1.0) for mode in fused.modes) < 0.01
+def test_refined_damping_is_as_sharp_as_the_record_allows_and_no_sharper(results):
+    """One force moves all channels: their ratios must not be taken for knowledge of the damping."""
+    second = [m for r in results.values() for m in r.modes if 0.7 < m.frequency_hz < 0.82]
+    ratio = [np.sqrt(m.log_covariance[1, 1]) / m.damping_ratio_cov_limit for m in second]
+    assert 0.8 < np.median(ratio) < 1.5
+
+
+@pytest.mark.parametrize("asset", ["pile", "kv"])
+def test_fused_frequencies_are_within_one_per_cent(results, asset):
+    names = [name for name in RIGID if name.startswith(asset)]
+    fused = fuse([results[name] for name in names])
+    true = truth(names[0])
+    for labels in PAIRS:
+        for mode, label in zip(pair(fused.modes, true, labels), labels, strict=True):
+            low, high = mode.frequency_interval_95
+            assert abs(mode.frequency_hz / true[label][0] - 1.0) < 0.01 or low < true[label][0] < high

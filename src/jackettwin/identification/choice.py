@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import Rejected
+from jackettwin.identification.local_refinement import groups, refine_group
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.periodogram import DERIVATIVES
 from jackettwin.identification.refinement import Refined, refine
@@ -17,7 +19,7 @@ from jackettwin.identification.selection import beside_tones, long_data_limits, 
 from jackettwin.identification.tone_removal import without_tones
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
     from jackettwin.identification.selection import Candidate
@@ -25,13 +27,16 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 MOST_MISSING = 0.01
 """Share of missing samples in a channel up to which a periodogram is trusted."""
 
 MOST_LACK_OF_FIT = 1.4
-"""Mean square of the misfit over its expectation up to which the refinement is believed; records that are
-what the model says have 0.8 to 1.1."""
+"""Mean square of the misfit over its expectation up to which a fit of the whole band is believed;
+records that are what the model says have 0.8 to 1.1."""
+MOST_LOCAL_LACK_OF_FIT = 2.0
+"""The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
 
 
 @dataclass(frozen=True)
@@ -65,57 +70,75 @@ def chosen_modes(
     warnings: tuple[str, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
-        refined: Refined | None = None
-        obstacle: str | None = "gaps remain in the record"
-        if np.isnan(y).mean(axis=1).max() <= MOST_MISSING:
-            refined = _refined(judged, open_to, sure, y, scale, channels, tones_hz, resolved)
-            obstacle = _obstacle(refined)
-        if refined is None or obstacle is not None:
-            warnings = (f"modes not refined: {obstacle}",)
+        if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
+            warnings = ("modes not refined: gaps remain in the record",)
         else:
-            modes = _numbers(judged, open_to, refined, scale, y.shape[1] / resolved.sample_rate_hz)
+            clean = without_tones(y, resolved.sample_rate_hz, tones_hz)
+            start = _start([judged[i].mode for i in open_to], sure, scale, channels)
+            fits, warnings = _fits(clean, resolved, start)
+            for members, fit in fits:
+                for position in np.flatnonzero(members):
+                    modes.pop(open_to[position], None)
+                modes |= _numbers(judged, open_to, fit, scale, y.shape[1] / resolved.sample_rate_hz)
     return _sorted(judged, modes, tones_hz, resolved, settings, warnings)
 
 
-def _obstacle(refined: Refined | None) -> str | None:
-    """Return why the refined modes are not to be used, or None."""
-    if refined is None:
-        return "the arithmetic of the fit broke down"
-    if not refined.converged:
-        return "the fit of the spectral model did not converge"
-    if refined.lack_of_fit > MOST_LACK_OF_FIT:
-        return (
-            f"the spectrum is not that of modes under smooth random forces "
-            f"(lack of fit {refined.lack_of_fit:.1f}, at most {MOST_LACK_OF_FIT:g})"
-        )
-    return None
+class _Start(TypedDict):
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    shapes: FloatArray
+    sure: BoolArray
+    derivatives: list[int]
 
 
-def _refined(
-    judged: Sequence[Candidate],
-    open_to: list[int],
-    sure: npt.NDArray[np.bool_],
-    y: FloatArray,
-    scale: FloatArray,
-    channels: Sequence[Channel],
-    tones_hz: Collection[float],
-    resolved: ResolvedSettings,
-) -> Refined | None:
-    """Return the refined candidates, or None if the arithmetic of the fit broke down."""
-    modes = [judged[i].mode for i in open_to]
+def _start(
+    modes: list[ModalEstimate], sure: BoolArray, scale: FloatArray, channels: Sequence[Channel]
+) -> _Start:
+    return _Start(
+        frequency_hz=np.array([m.frequency_hz for m in modes]),
+        damping_ratio=np.array([m.damping_ratio for m in modes]),
+        shapes=np.array([m.mode_shape.real for m in modes]) / scale,
+        sure=sure,
+        derivatives=[DERIVATIVES[c.quantity] for c in channels],
+    )
+
+
+def _fits(
+    y: FloatArray, resolved: ResolvedSettings, start: _Start
+) -> tuple[list[tuple[BoolArray, Refined]], tuple[str, ...]]:
+    """Return the fits that are believed, with the candidates each speaks for, and what is said of others.
+
+    One fit of the whole band if it describes the record, else one of each group of close modes.
+    """
+    band, rate = guarded_band_hz(resolved), resolved.sample_rate_hz
+    whole, obstacle = _tried(lambda: refine(y, rate, band, **start), MOST_LACK_OF_FIT)
+    if whole is not None:
+        return [(np.ones(len(start["sure"]), dtype=bool), whole)], ()
+    fits, warnings = [], []
+    for group in groups(start["frequency_hz"], start["sure"], band):
+        fit, obstacle = _tried(partial(refine_group, y, rate, group, **start), MOST_LOCAL_LACK_OF_FIT)
+        if fit is None:
+            f = ", ".join(f"{f:.3g}" for f in start["frequency_hz"][group.members & start["sure"]])
+            warnings.append(f"modes at {f} Hz not refined: {obstacle}")
+        else:
+            fits.append((group.members, replace(fit, covariance=fit.covariance * max(fit.lack_of_fit, 1.0))))
+    return fits, tuple(warnings)
+
+
+def _tried(fit: Callable[[], Refined], most: float) -> tuple[Refined | None, str]:
+    """Return a fit that is to be used, or why there is none."""
     try:
-        return refine(
-            without_tones(y, resolved.sample_rate_hz, tones_hz),
-            resolved.sample_rate_hz,
-            guarded_band_hz(resolved),
-            frequency_hz=np.array([m.frequency_hz for m in modes]),
-            damping_ratio=np.array([m.damping_ratio for m in modes]),
-            shapes=np.array([m.mode_shape.real for m in modes]) / scale,
-            sure=sure,
-            derivatives=[DERIVATIVES[c.quantity] for c in channels],
-        )
+        refined = fit()
     except np.linalg.LinAlgError:
-        return None
+        return None, "the arithmetic of the fit broke down"
+    if not refined.converged:
+        return None, "the fit of the spectral model did not converge"
+    if refined.lack_of_fit > most:
+        return None, (
+            f"the spectrum is not that of modes under smooth random forces "
+            f"(lack of fit {refined.lack_of_fit:.1f}, at most {most:g})"
+        )
+    return refined, ""
 
 
 def _numbers(
@@ -156,6 +179,9 @@ def _sorted(
 ) -> Choice:
     """Drop what is outside the band or hardly known; order by frequency."""
     rejected = {i: c.rejected for i, c in enumerate(judged) if i not in modes}
+    for i, refused in rejected.items():
+        if not refused.reason:
+            rejected[i] = replace(refused, reason="the spectrum is explained as well without it")
     kept = {}
     for i, mode in modes.items():
         reason = _late_objection(mode, resolved, settings)

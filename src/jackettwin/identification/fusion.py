@@ -34,6 +34,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 FREQUENCY_SCALE = 0.03
 """Relative change of frequency that counts as much as shapes at right angles."""
+SHAPE_SLACK = 2.0
+"""So many times the variance of two shapes may their 1 − MAC be without counting."""
 SAME_MODE = 1.0
 """Largest distance, frequency and shape together, of one mode in two records."""
 FEWEST_SHARE = 0.3
@@ -236,7 +238,8 @@ def _tracks(identifications: Sequence[Identification], rows: list[list[int]]) ->
         shapes = np.array([mode.mode_shape[rows[r]] for mode in found])
         free = set(range(len(found)))
         if tracks:
-            apart = np.array([_distance(identifications, rows, track, f, shapes) for track in tracks])
+            vague = np.array([_vagueness(mode) for mode in found])
+            apart = np.array([_distance(identifications, rows, track, f, shapes, vague) for track in tracks])
             for t, m in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
                 if apart[t, m] < SAME_MODE:
                     tracks[t][r] = int(m)
@@ -251,13 +254,26 @@ def _distance(
     track: dict[int, int],
     f: FloatArray,
     shapes: ComplexArray,
+    vague: FloatArray,
 ) -> FloatArray:
-    """Return the distance of every mode of a record from the members of a track, medians over members."""
+    """Return the distance of every mode of a record from the members of a track, medians over members.
+
+    Inside a close pair the shapes of one record mix: so much of 1 − MAC as their own uncertainty explains
+    does not count.
+    """
     members = [identifications[r].modes[m] for r, m in track.items()]
     track_f = np.median(np.log([mode.frequency_hz for mode in members]))
     track_shapes = np.array([mode.mode_shape[rows[r]] for r, mode in zip(track, members, strict=True)])
-    similarity = np.median(mac(shapes, track_shapes), axis=1)
-    return np.asarray(np.abs(f - track_f) / FREQUENCY_SCALE + 1.0 - similarity)
+    explained = SHAPE_SLACK * (vague[:, None] + [_vagueness(mode) for mode in members])
+    unlike = np.median(np.maximum(1.0 - mac(shapes, track_shapes) - explained, 0.0), axis=1)
+    return np.asarray(np.abs(f - track_f) / FREQUENCY_SCALE + unlike)
+
+
+def _vagueness(mode: ModalEstimate) -> float:
+    """Return the variance of a shape's entries over the square of its length."""
+    if mode.mode_shape_std is None:
+        return 0.0
+    return float(np.sum(mode.mode_shape_std**2) / np.sum(np.abs(mode.mode_shape) ** 2))
 
 
 def _fused_mode(

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-DITHER = 0.3
-"""Share of the local median spectrum added to model and data."""
+QUIET = 0.3
+"""Noise at the start, as a share of the lowest local median."""
 COHERENCE_PRIOR = 1.0
 """Weight of ln det Γ: coherences stay inside the unit circle."""
 COLOUR_PRIOR = 3.0
@@ -57,6 +57,8 @@ KEPT_SHARE = 1e-4
 FIT_BLOCKS = 40
 """Blocks of lines over which the misfit is summed."""
 ZETA_RANGE = (1e-5, 0.5)
+HELD = 1e-4
+"""Standard deviation of the prior on ln f and ln ζ of a background, which are no parameters."""
 
 
 @dataclass(frozen=True)
@@ -102,11 +104,6 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
     return Climb(p, value, False, most)
 
 
-def known_power(data: Periodogram) -> FloatArray:
-    """Return what is added to the diagonal of model and data, (n_groups, n_channels)."""
-    return np.asarray(DITHER * data.floor)
-
-
 def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray) -> Parameters:
     """Return first parameters: shapes scaled to the power of their peaks, incoherent white forces."""
     zeta = np.clip(zeta, 1e-3, 0.3)
@@ -130,7 +127,7 @@ def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray
 
 
 def _noise_level(data: Periodogram) -> FloatArray:
-    return np.asarray(np.log(DITHER * data.floor.min(axis=0)))
+    return np.asarray(np.log(QUIET * data.floor.min(axis=0)))
 
 
 def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray]:
@@ -142,16 +139,15 @@ def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray
     with :math:`E_0` the model without the dither, which does not scatter; the bound is that of :math:`E_0`.
     """
     prior = prior_of(data, p)
-    dither = known_power(data)
-    model = expected(data, p, dither)
+    model = expected(data, p)
     white = _inverse_root(model.matrix)
-    share = np.einsum("kab,kb,kcb->kac", white, dither, white.conj(), optimize=True)
+    share = np.einsum("kab,kb,kcb->kac", white, data.dither, white.conj(), optimize=True)
     # E0 whitened is R Rᴴ, singular but for the noise; V is the inner product of Rᴴ G R
     values, vectors = np.linalg.eigh(np.eye(white.shape[1]) - share)
     root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
     middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
     bread = _inverse(scoring(data, prior, p)[1])
-    bare = expected(data, p, KEPT_SHARE * dither)
+    bare = expected(data, p, KEPT_SHARE)
     clear = _information(data, p, bare, _inverse_root(bare.matrix))
     clear[np.diag_indices(len(clear))] += prior.precision
     _add_coherence_prior(p, np.zeros(len(clear)), clear)
@@ -170,12 +166,24 @@ def _information(data: Periodogram, p: Parameters, model: Expected, white: Compl
 
 
 def prior_of(data: Periodogram, p: Parameters) -> Prior:
-    """Return the prior: weak on colours and noise, none on the modes."""
+    """Return the prior: weak on colours and noise, none on the modes, backgrounds held."""
     level = _noise_level(data)
     blank = p.moved(-p.vector)
-    centre = replace(blank, noise=np.stack([level, np.zeros_like(level)]))
+    held = (np.arange(len(p.log_f)) < p.background).astype(float)
+    centre = replace(
+        blank,
+        log_f=p.log_f * held,
+        log_zeta=p.log_zeta * held,
+        noise=np.stack([level, np.zeros_like(level)]),
+    )
     std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)
-    precision = replace(blank, colour=np.full(len(p.colour), COLOUR_PRIOR**-2), noise=std**-2.0)
+    precision = replace(
+        blank,
+        log_f=held * HELD**-2,
+        log_zeta=held * HELD**-2,
+        colour=np.full(len(p.colour), COLOUR_PRIOR**-2),
+        noise=std**-2.0,
+    )
     return Prior(centre.vector, precision.vector)
 
 
@@ -184,16 +192,15 @@ def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
     low, high = np.log(ZETA_RANGE)
     if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
         return -np.inf
-    dither = known_power(data)
     try:
         root = np.linalg.cholesky(p.gamma)
         with np.errstate(over="ignore", invalid="ignore"):
-            factor = np.linalg.cholesky(expected(data, p, dither).matrix)
+            factor = np.linalg.cholesky(expected(data, p).matrix)
     except np.linalg.LinAlgError:
         return -np.inf
     log_det = 2.0 * np.log(np.einsum("kaa->ka", factor).real).sum(axis=1)
     white = np.linalg.inv(factor)
-    trace = np.einsum("kab,kbc,kac->k", white, _dithered(data, dither), white.conj(), optimize=True).real
+    trace = np.einsum("kab,kbc,kac->k", white, _dithered(data), white.conj(), optimize=True).real
     value = -np.sum(data.count * (log_det + trace))
     value -= 0.5 * np.sum(prior.precision * (p.vector - prior.centre) ** 2)
     return float(value + COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real)))
@@ -201,9 +208,8 @@ def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
 
 def scoring(data: Periodogram, prior: Prior, p: Parameters) -> tuple[FloatArray, FloatArray]:
     """Return the score and the Fisher information, prior included."""
-    dither = known_power(data)
-    model = expected(data, p, dither)
-    white, misfit = _whitened(data, model, dither)
+    model = expected(data, p)
+    white, misfit = _whitened(data, model)
     u, w = derivative_factors(data, p, model, white)
     weight = np.sqrt(data.count)
     score, fisher = gram(np.asarray(u * weight), w, np.asarray(misfit.transpose(1, 2, 0) * weight))
@@ -241,9 +247,8 @@ def lack_of_fit(data: Periodogram, p: Parameters) -> float:
 
     Near 1 (a little below, as parameters were fitted) where the record is what the model says.
     """
-    dither = known_power(data)
-    white, misfit = _whitened(data, expected(data, p, dither), dither)
-    share = np.einsum("kab,kb,kab->k", white, dither, white.conj(), optimize=True).real
+    white, misfit = _whitened(data, expected(data, p))
+    share = np.einsum("kab,kb,kab->k", white, data.dither, white.conj(), optimize=True).real
     variance = data.count * (white.shape[1] - share) ** 2
     passed = np.cumsum(data.count)
     first = np.flatnonzero(np.diff(np.ceil(passed / passed[-1] * FIT_BLOCKS), prepend=0.0))
@@ -252,10 +257,10 @@ def lack_of_fit(data: Periodogram, p: Parameters) -> float:
     return float(np.mean(size / np.add.reduceat(variance, first)))
 
 
-def _whitened(data: Periodogram, model: Expected, dither: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+def _whitened(data: Periodogram, model: Expected) -> tuple[ComplexArray, ComplexArray]:
     """Return W = (chol E)⁻¹ and the misfit W Ŝ Wᴴ − I."""
     white = _inverse_root(model.matrix)
-    misfit = white @ _dithered(data, dither) @ white.conj().transpose(0, 2, 1)
+    misfit = white @ _dithered(data) @ white.conj().transpose(0, 2, 1)
     return white, np.asarray(misfit - np.eye(white.shape[1]))
 
 
@@ -263,10 +268,10 @@ def _inverse_root(matrices: ComplexArray) -> ComplexArray:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(matrices)))
 
 
-def _dithered(data: Periodogram, dither: FloatArray) -> ComplexArray:
+def _dithered(data: Periodogram) -> ComplexArray:
     out = data.density.copy()
     channel = np.arange(out.shape[1])
-    out[:, channel, channel] += dither
+    out[:, channel, channel] += data.dither
     return out
 
 

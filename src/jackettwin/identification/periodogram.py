@@ -22,6 +22,8 @@ LINES_IN_HALF_BANDWIDTH = 5
 """Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
 FAR_LINES = 12.0
 """… and may widen to this fraction of the distance to it."""
+DITHER_SHARE = 0.3
+"""Share of the local median spectrum added to model and data."""
 MEDIAN_SHARE_OF_BAND = 0.25
 """Width of the running median, as a share of the frequency it is taken at."""
 
@@ -39,7 +41,9 @@ class Periodogram:
     density : (n_groups, n_channels, n_channels) complex
         Mean of X Xᴴ / (duration), of the second time derivative of displacement-like channels.
     floor : (n_groups, n_channels)
-        Local median of each channel's density, over a quarter of an octave.
+        Local median of each channel's density, over a quarter of the frequency.
+    dither : (n_groups, n_channels)
+        Power added to the diagonal of model **and** data: a share of the floor.
     duration_s : float
     """
 
@@ -47,6 +51,7 @@ class Periodogram:
     count: FloatArray
     density: ComplexArray
     floor: FloatArray
+    dither: FloatArray
     duration_s: float
 
     @property
@@ -63,6 +68,7 @@ def periodogram(
     *,
     modes: tuple[FloatArray, FloatArray],
     derivatives: Sequence[int],
+    dither_share: float = DITHER_SHARE,
 ) -> Periodogram:
     """Return the grouped periodogram of the band, without a taper.
 
@@ -73,6 +79,9 @@ def periodogram(
     modes : (frequency_hz, damping_ratio)
         Rough modal parameters: lines are kept single where the spectrum bends.
     derivatives : (n_channels,) int
+    dither_share : float
+        Of the local median. A small one keeps spectral matrices regular where a record has little noise; a
+        large one hides what is not a peak.
     """
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
@@ -92,7 +101,7 @@ def periodogram(
     middle = start + (count // 2).astype(int)
     power = np.abs(x) ** 2
     floor = _local_median(power, line)[:, middle].T
-    return Periodogram(omega, count, density, floor, duration)
+    return Periodogram(omega, count, density, floor, dither_share * floor, duration)
 
 
 def _group_starts(

@@ -6,9 +6,10 @@ enough of what the others leave, by the gain of log-likelihood
 .. math:: g(s) = \sum_k n_k\left[\frac{s h_k\,b_k}{1+s h_k a_k} - \ln(1+s h_k a_k)\right], \quad
           a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
 
-of adding power s with its shape and kernel h held. The maximum of a likelihood overestimates the damping
-of a short record, as the logarithm of ζ is the quantity that is nearly Gaussian: its mean is brought back
-by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ.
+of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
+criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). The maximum of a likelihood
+overestimates the damping of a short record, as the logarithm of ζ is the quantity that is nearly Gaussian:
+its mean is brought back by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
 from jackettwin.identification import likelihood
+from jackettwin.identification.background import with_background
 from jackettwin.identification.modal_spectrum import kernel, poles
-from jackettwin.identification.periodogram import periodogram
+from jackettwin.identification.periodogram import DITHER_SHARE, periodogram
 from jackettwin.identification.spectral_model import expected
 
 if TYPE_CHECKING:
@@ -39,6 +41,11 @@ SUSPECT = 2.5
 """A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
 APPROACH = 4
 """Steps before the doubtful modes are judged."""
+LOCAL_DITHER_SHARE = 3.0
+"""Share of the local median spectrum added in a narrow band. One force moves all channels, and between the
+peaks their ratios would fix the damping more sharply than the record allows, if the model were exact."""
+PARAMETERS_OF_A_MODE = 3
+"""f, ζ and colour; its shape has one for each channel."""
 MOST_ADDED = 6
 """Doubtful modes admitted at most."""
 
@@ -89,6 +96,7 @@ def refine(
     shapes: FloatArray,
     sure: BoolArray,
     derivatives: Sequence[int],
+    local: bool = False,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
 
@@ -103,13 +111,23 @@ def refine(
         At least one.
     derivatives : (n_channels,) int
         Derivatives in time by which a channel lags acceleration.
+    local : bool
+        Whether the band holds some of the modes only: a background stands for the others, and what lies
+        between the peaks counts little.
     """
     data = periodogram(
-        y, sample_rate_hz, band_hz, modes=(frequency_hz, damping_ratio), derivatives=derivatives
+        y,
+        sample_rate_hz,
+        band_hz,
+        modes=(frequency_hz, damping_ratio),
+        derivatives=derivatives,
+        dither_share=LOCAL_DITHER_SHARE if local else DITHER_SHARE,
     )
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
     first = likelihood.start(data, frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
+    if local:
+        first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
     climb = likelihood.climbed(data, climb.parameters)
@@ -136,7 +154,7 @@ def _joined(
         gain[doubtful] = [g for g, _ in tried]
         best = int(np.argmax(gain[doubtful]))
         i = doubtful[best]
-        if gain[i] < needed_gain(data):
+        if gain[i] < PARAMETERS_OF_A_MODE + unit.shape[1]:
             break
         shape = unit[i] * np.sqrt(tried[best][1])
         joined = p.joined(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
@@ -151,14 +169,14 @@ def _thinned(
     kept: set[int] = set()
     while len(chosen) > 1:
         p = climb.parameters
-        n = len(chosen)
-        std = np.sqrt(np.diag(likelihood.covariance(data, p)[0]))[n : 2 * n]
-        limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta) * 2.0 * np.pi * data.duration_s)
+        mode = p.background + np.arange(len(chosen))
+        std = np.sqrt(np.diag(likelihood.covariance(data, p)[0]))[len(p.log_f) + mode]
+        limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
         suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:
             break
-        fewer = likelihood.climbed(data, p.without(suspect[0]))
+        fewer = likelihood.climbed(data, p.without(p.background + suspect[0]))
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
         else:
@@ -167,20 +185,19 @@ def _thinned(
 
 
 def needed_gain(data: Periodogram) -> float:
-    """Return the log-likelihood a mode must add: Schwarz's criterion for its f, ζ, colour and shape."""
-    n_parameters = 3 + data.floor.shape[1]
+    """Return what a fitted mode must add to the log-likelihood to stay: Schwarz's criterion."""
+    n_parameters = PARAMETERS_OF_A_MODE + data.floor.shape[1]
     return float(0.5 * n_parameters * np.log(data.count.sum()))
 
 
 def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatArray) -> tuple[float, float]:
     """Return the largest gain of log-likelihood by adding a mode, and the power at which it is reached."""
-    dither = likelihood.known_power(data)
-    model = expected(data, p, dither)
+    model = expected(data, p)
     inverse = np.linalg.inv(model.matrix)
     left = inverse @ phi
     a = np.real(left @ phi)
     b = np.einsum("ka,kab,kb->k", left.conj(), data.density, left, optimize=True).real
-    b += np.sum(np.abs(left) ** 2 * dither, axis=1)
+    b += np.sum(np.abs(left) ** 2 * data.dither, axis=1)
     lam = poles(np.array([f]), np.array([zeta]))
     h = kernel(data.omega, data.duration_s, lam, lam)[:, 0, 0].real
 
@@ -197,20 +214,19 @@ def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: 
     p = climb.parameters
     n, n_channels = p.shapes.shape
     covariance, bound = likelihood.covariance(data, p)
-    index = np.arange(n)
-    both = np.stack([index, index + n], axis=1)
-    shape = 3 * n + np.arange(n * n_channels).reshape(n, n_channels)
+    mode = np.arange(p.background, n)
+    mode = mode[np.argsort(p.log_f[mode])]
+    both = np.stack([mode, mode + n], axis=1)
+    shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
-    order = np.argsort(p.log_f)
-    zeta = np.exp(p.log_zeta) / (1.0 + log_covariance[:, 1, 1])
     return Refined(
-        candidate=chosen[order],
-        frequency_hz=np.exp(p.log_f)[order],
-        damping_ratio=zeta[order],
-        shapes=p.shapes[order],
-        covariance=log_covariance[order],
-        shape_covariance=covariance[shape[:, :, None], shape[:, None, :]][order],
-        cramer_rao=bound[both][order],
+        candidate=chosen[mode - p.background],
+        frequency_hz=np.exp(p.log_f[mode]),
+        damping_ratio=np.exp(p.log_zeta[mode]) / (1.0 + log_covariance[:, 1, 1]),
+        shapes=p.shapes[mode],
+        covariance=log_covariance,
+        shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],
+        cramer_rao=bound[both],
         gain=gain,
         lack_of_fit=likelihood.lack_of_fit(data, p),
         converged=climb.converged,

@@ -13,7 +13,7 @@ which all derivatives are made.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -51,6 +51,9 @@ class Parameters:
         Logarithm of the noise density at the middle of the band, and its exponent.
     pairs : (n_pairs, 2) int
         Modes i < j whose forces may be coherent; not a parameter.
+    background : int
+        So many of the first modes are backgrounds: far below the band, so that they follow their force.
+        They stand for the modes outside the band.
     """
 
     log_f: FloatArray
@@ -60,6 +63,7 @@ class Parameters:
     coherence: ComplexArray
     noise: FloatArray
     pairs: IntArray
+    background: int = 0
 
     @cached_property
     def gamma(self) -> ComplexArray:
@@ -89,6 +93,7 @@ class Parameters:
             re + 1j * im,
             noise.reshape(self.noise.shape),
             self.pairs,
+            self.background,
         )
 
     def without(self, mode: int) -> Parameters:
@@ -96,14 +101,14 @@ class Parameters:
         kept = ~np.any(self.pairs == mode, axis=1)
         f, zeta, colour = (np.delete(x, mode) for x in (self.log_f, self.log_zeta, self.colour))
         pairs = self.pairs[kept]
-        return Parameters(
-            f,
-            zeta,
-            colour,
-            np.delete(self.shapes, mode, axis=0),
-            self.coherence[kept],
-            self.noise,
-            pairs - (pairs > mode),
+        return replace(
+            self,
+            log_f=f,
+            log_zeta=zeta,
+            colour=colour,
+            shapes=np.delete(self.shapes, mode, axis=0),
+            coherence=self.coherence[kept],
+            pairs=pairs - (pairs > mode),
         )
 
     def joined(self, log_f: float, log_zeta: float, shape: FloatArray) -> Parameters:
@@ -113,14 +118,14 @@ class Parameters:
         pairs = coherent_pairs(f)
         gamma = np.eye(n + 1, dtype=complex)
         gamma[:n, :n] = self.gamma
-        return Parameters(
-            f,
-            np.append(self.log_zeta, log_zeta),
-            np.append(self.colour, np.median(self.colour)),
-            np.vstack([self.shapes, shape]),
-            gamma[pairs[:, 0], pairs[:, 1]],
-            self.noise,
-            pairs,
+        return replace(
+            self,
+            log_f=f,
+            log_zeta=np.append(self.log_zeta, log_zeta),
+            colour=np.append(self.colour, np.median(self.colour[self.background :])),
+            shapes=np.vstack([self.shapes, shape]),
+            coherence=gamma[pairs[:, 0], pairs[:, 1]],
+            pairs=pairs,
         )
 
 
@@ -160,15 +165,15 @@ def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
     return np.asarray(np.exp(p.noise[0] + p.noise[1] * data.log_position[:, None]))
 
 
-def expected(data: Periodogram, p: Parameters, dither: FloatArray | float = 0.0) -> Expected:
-    """Evaluate the model; ``dither`` (n_groups, n_channels) is added to the diagonal of E."""
+def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
+    """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
     lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
     colour = np.exp(-0.5 * p.colour * log_distance(data, p))
     coloured = kernel(data.omega, data.duration_s, lam, lam) * (colour[:, :, None] * colour[:, None, :])
     modal = p.gamma * coloured
     matrix = p.shapes.T @ modal @ p.shapes
     channel = np.arange(p.shapes.shape[1])
-    matrix[:, channel, channel] += noise_density(data, p) + dither
+    matrix[:, channel, channel] += noise_density(data, p) + share * data.dither
     return Expected(np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
 
 

@@ -1,0 +1,90 @@
+"""Refinement in narrow bands, where the spectrum of the whole band is not that of the model.
+
+Over a wide band the model asks that force spectra be powers of frequency and that no mode outside act in it.
+Turbulence on a rotor keeps neither. Around one group of close modes every smooth spectrum is a power of
+frequency, and the modes outside are a background (``background.py``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.refinement import Refined, refine
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+REACH = 1.35
+"""Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Neighbouring modes, the candidates among them, and the band they are fitted in.
+
+    Attributes
+    ----------
+    members : (n_candidates,) bool
+    band_hz : (low, high)
+    """
+
+    members: BoolArray
+    band_hz: tuple[float, float]
+
+
+def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, float]) -> list[Group]:
+    """Part the sure candidates where neighbours are farther apart than the reach.
+
+    Doubtful ones join the group in whose band they lie. Bands of neighbouring groups meet halfway.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> f = np.array([0.18, 0.19, 0.7, 0.72])
+    >>> [g.members.sum() for g in groups(f, np.array([True, True, True, False]), (0.1, 2.0))]
+    [np.int64(2), np.int64(2)]
+    """
+    f = np.sort(frequency_hz[sure])
+    parts = np.split(f, np.flatnonzero(f[1:] / f[:-1] > REACH) + 1)
+    low, high = (np.array([edge(part) for part in parts]) for edge in (np.min, np.max))
+    middle = np.sqrt(high[:-1] * low[1:])
+    lower = np.maximum(low / REACH, np.append(band_hz[0], middle))
+    upper = np.minimum(high * REACH, np.append(middle, band_hz[1]))
+    return [
+        Group((frequency_hz > a) & (frequency_hz < b), (float(a), float(b)))
+        for a, b in zip(lower, upper, strict=True)
+    ]
+
+
+def refine_group(
+    y: FloatArray,
+    sample_rate_hz: float,
+    group: Group,
+    *,
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    shapes: FloatArray,
+    sure: BoolArray,
+    derivatives: Sequence[int],
+) -> Refined:
+    """Fit one group; parameters as of ``refine``, candidates counted as there."""
+    among = np.flatnonzero(group.members)
+    fit = refine(
+        y,
+        sample_rate_hz,
+        group.band_hz,
+        frequency_hz=frequency_hz[among],
+        damping_ratio=damping_ratio[among],
+        shapes=shapes[among],
+        sure=sure[among],
+        derivatives=derivatives,
+        local=True,
+    )
+    return replace(fit, candidate=among[fit.candidate])
