@@ -24,7 +24,7 @@ def test_envelope_of_a_tone_is_steady_and_of_noise_is_exponential(rng):
     assert envelope_variance(noise, RATE, 0.5, one) == pytest.approx(1.0, abs=0.5)
 
 
-@pytest.mark.parametrize("ratio", [0.5, 0.8, 1.5, 2.0, 3.0, 5.1])
+@pytest.mark.parametrize("ratio", [0.5, 0.95, 1.5, 3.0])
 def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
     record = simulate(tower, rng, sample_rate_hz=RATE)
     f_tone = ratio * 0.3
@@ -33,10 +33,14 @@ def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
     loud = replace(record, data=record.data + record.data.std(axis=1, keepdims=True) * wave)
     quiet_modes, loud_modes = identify(record).modes, identify(loud).modes
     assert all(abs(mode.frequency_hz / f_tone - 1.0) > 0.005 for mode in loud_modes)
-    for mode in quiet_modes[:2]:
+    for mode in quiet_modes:
         nearest = min(loud_modes, key=lambda other: abs(other.frequency_hz - mode.frequency_hz))
-        # one standard deviation of a ten-minute record
-        assert abs(np.log(nearest.damping_ratio / mode.damping_ratio)) < np.sqrt(mode.log_covariance[1, 1])
+        if abs(f_tone - mode.frequency_hz) > 6.0 * mode.damping_ratio * mode.frequency_hz:
+            assert nearest.damping_ratio == pytest.approx(mode.damping_ratio, rel=0.05)
+            continue
+        assert "tone" in nearest.status
+        low, high = nearest.damping_ratio_interval_95
+        assert low < tower.damping_ratio[np.argmin(np.abs(tower.frequency_hz - mode.frequency_hz))] < high
 
 
 @pytest.mark.parametrize("drift", [0.03, 0.08])

@@ -120,7 +120,8 @@ def identify(
     if wanted:
         judged = with_verdicts(wanted, judged)
     say("refinement")
-    chosen = chosen_modes(judged, y, scale, ready.channels, tones.values(), resolved, settings)
+    left = tuple(tones.values())
+    chosen = chosen_modes(judged, y, scale, ready.channels, left, ready.tones_hz, resolved, settings)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number

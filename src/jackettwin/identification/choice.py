@@ -16,7 +16,7 @@ from jackettwin.identification.periodogram import DERIVATIVES
 from jackettwin.identification.refinement import Refined, refine
 from jackettwin.identification.resolve import guarded_band_hz
 from jackettwin.identification.selection import beside_tones, long_data_limits, with_covariance
-from jackettwin.identification.tone_removal import without_tones
+from jackettwin.identification.steady_tones import without_tones
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -55,6 +55,7 @@ def chosen_modes(
     scale: FloatArray,
     channels: Sequence[Channel],
     tones_hz: Collection[float],
+    removed_hz: Collection[float],
     resolved: ResolvedSettings,
     settings: IdentificationSettings,
 ) -> Choice:
@@ -64,6 +65,8 @@ def chosen_modes(
     ----------
     y : (n_channels, n_samples)
         Channels divided by ``scale``.
+    tones_hz, removed_hz : collection of float
+        Tones still in y, and those that were taken out of it.
     """
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
     sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
@@ -80,7 +83,7 @@ def chosen_modes(
                 for position in np.flatnonzero(members):
                     modes.pop(open_to[position], None)
                 modes |= _numbers(judged, open_to, fit, scale, y.shape[1] / resolved.sample_rate_hz)
-    return _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+    return _sorted(judged, modes, tones_hz, removed_hz, resolved, settings, warnings)
 
 
 class _Start(TypedDict):
@@ -173,6 +176,7 @@ def _sorted(
     judged: Sequence[Candidate],
     modes: dict[int, ModalEstimate],
     tones_hz: Collection[float],
+    removed_hz: Collection[float],
     resolved: ResolvedSettings,
     settings: IdentificationSettings,
     warnings: tuple[str, ...],
@@ -186,16 +190,22 @@ def _sorted(
     for i, mode in modes.items():
         reason = _late_objection(mode, resolved, settings)
         if reason is None:
-            kept[i] = beside_tones(mode, tones_hz)
+            kept[i] = beside_tones(mode, [*tones_hz, *removed_hz])
         else:
             rejected[i] = Rejected(mode.frequency_hz, mode.damping_ratio, reason)
     order = sorted(kept, key=lambda i: kept[i].frequency_hz)
     return Choice(
         modes=tuple(kept[i] for i in order),
         candidate=tuple(order),
-        rejected=tuple(rejected[i] for i in sorted(rejected)),
+        rejected=(*(rejected[i] for i in sorted(rejected)), *_tones(removed_hz, resolved)),
         warnings=warnings,
     )
+
+
+def _tones(removed_hz: Collection[float], resolved: ResolvedSettings) -> list[Rejected]:
+    low, high = guarded_band_hz(resolved)
+    reason = "steady tone: one line of the periodogram; taken out"
+    return [Rejected(f, None, reason) for f in sorted(removed_hz) if low < f < high]
 
 
 def _late_objection(

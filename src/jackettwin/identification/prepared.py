@@ -11,6 +11,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.identification.gaps import fill
 from jackettwin.identification.resolve import resolve, usable_channels
+from jackettwin.identification.steady_tones import steady_tones, without_tones
 from jackettwin.records import detrend
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ class Prepared:
         Rows of the reference channels.
     settings : ResolvedSettings
     duration_s : float
+    tones_hz : tuple of float
+        Steady tones that were taken out.
     warnings : tuple of str
     """
 
@@ -50,11 +53,12 @@ class Prepared:
     references: list[int]
     settings: ResolvedSettings
     duration_s: float
+    tones_hz: tuple[float, ...]
     warnings: tuple[str, ...]
 
 
 def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
-    """Keep the live vibration channels, detrend, decimate, fill gaps from other channels, scale.
+    """Keep the live vibration channels, detrend, take out tones, decimate, fill gaps, scale.
 
     Channels are scaled to unit variance, else the loudest direction hides the other.
 
@@ -65,7 +69,11 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         its lag window needs.
     """
     usable, warnings = usable_channels(record)
-    resolved, reduced = resolve(detrend(usable), settings)
+    level = detrend(usable)
+    tones = steady_tones(level.data, level.sample_rate_hz)
+    if tones:
+        level = replace(level, data=without_tones(level.data, level.sample_rate_hz, tones))
+    resolved, reduced = resolve(level, settings)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
     for channel, share in zip(usable.channels, filled, strict=True):
@@ -76,7 +84,14 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     if settings.method == "plscf":
         resolved = replace(resolved, orders=_degrees(settings, len(references)))
     return Prepared(
-        usable.channels, y / scale[:, None], scale, references, resolved, record.duration_s, warnings
+        usable.channels,
+        y / scale[:, None],
+        scale,
+        references,
+        resolved,
+        record.duration_s,
+        tones,
+        warnings,
     )
 
 
