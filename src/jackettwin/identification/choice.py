@@ -124,7 +124,7 @@ def _fits(
             f = ", ".join(f"{f:.3g}" for f in start["frequency_hz"][group.members & start["sure"]])
             warnings.append(f"modes at {f} Hz not refined: {obstacle}")
         else:
-            fits.append((group.members, replace(fit, covariance=fit.covariance * max(fit.lack_of_fit, 1.0))))
+            fits.append((group.members, fit))
     return fits, tuple(warnings)
 
 

@@ -24,6 +24,9 @@ BoolArray = npt.NDArray[np.bool_]
 REACH = 1.35
 """Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
 
+FEW_LINES = 1.5
+"""The covariance is multiplied by this: a narrow band holds few lines for its many parameters."""
+
 
 @dataclass(frozen=True)
 class Group:
@@ -74,7 +77,10 @@ def refine_group(
     sure: BoolArray,
     derivatives: Sequence[int],
 ) -> Refined:
-    """Fit one group; parameters as of ``refine``, candidates counted as there."""
+    """Fit one group; parameters as of ``refine``, candidates counted as there.
+
+    What the lack of fit exceeds 1 by multiplies the covariance.
+    """
     among = np.flatnonzero(group.members)
     fit = refine(
         y,
@@ -87,4 +93,10 @@ def refine_group(
         derivatives=derivatives,
         local=True,
     )
-    return replace(fit, candidate=among[fit.candidate])
+    wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
+    return replace(
+        fit,
+        candidate=among[fit.candidate],
+        covariance=wider * fit.covariance,
+        shape_covariance=wider * fit.shape_covariance,
+    )

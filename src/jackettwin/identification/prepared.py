@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.identification.gaps import fill
-from jackettwin.identification.resolve import resolve, usable_channels
+from jackettwin.identification.resolve import EDGE_BELOW_PEAK, resolve, usable_channels
+from jackettwin.identification.spectra import lowest_peak_hz, welch
 from jackettwin.identification.steady_tones import steady_tones, without_tones
 from jackettwin.records import detrend
 
@@ -73,6 +74,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     tones = steady_tones(level.data, level.sample_rate_hz)
     if tones:
         level = replace(level, data=without_tones(level.data, level.sample_rate_hz, tones))
+        settings = _above_tones(level, settings, min(tones))
     resolved, reduced = resolve(level, settings)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
@@ -93,6 +95,13 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         tones,
         warnings,
     )
+
+
+def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:
+    """Let the band start at the tones where nothing but tones stood out."""
+    if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
+        return settings
+    return replace(settings, lowest_frequency_hz=EDGE_BELOW_PEAK * lowest_hz)
 
 
 def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:

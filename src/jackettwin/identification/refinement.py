@@ -219,10 +219,12 @@ def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: 
     both = np.stack([mode, mode + n], axis=1)
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
+    # a background takes its share of the peaks, and with it the bias of the small sample
+    excess = 0.0 if p.background else log_covariance[:, 1, 1]
     return Refined(
         candidate=chosen[mode - p.background],
         frequency_hz=np.exp(p.log_f[mode]),
-        damping_ratio=np.exp(p.log_zeta[mode]) / (1.0 + log_covariance[:, 1, 1]),
+        damping_ratio=np.exp(p.log_zeta[mode]) / (1.0 + excess),
         shapes=p.shapes[mode],
         covariance=log_covariance,
         shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],
