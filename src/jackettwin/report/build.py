@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from jackettwin.identification import Identification
+from jackettwin.records import Record
 from jackettwin.report.numbers import fixed
 from jackettwin.report.page import Block, Section, Table, Text, write_figures, write_page
 from jackettwin.report.section_posterior import what_is_known, whose_damping
@@ -23,6 +25,8 @@ from jackettwin.report.summary import headline
 from jackettwin.report.tables_updating import key_table
 from jackettwin.twin import TwinResult
 from jackettwin.version import __version__
+
+_SHOWN_WARNINGS = 3
 
 
 def build_report(result: TwinResult, out_dir: Path) -> Path:
@@ -79,7 +83,9 @@ def _subtitle(result: TwinResult) -> str:
 def _summary(result: TwinResult) -> list[Block]:
     blocks: list[Block] = [Text(headline(result)), key_table(result)]
     if result.warnings:
-        blocks.append(Text(result.warnings[:3], "warnings"))
+        more = len(result.warnings) - _SHOWN_WARNINGS
+        said = (f"… and {more} more, under Assumptions and warnings.",) if more > 0 else ()
+        blocks.append(Text(result.warnings[:_SHOWN_WARNINGS] + said, "warnings"))
     return blocks
 
 
@@ -91,14 +97,25 @@ def _assumptions(result: TwinResult) -> list[Block]:
 def _provenance(result: TwinResult) -> list[Block]:
     rows = [("jackettwin", __version__), ("twin", result.name), ("structure", result.assembly.structure.name)]
     rows.append(("degrees of freedom", str(result.assembly.n_dof)))
+    rows += [("record", _conditions(seen.record)) for seen in result.observations]
+    settings: dict[tuple[tuple[str, str], ...], list[str]] = {}
     for found in result.identifications:
-        s = found.settings
-        rows.append(("record", ", ".join(found.records)))
-        rows.append(("channels", ", ".join(c.name for c in found.channels)))
-        rows.append(("band", f"{fixed(s.lowest_frequency_hz, 3)} to {fixed(s.highest_frequency_hz, 3)} Hz"))
-        rows.append(("decimated to", f"{s.sample_rate_hz:.4g} Hz"))
-        rows.append(("lag window", f"{s.lag_window_s:.3g} s, {s.block_rows} block rows"))
-        rows.append(("model orders", f"{s.orders[0]} to {s.orders[-1]}, {len(s.orders)} of them"))
-    if result.record is not None:
-        rows += [(key.replace("_", " "), str(value)) for key, value in result.record.conditions.items()]
+        settings.setdefault(_settings(found), []).extend(found.records)
+    for chosen, records in settings.items():
+        rows += [("identified with, in", ", ".join(records)), *chosen]
     return [Table("Where the numbers come from.", ("what", "value"), tuple(rows), 2)]
+
+
+def _conditions(record: Record) -> str:
+    return "; ".join([record.name, *(f"{key} {value}" for key, value in record.conditions.items())])
+
+
+def _settings(found: Identification) -> tuple[tuple[str, str], ...]:
+    s = found.settings
+    return (
+        ("channels", ", ".join(c.name for c in found.channels)),
+        ("band", f"{fixed(s.lowest_frequency_hz, 3)} to {fixed(s.highest_frequency_hz, 3)} Hz"),
+        ("decimated to", f"{s.sample_rate_hz:.4g} Hz"),
+        ("lag window", f"{s.lag_window_s:.3g} s, {s.block_rows} block rows"),
+        ("model orders", f"{s.orders[0]} to {s.orders[-1]}, {len(s.orders)} of them"),
+    )

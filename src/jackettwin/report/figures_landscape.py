@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
@@ -48,19 +47,13 @@ def sensitivity(curves: Sequence[Curve]) -> go.Figure:
     """Draw the cost as each parameter moves by ±50 %, one panel a law."""
     laws = list(dict.fromkeys(curve.law for curve in curves))
     figure = make_subplots(rows=1, cols=len(laws), subplot_titles=laws, horizontal_spacing=0.09)
-    looks = (
-        (style.BLUE, "solid"),
-        (style.VERMILLION, "dash"),
-        (style.GREEN, "dot"),
-        (style.PURPLE, "dashdot"),
-        (style.SKY, "longdash"),
-        (style.ORANGE, "longdashdot"),
-    )
-    count: Counter[str] = Counter()
+    colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.SKY, style.ORANGE)
+    dashes = ("solid", "dash", "dot", "dashdot")
+    names = list(dict.fromkeys(curve.parameter for curve in curves))
     seen: set[str] = set()
     for curve in curves:
-        colour, dash = looks[count[curve.law] % len(looks)]
-        count[curve.law] += 1
+        turn, place = divmod(names.index(curve.parameter), len(colours))
+        colour, dash = colours[place], dashes[(turn + place) % len(dashes)]
         col = laws.index(curve.law) + 1
         figure.add_scatter(
             x=100.0 * (curve.factor - 1.0),

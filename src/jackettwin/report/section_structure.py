@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from jackettwin.report import figures_structure
 from jackettwin.report.numbers import UNKNOWN, fixed
 from jackettwin.report.page import Block, Plot, Table
 from jackettwin.twin import TwinResult
+
+_STEEL = (210e9, 7850.0)
+"""Young's modulus [Pa] and density [kg/m³] of structural steel."""
 
 
 def the_structure(result: TwinResult) -> list[Block]:
@@ -44,7 +49,10 @@ def structure_table(result: TwinResult) -> Table:
         name = "rotor–nacelle assembly" if body.part == "rna" else f"mass at {body.node}"
         rows.append((name, UNKNOWN, fixed(body.mass_kg / 1e3, 1), *[UNKNOWN] * 4))
     columns = ("part", "members", "mass [t]", "diameter [m]", "wall [mm]", "E [GPa]", "density [kg/m³]")
-    return Table("What the structure is made of.", columns, tuple(rows))
+    caption = "What the structure is made of."
+    if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
+        caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
+    return Table(caption, columns, tuple(rows))
 
 
 def _range(values: list[float], decimals: int) -> str:

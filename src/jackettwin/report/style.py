@@ -38,6 +38,7 @@ _KINDS = {
     "heave": (PURPLE, "triangle-up"),
 }
 _DASHES = ("solid", "dash", "dot", "dashdot")
+_VARIANTS = ("", "-open", "-dot", "-open-dot")
 
 
 def law_look(law: str) -> Look:
@@ -46,11 +47,11 @@ def law_look(law: str) -> Look:
 
 
 def mode_look(label: str) -> Look:
-    """Return the look of a mode from its label ``kind_number``: colour by kind, dash by number."""
+    """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number."""
     kind, _, number = label.rpartition("_")
     colour, symbol = _KINDS.get(kind, (GREY, "x"))
     order = int(number) if number.isdigit() else 1
-    return Look(colour, symbol if order == 1 else f"{symbol}-open", _DASHES[(order - 1) % len(_DASHES)])
+    return Look(colour, symbol + _VARIANTS[(order - 1) % 4], _DASHES[(order - 1) % 4])
 
 
 def direction_colour(direction: tuple[float, float, float]) -> str:

@@ -62,9 +62,11 @@ def _fit(result: TwinResult) -> list[str]:
     texts = [f"{u.law} {_worst(result.measured, u)}" for u in result.updates]
     fit = f"Largest misfit of what was fitted, frequency / damping: {'; '.join(texts)}."
     locked = [u.law for u in result.updates if u.best.locked_damper]
-    found = sum(len(u.solutions) for u in result.updates)
+    most = max(len(u.solutions) for u in result.updates)
     count_locked = sum(s.locked_damper for u in result.updates for s in u.solutions)
-    search = f"The search ended in {count(found, 'distinct solution')}"
+    search = (
+        f"The search ended in {'one solution' if most == 1 else f'up to {most} distinct solutions'} a law"
+    )
     if locked:
         return [
             fit,
@@ -77,18 +79,25 @@ def _fit(result: TwinResult) -> list[str]:
 
 
 def _worst(measured: tuple[MeasuredMode, ...], u: Update) -> str:
+    """Return the largest relative misfits of what was fitted, and whose they are."""
     f = [
-        abs(a / m.frequency_hz - 1.0)
+        (abs(a / m.frequency_hz - 1.0), m.label)
         for m, a in zip(measured, u.modes.frequency_hz, strict=True)
         if m.fits_frequency and m.frequency_hz and np.isfinite(a)
     ]
     z = [
-        abs(a / m.damping_ratio - 1.0)
+        (abs(a / m.damping_ratio - 1.0), m.label)
         for m, a in zip(measured, u.modes.damping_ratio, strict=True)
         if m.fits_damping and m.damping_ratio and np.isfinite(a)
     ]
-    parts = [fixed(100.0 * max(values), n) + " %" if values else UNKNOWN for values, n in ((f, 2), (z, 1))]
-    return " / ".join(parts)
+    return " / ".join(_worst_of(misfits, digits) for misfits, digits in ((f, 2), (z, 1)))
+
+
+def _worst_of(misfits: list[tuple[float, str]], digits: int) -> str:
+    if not misfits:
+        return UNKNOWN
+    largest, label = max(misfits)
+    return f"{fixed(100.0 * largest, digits)} % ({words(label)})"
 
 
 def _excess(result: TwinResult) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import exp
 
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
@@ -10,6 +11,7 @@ from jackettwin.report.summary import shown_update
 from jackettwin.twin import DampingExcess, TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
+from jackettwin.updating.families import Parameter
 
 
 def key_table(result: TwinResult) -> Table:
@@ -94,14 +96,22 @@ def parameter_table(updates: Sequence[Update]) -> Table:
                 low, high = known.interval_90[i]
                 span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
             text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
-            rows.append((u.law, p.name, p.unit, text, scientific(float(value)), span))
-    columns = ("law", "parameter", "unit", "verdict", "value", "90 % interval")
+            rows.append((u.law, p.name, p.unit, text, _prior(p), scientific(float(value)), span))
+    columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
     return Table(
-        "Updated supports. The verdict compares what the data say with the width of the bounds.",
+        "What was updated: the best fit, and the 90 % interval of the posterior, whose median may differ. "
+        "The verdict compares its width with that before the data: bounds, or median ×÷ one standard deviation. "
+        "c_fore_aft, c_side_side: the rotor's dashpot.",
         columns,
         tuple(rows),
         4,
     )
+
+
+def _prior(p: Parameter) -> str:
+    if p.median is None or p.log_std is None:
+        return f"{scientific(p.low)} … {scientific(p.high)}"
+    return f"{scientific(p.median)} ×÷ {exp(p.log_std):.2g}"
 
 
 def solutions_table(result: TwinResult, u: Update) -> Table:

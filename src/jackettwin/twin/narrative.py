@@ -10,8 +10,10 @@ from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Update
 
 
-def assumptions(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> tuple[str, ...]:
-    """Return what the run took for granted."""
+def assumptions(
+    config: TwinConfig, measured: tuple[MeasuredMode, ...], wind: float | None
+) -> tuple[str, ...]:
+    """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
     s = config.structure
     theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[config.beam or s.beam]
     rotary = s.rotary_inertia if config.rotary_inertia is None else config.rotary_inertia
@@ -31,6 +33,10 @@ def assumptions(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> tuple
             f"Model error of modes {', '.join(map(str, e.modes))}: {100 * e.frequency:.3g} % on frequency, "
             f"{100 * e.damping:.3g} % on damping."
         )
+    if config.update.dashpots:
+        shape = "with the pattern of its blades" if config.update.rotor else "on the tower top"
+        where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and proportional to it"
+        lines.append(f"The rotor is parked: dashpots {', '.join(config.update.dashpots)} {shape}{where}.")
     if len(config.records) > 1:
         lines.append(
             f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "

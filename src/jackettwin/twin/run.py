@@ -91,7 +91,7 @@ def run_twin(
         measured=measured,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
-        assumptions=assumptions(config, measured),
+        assumptions=assumptions(config, measured, wind),
         warnings=cautions(config, found, measured, tuple(updates)),
     )
 
