@@ -49,7 +49,7 @@ def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Observati
     for one in (straight.identification, found):
         raw = one.modes[1].mode_shape_unaligned
         assert raw is not None
-        assert any("turned within their plane" in text for text in one.warnings)
+        assert any("turned within their plane" in text for text in one.notes)
     assert mac(straight.identification.modes[1].mode_shape_unaligned, found.modes[1].mode_shape) < 0.95
 
 

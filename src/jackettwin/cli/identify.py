@@ -165,6 +165,8 @@ def _print_one(document: Mapping[str, Any]) -> None:
     _print_rejected(document["rejected"])
     for finding in document["quality"]["findings"]:
         output.print(f"quality: {finding['channel'] or 'record'}: {finding['text']}")
+    for note in document["notes"]:
+        output.print(f"note: {note}")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
 

@@ -177,6 +177,8 @@ class Identification:
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What was done to the modes, for those who ask; nothing to beware of."""
     real_poles: tuple[RealPole, ...] = ()
     """Relaxations, if they were asked for."""
     picks: tuple[Pick, ...] = ()

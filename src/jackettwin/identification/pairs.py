@@ -39,7 +39,7 @@ def along_axes(found: Identification) -> Identification:
     """Return the identification with the shapes of close pairs turned to the first two axes.
 
     Only for pairs whose plane holds a shape of either axis; what they were before is kept in
-    ``mode_shape_unaligned``, and a warning says so.
+    ``mode_shape_unaligned``, and a note says so.
     """
     first = _first_axis(found.channels)
     if first is None:
@@ -50,7 +50,7 @@ def along_axes(found: Identification) -> Identification:
         if turned is not None:
             notes.append(_note(modes[i], modes[j], first))
             modes[i], modes[j] = turned
-    return replace(found, modes=tuple(modes), warnings=(*found.warnings, *notes))
+    return replace(found, modes=tuple(modes), notes=(*found.notes, *notes))
 
 
 def close_pairs(modes: Sequence[ModalEstimate]) -> list[tuple[int, int]]:

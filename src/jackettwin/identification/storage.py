@@ -47,6 +47,7 @@ def to_plain(found: Identification) -> dict[str, Any]:
         "settings": asdict(found.settings),
         "duration_s": found.duration_s,
         "warnings": list(found.warnings),
+        "notes": list(found.notes),
         "picks": plain_picks(found.picks),
         "real_poles": [
             {**vars(pole), "mode_shape": [pole.mode_shape.real.tolist(), pole.mode_shape.imag.tolist()]}
@@ -74,6 +75,7 @@ def from_plain(data: dict[str, Any]) -> Identification:
         settings=ResolvedSettings(**{**settings, "orders": tuple(settings["orders"])}),
         duration_s=data["duration_s"],
         warnings=tuple(data["warnings"]),
+        notes=tuple(data["notes"]),
         picks=tuple(Pick(**pick) for pick in data["picks"]),
         real_poles=tuple(
             RealPole(

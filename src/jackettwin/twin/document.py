@@ -274,6 +274,7 @@ def identification_document(found: Identification, quality: dict[str, Any]) -> d
         "duration_s": found.duration_s,
         "quality": quality,
         "warnings": list(found.warnings),
+        "notes": list(found.notes),
     }
 
 
