@@ -1,0 +1,37 @@
+"""The files that the reference pages show can be read as they stand."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from jackettwin.response.labels import mode_kinds
+from jackettwin.response.modal import undamped_modes
+from jackettwin.response.system import build_system
+from jackettwin.soil.support import pinned
+from jackettwin.structure import assemble, read_structure
+
+PAGE = Path(__file__).parents[1] / "docs" / "reference" / "structure.md"
+EXAMPLE = Path(__file__).parents[1] / "examples" / "three_leg_jacket.yaml"
+FILES = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(), re.DOTALL)
+
+
+def test_the_page_shows_both_forms() -> None:
+    assert len(FILES) == 2
+
+
+@pytest.mark.parametrize("text", FILES, ids=["parametric", "node by node"])
+def test_a_structure_as_documented_stands_up(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "structure.yaml"
+    path.write_text(text)
+    structure = read_structure(path)
+    assembly = assemble(structure)
+    modes = undamped_modes(build_system(assembly, pinned(structure)), 2)
+    assert set(mode_kinds(assembly, modes.shapes)) == {"fore_aft", "side_side"}
+    assert (modes.frequency_hz > 0.1).all() and (modes.frequency_hz < 2.0).all()
+
+
+def test_the_parametric_one_is_the_example(tmp_path: Path) -> None:
+    path = tmp_path / "three_leg_jacket.yaml"
+    path.write_text(FILES[0])
+    assert read_structure(path) == read_structure(EXAMPLE)
