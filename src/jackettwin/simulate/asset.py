@@ -23,6 +23,10 @@ def build_asset(schema: ScenarioSchema, folder: Path) -> Asset:
         If a part is missing, given twice, or wrong.
     """
     structure, foundation = _structure(schema, folder), _foundation(schema, folder)
+    loops = schema.soil is not None and schema.soil.hysteresis
+    if loops and foundation is not None:
+        with located(field="soil"):
+            foundation.cyclic()
     if foundation is not None:
         structure, support = foundation.lumped(structure)
     else:
@@ -40,6 +44,7 @@ def build_asset(schema: ScenarioSchema, folder: Path) -> Asset:
         rayleigh=Rayleigh() if steel is None else Rayleigh.minimum(steel.ratio, steel.frequency_hz),
         support_text=schema.support,
         coupled_damping=schema.damping.coupled,
+        foundation=foundation if loops else None,
     )
 
 

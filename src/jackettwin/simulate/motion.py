@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.response.time import (
+    Feedback,
     Hold,
     StateSpace,
     first_order_hold,
@@ -16,6 +18,7 @@ from jackettwin.response.time import (
     periodic_start,
     state_space,
 )
+from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.model import (
     Model,
     TrueMode,
@@ -105,10 +108,11 @@ def simulate_motion(scenario: Scenario) -> Motion:
         x0 = x0 + periodic_start(own, np.vstack([series.loads, series.loads[:1]]))
         t = np.arange(n_steps + 1, dtype=np.float64) * clock.load_step_s
         force = force + loads.wave.at(t)
-    if loads.rotor is None:
-        states = march(hold, x0, force)
+    parts = _feedbacks(scenario, loads)
+    if parts:
+        states, force = _with_feedback(parts, space, hold, x0, force)
     else:
-        states, force = _with_rotor(loads, space, hold, x0, force)
+        states = march(hold, x0, force)
     return Motion(
         loads.model,
         space,
@@ -120,18 +124,39 @@ def simulate_motion(scenario: Scenario) -> Motion:
     )
 
 
-def _with_rotor(
-    loads: _Loads, space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
+class _Part(NamedTuple):
+    """A force (m,) on the motion ``rows`` (m, n) of the coordinates, from step and state."""
+
+    rows: FloatArray
+    force: Feedback
+    evaluations: int
+
+
+def _feedbacks(scenario: Scenario, loads: _Loads) -> list[_Part]:
+    """Return what depends on the motion beyond the linear model."""
+    model, n = loads.model, loads.model.reduced.n
+    parts = []
+    if loads.rotor is not None:
+        change, n_times = loads.rotor.change(loads.damping), loads.rotor.still.shape[0]
+        parts.append(_Part(model.top, lambda k, x: change(k % n_times, model.top @ x[n : 2 * n]), 1))
+    if scenario.asset.foundation is not None:
+        feet = CyclicFeet(model, scenario.asset.foundation)
+        parts.append(_Part(feet.motion, lambda k, x: feet.force(k, feet.motion @ x[:n]), EVALUATIONS))
+    return parts
+
+
+def _with_feedback(
+    parts: list[_Part], space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    assert loads.rotor is not None
-    n, top = space.n, loads.model.top
-    velocity = np.zeros((6, space.A.shape[0]))
-    velocity[:, n : 2 * n] = top
-    change = loads.rotor.change(loads.damping)
-    n_times = loads.rotor.still.shape[0]
-    own = Hold(hold.E, hold.P0 @ top.T, hold.P1 @ top.T)
-    states, extra = march_with_feedback(hold, own, x0, force, lambda k, x: change(k % n_times, velocity @ x))
-    return states, force + extra @ top
+    rows = np.vstack([part.rows for part in parts])
+    own = Hold(hold.E, hold.P0 @ rows.T, hold.P1 @ rows.T)
+
+    def feedback(k: int, x: FloatArray) -> FloatArray:
+        return np.concatenate([part.force(k, x) for part in parts])
+
+    evaluations = max(part.evaluations for part in parts)
+    states, extra = march_with_feedback(hold, own, x0, force, feedback, evaluations=evaluations)
+    return states, force + extra @ rows
 
 
 def _loads(scenario: Scenario, n_steps: int) -> _Loads:

@@ -16,6 +16,7 @@ from jackettwin.loads.turbulence import Coherent
 from jackettwin.loads.water import Water
 from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor
+from jackettwin.soil.foundation import Foundation
 from jackettwin.soil.support import Support
 from jackettwin.structure import Rayleigh, Structure
 
@@ -35,6 +36,8 @@ class Asset:
     """The support as a short form, if it was given so: parameters that an update should find again."""
     coupled_damping: float | None = None
     """Damping ratio to which the tower is tuned: that of the first modes of the whole asset in still air."""
+    foundation: Foundation | None = None
+    """Piles whose ground unloads and reloads in time; None if it is the support's linear law."""
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,7 @@ class GroundSchema(Schema):
     damping: DampingSchema | None = None
     law: LawSchema | None = None
     radiation: RadiationSchema | None = None
+    hysteresis: bool = False
 
 
 class GrowthSchema(Schema):

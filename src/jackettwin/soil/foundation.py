@@ -12,11 +12,13 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
-from jackettwin.soil.impedance import lumped_head, on_pile_heads
+from jackettwin.soil.cyclic import CyclicPile, cyclic_pile
+from jackettwin.soil.impedance import PileHead, lumped_head, on_pile_heads
 from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
 from jackettwin.soil.piles import (
     CurveOptions,
     Pile,
+    PileCurves,
     PileSprings,
     dashpots,
     linear_springs,
@@ -40,6 +42,32 @@ class Foundation:
     springs: PileSprings
     law: Law = ELASTIC
     radiation: Radiation | None = None
+    curves: PileCurves | None = None
+    """The ground's own curves; None for linear ground."""
+
+    def head(self) -> PileHead:
+        """Return a pile lumped at its head."""
+        return lumped_head(self.pile, self.springs, law=self.law, dashpots=self.dashpots)
+
+    def cyclic(self) -> CyclicPile:
+        """Return a pile in ground that unloads and reloads.
+
+        Raises
+        ------
+        InputError
+            If the ground is linear, or damps by a law already.
+        """
+        if self.curves is None:
+            raise InputError(
+                "linear ground has no loops", field="hysteresis", remedy="describe the ground by layers"
+            )
+        if self.law != ELASTIC:
+            raise InputError(
+                "loops are the ground's damping already",
+                field="hysteresis",
+                remedy="leave damping and law out",
+            )
+        return cyclic_pile(self.pile, self.curves)
 
     @property
     def dashpots(self) -> PileSprings | None:
@@ -52,8 +80,7 @@ class Foundation:
 
     def heads(self, structure: Structure) -> Support:
         """Return pile heads lumped at the feet: as many unknowns as without piles."""
-        head = lumped_head(self.pile, self.springs, law=self.law, dashpots=self.dashpots)
-        return on_pile_heads(structure, head)
+        return on_pile_heads(structure, self.head())
 
     def lumped(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""
@@ -203,17 +230,23 @@ class FoundationSchema(Schema):
         elif self.law is not None:
             law = self.law.build()
         pile = self.pile.build()
+        curves = self._curves(pile)
         radiation = None if self.radiation is None else self.radiation.build()
-        return Foundation(pile, self._springs(pile), law, radiation)
+        springs = self._linear(pile) if curves is None else linearised(curves)
+        return Foundation(pile, springs, law, radiation, curves)
 
-    def _springs(self, pile: Pile) -> PileSprings:
+    def _curves(self, pile: Pile) -> PileCurves | None:
         layers, linear = self.soil.layers, self.soil.linear
         if (layers is None) == (linear is None):
             raise InputError("the ground is either layers or linear", field="soil", remedy="give one of them")
-        if layers is not None:
-            scour = Scour(**self.scour.model_dump()) if self.scour is not None else Scour()
-            profile = SoilProfile(tuple(layer.build() for layer in layers), scour)
-            return linearised(pile_curves(pile, profile, CurveOptions(**self.curves.model_dump())))
+        if layers is None:
+            return None
+        scour = Scour(**self.scour.model_dump()) if self.scour is not None else Scour()
+        profile = SoilProfile(tuple(layer.build() for layer in layers), scour)
+        return pile_curves(pile, profile, CurveOptions(**self.curves.model_dump()))
+
+    def _linear(self, pile: Pile) -> PileSprings:
+        linear = self.soil.linear
         assert linear is not None
         if self.scour is not None:
             raise InputError(
