@@ -17,6 +17,7 @@ from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.picks import Pick, parse_picks
+from jackettwin.report.identification_page import build_identification_page
 from jackettwin.twin import observation_document, observe
 from jackettwin.twin.document import comparison_document
 from jackettwin.twin.export import WRITERS, export_modes
@@ -34,6 +35,11 @@ _SHOWN = 5
     "--method",
     type=click.Choice(["ssi-cov", "ssi-dat", "plscf", "efdd"]),
     help="How poles are found; default ssi-cov.",
+)
+@click.option(
+    "--report",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="HTML page on one record: spectra, stabilisation, methods, moving shapes.",
 )
 @click.option("--compare", is_flag=True, help="One record by every method, side by side.")
 @click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
@@ -57,6 +63,7 @@ def identify_command(
     records: tuple[str, ...],
     settings_file: str | None,
     method: str | None,
+    report: Path | None,
     compare: bool,
     real_poles: bool,
     picks_file: str | None,
@@ -73,17 +80,9 @@ def identify_command(
     picks = _picks(picks_file)
     _refuse_format(out)
     files = record_files(records)
-    if compare and len(files) > 1:
-        raise InputError("takes one record", field="--compare", value=f"{len(files)} records")
+    _refuse_many(files, {"--compare": compare, "--report": report is not None})
     if len(files) == 1:
-        with progress(2 if compare else 1, "identify") as step:
-            step(f"identify {files[0].name}")
-            seen = observe(files[0], settings, drop_dead=drop_dead, picks=picks)
-            document = observation_document(seen)
-            if compare:
-                step("by every method")
-                compared = compare_methods(seen.record, seen.identification, settings)
-                document["methods"] = comparison_document(compared)
+        document = _one(files[0], settings, drop_dead, picks, compare, report)
     else:
         document = _many(files, settings, drop_dead, picks, _folder(out), workers)
     if out is not None:
@@ -98,6 +97,36 @@ def identify_command(
         _print_one(document)
     else:
         _print_many(document)
+
+
+def _refuse_many(files: Sequence[Path], options: Mapping[str, bool]) -> None:
+    for option, given in options.items():
+        if given and len(files) > 1:
+            raise InputError("takes one record", field=option, value=f"{len(files)} records")
+
+
+def _one(
+    file: Path,
+    settings: IdentificationSettings,
+    drop_dead: bool,
+    picks: tuple[Pick, ...],
+    compare: bool,
+    report: Path | None,
+) -> dict[str, Any]:
+    with progress(1 + compare + (report is not None), "identify") as step:
+        step(f"identify {file.name}")
+        seen = observe(file, settings, drop_dead=drop_dead, picks=picks)
+        document = observation_document(seen)
+        if compare:
+            step("by every method")
+            compared = compare_methods(seen.record, seen.identification, settings)
+            document["methods"] = comparison_document(compared)
+        if report is not None:
+            step("write the report")
+            build_identification_page(seen, report)
+    if report is not None:
+        messages.print(f"wrote {report}")
+    return document
 
 
 def _many(

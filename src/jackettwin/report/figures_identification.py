@@ -18,6 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 
+_STEP = 2.4
+"""Distance of the bars above the poles, in model orders."""
 _FEWEST_LINES = 20
 """Spectral lines below which a spectrum is too coarse to draw behind poles."""
 
@@ -65,24 +67,49 @@ def stabilisation(
 
 
 def stabilisation_damping(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw poles of every model order against damping, those of each mode in its colour."""
+    """Draw poles of every model order against damping, those of each mode in its colour.
+
+    The intervals of the modes overlap: they are bars above the poles, where the modes' lines end.
+    """
     s = found.stabilisation
     limits = (0.0, _damping_limit(found))
     zeta = 100.0 * s.damping_ratio
+    top = max(found.settings.orders, default=0)
     figure = go.Figure()
     _poles(figure, found, zeta, s.cluster < 0, _CLASSES[0]._replace(name="no mode's pole"), None)
-    marks = []
+    marks: list[tuple[str, float, tuple[float, float] | None, ModalEstimate]] = []
     for k, (name, mode) in enumerate(zip(names, found.modes, strict=True)):
         look = style.mode_look(name)
         text = words(name) if name else f"{mode.frequency_hz:.3f} Hz"
         own = _PoleClass(text, look.colour, look.symbol, 5)
-        spread = None if s.damping_ratio_std is None else 100.0 * s.damping_ratio_std
-        _poles(figure, found, zeta, s.cluster == k, own, spread)
-        bounds = damping_interval(mode)
-        percent = None if bounds is None else (100.0 * bounds[0], 100.0 * bounds[1])
-        marks.append((name, 100.0 * mode.damping_ratio, percent, mode))
+        _poles(figure, found, zeta, s.cluster == k, own, None)
+        _bar(figure, mode, top + _STEP * (k + 1), look)
+        marks.append((name, 100.0 * mode.damping_ratio, None, mode))
     _lines(figure, marks, limits)
-    return _order_axes(figure, style.title("damping ratio", "%"), limits)
+    _order_axes(figure, style.title("damping ratio", "%"), limits)
+    highest = top + _STEP * (len(found.modes) + 1)
+    return figure.update_layout(yaxis={"range": [0.0, highest], "tickvals": list(range(0, top + 1, 10))})
+
+
+def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Look) -> None:
+    """Draw the 95 % interval of a mode's damping as a bar."""
+    bounds = damping_interval(mode)
+    if bounds is None:
+        return
+    figure.add_scatter(
+        x=[100.0 * bounds[0], 100.0 * mode.damping_ratio, 100.0 * bounds[1]],
+        y=[y, y, y],
+        mode="lines+markers",
+        line={"color": look.colour, "width": 3},
+        marker={
+            "color": look.colour,
+            "symbol": ["line-ns", "circle", "line-ns"],
+            "size": [9, 7, 9],
+            "line": {"width": 2, "color": look.colour},
+        },
+        hovertemplate=f"ζ {numbers.interval(bounds, 100.0, 2)} %<extra>95 %</extra>",
+        showlegend=False,
+    )
 
 
 def damping_against_frequency(found: Identification, names: Sequence[str]) -> go.Figure:

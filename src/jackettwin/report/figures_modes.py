@@ -225,6 +225,11 @@ def _lay_out(figure: go.Figure, shapes: Sequence[Shape], points: FloatArray) -> 
                 "font": {"color": style.mode_look(shape.label).colour, "size": 13},
             }
         )
+    return animated(figure, height=680, annotations=notes, **scenes)
+
+
+def animated(figure: go.Figure, *, height: int, **layout: Any) -> go.Figure:
+    """Give a figure with frames, one a phase in degrees, its button and slider, and the house style."""
     turning = {"frame": {"duration": 60, "redraw": True}, "transition": {"duration": 0}, "fromcurrent": True}
     still = {"frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
     slider = {
@@ -260,11 +265,10 @@ def _lay_out(figure: go.Figure, shapes: Sequence[Shape], points: FloatArray) -> 
     }
     return style.finish(
         figure,
-        height=680,
-        annotations=notes,
+        height=height,
         updatemenus=[play],
         sliders=[slider],
         margin={"l": 0, "r": 0, "t": 60, "b": 84},
         legend={"orientation": "h", "x": 0.0, "y": 1.03, "yanchor": "bottom"},
-        **scenes,
+        **layout,
     )

@@ -38,7 +38,7 @@ def what_was_identified(result: TwinResult) -> list[Block]:
     blocks: list[Block] = []
     for i, (found, names) in enumerate(zip(result.identifications, result.names, strict=True)):
         if i == 0:
-            blocks += [*_diagrams(found, names), tables.records_table(result)]
+            blocks += [*diagrams(found, names), tables.records_table(result)]
         blocks.append(tables.identified_table(found, names, folded=i > 0))
     if result.identifications:
         first = result.identifications[0]
@@ -52,7 +52,8 @@ def what_was_identified(result: TwinResult) -> list[Block]:
     return blocks
 
 
-def _diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
+def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
+    """Return the stabilisation diagrams of a record, its modes' intervals and likeness."""
     s = found.settings
     modes = list(zip(names, found.modes, strict=True))
     caption = (
@@ -64,7 +65,8 @@ def _diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
         Plot("stabilisation_frequency", caption, figures_identification.stabilisation(found, names)),
         Plot(
             "stabilisation_damping",
-            "Stabilisation in damping: the same poles against their damping ratio.",
+            "Stabilisation in damping: the same poles against their damping ratio; above them the modes kept "
+            "with their 95 % intervals.",
             figures_identification.stabilisation_damping(found, names),
         ),
         Plot(

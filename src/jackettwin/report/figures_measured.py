@@ -1,0 +1,153 @@
+"""Mode shapes as they were measured, moving: sensors alone, no model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import plotly.graph_objects as go
+
+from jackettwin.identification import ModalEstimate
+from jackettwin.records import Channel
+from jackettwin.report import style
+from jackettwin.report.figures_modes import animated
+from jackettwin.report.numbers import frequency, percent, words
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+_FRAMES = 24
+_SWAY = 0.16
+"""Largest drawn displacement, as a share of the height of the sensors."""
+_COLUMNS = 3
+_SPREAD = 0.1
+"""Distance between sensors of unknown height, as a share of a drawn height of 1."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the sensors sit: places from the lowest up, and the channels of each.
+
+    Attributes
+    ----------
+    height : (n_places,)
+        Above sea level [m]; evenly spread if any is not known.
+    known : bool
+    place : (n_channels,) int
+    direction : (n_channels, 3)
+    """
+
+    height: FloatArray
+    known: bool
+    place: npt.NDArray[np.int64]
+    direction: FloatArray
+
+    @classmethod
+    def of(cls, channels: Sequence[Channel]) -> Places:
+        """Return the places of the channels; without heights in the order of the channels, from the top."""
+        known = all(c.height_m is not None for c in channels)
+        names = [c.height_m if known else c.node or c.name for c in channels]
+        order = sorted(set(names)) if known else list(dict.fromkeys(names))[::-1]  # type: ignore[type-var]
+        height = np.array(order if known else _SPREAD * np.arange(len(order)), dtype=np.float64)
+        along_x = (1.0, 0.0, 0.0)
+        direction: FloatArray = np.array([c.direction if any(c.direction) else along_x for c in channels])
+        return cls(height, known, np.array([order.index(name) for name in names]), direction)
+
+    def motion(self, shape: ComplexArray) -> ComplexArray:
+        """Return the displacement of every place, (n_places, 3), largest entry 1."""
+        out = np.zeros((len(self.height), 3), dtype=complex)
+        np.add.at(out, self.place, shape[:, None] * self.direction)
+        return np.asarray(out / np.abs(out).max())
+
+
+def measured_shapes_3d(channels: Sequence[Channel], modes: Sequence[tuple[str, ModalEstimate]]) -> go.Figure:
+    """Draw measured modes, each turning through one cycle of Re(φ e^{iθ}), θ by button or slider.
+
+    Parameters
+    ----------
+    modes : sequence of (label, mode)
+        Labels may be empty.
+    """
+    places = Places.of(channels)
+    size = max(float(np.ptp(places.height)), _SPREAD)
+    figure = go.Figure()
+    for i, (label, mode) in enumerate(modes):
+        scene = f"scene{i + 1 if i else ''}"
+        figure.add_trace(
+            _line(places, np.zeros((len(places.height), 3)), "", first=i == 0).update(scene=scene)
+        )
+        figure.add_trace(_line(places, _now(places, mode, size, 0.0), label or "mode").update(scene=scene))
+    moving = list(range(1, 2 * len(modes), 2))
+    frames = []
+    for k in range(_FRAMES):
+        theta = 2.0 * np.pi * k / _FRAMES
+        lines = [_line(places, _now(places, mode, size, theta), "mode") for _, mode in modes]
+        data = [go.Scatter3d(x=line.x, y=line.y, z=line.z) for line in lines]
+        frames.append(go.Frame(name=f"{360 * k // _FRAMES}", data=data, traces=moving))
+    figure.frames = frames
+    return _lay_out(figure, places, size, modes)
+
+
+def _now(places: Places, mode: ModalEstimate, size: float, theta: float) -> FloatArray:
+    turned = places.motion(mode.mode_shape) * np.exp(1j * theta)
+    return np.asarray(turned.real * _SWAY * size)
+
+
+def _line(places: Places, shift: FloatArray, label: str, *, first: bool = False) -> go.Scatter3d:
+    colour = style.mode_look(label).colour if label else style.PALE
+    return go.Scatter3d(
+        x=shift[:, 0],
+        y=shift[:, 1],
+        z=places.height + shift[:, 2],
+        mode="lines+markers",
+        line={"color": colour, "width": 6 if label else 3},
+        marker={"color": colour, "size": 4 if label else 3},
+        hoverinfo="skip",
+        name="at rest",
+        showlegend=first,
+    )
+
+
+def _lay_out(
+    figure: go.Figure, places: Places, size: float, modes: Sequence[tuple[str, ModalEstimate]]
+) -> go.Figure:
+    n_columns = min(len(modes), _COLUMNS)
+    n_rows = -(-len(modes) // n_columns)
+    wide = {"range": [-1.3 * _SWAY * size, 1.3 * _SWAY * size], "showticklabels": False}
+    scenes, notes = {}, []
+    for i, (label, mode) in enumerate(modes):
+        row, column = divmod(i, n_columns)
+        top = 1.0 - row / n_rows
+        scenes[f"scene{i + 1 if i else ''}"] = {
+            "xaxis": {**wide, "title": {"text": "x"}},
+            "yaxis": {**wide, "title": {"text": "y"}},
+            "zaxis": {
+                "title": {"text": style.title("height", "m") if places.known else "place"},
+                "showticklabels": places.known and column == 0,
+            },
+            "aspectmode": "manual",
+            "aspectratio": {"x": 0.5, "y": 0.5, "z": 1.2},
+            "camera": {"eye": {"x": 1.35, "y": 1.35, "z": 0.45}},
+            "domain": {
+                "x": [column / n_columns, (column + 1) / n_columns],
+                "y": [top - 1.0 / n_rows, top - 0.1 / n_rows],
+            },
+        }
+        name = words(label) if label else "mode"
+        numbers = f"{frequency(mode.frequency_hz)} Hz  ζ {percent(mode.damping_ratio)} %"
+        notes.append(
+            {
+                "text": f"<b>{name}</b>  {numbers}",
+                "x": (column + 0.5) / n_columns,
+                "y": top - 0.1 / n_rows,
+                "xref": "paper",
+                "yref": "paper",
+                "showarrow": False,
+                "xanchor": "center",
+                "yanchor": "bottom",
+                "font": {"color": style.mode_look(label or "mode").colour, "size": 13},
+            }
+        )
+    return animated(figure, height=110 + 380 * n_rows, annotations=notes, **scenes)

@@ -1,0 +1,73 @@
+"""The page on one record: whole, self-contained, its shapes where the sensors are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+from numpy.testing import assert_allclose
+
+from jackettwin.identification import ModalEstimate
+from jackettwin.records import Channel
+from jackettwin.report.figures_measured import Places, measured_shapes_3d
+from jackettwin.report.identification_page import build_identification_page, mode_names
+from jackettwin.twin import Observation
+
+X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+CHANNELS = (
+    Channel("top_x", height_m=90.0, direction=X),
+    Channel("top_y", height_m=90.0, direction=Y),
+    Channel("low_x", height_m=30.0, direction=X),
+)
+
+
+def test_channels_of_one_height_move_one_place() -> None:
+    places = Places.of(CHANNELS)
+    assert places.height.tolist() == [30.0, 90.0]
+    motion = places.motion(np.array([1.0, 2.0j, -0.5]))
+    assert_allclose(motion, [[-0.25, 0, 0], [0.5, 1.0j, 0]])
+
+
+def test_places_without_height_stand_in_the_order_of_the_channels() -> None:
+    places = Places.of([Channel("a", node="top"), Channel("b", node="top"), Channel("c")])
+    assert not places.known
+    assert places.place.tolist() == [1, 1, 0]
+
+
+def test_the_shapes_move_through_a_cycle(assert_units: Callable[[go.Figure], None]) -> None:
+    mode = ModalEstimate(0.3, 0.01, np.array([1.0, 0.0, 0.4], dtype=complex), 1.0, 0.0, 1.0)
+    figure = measured_shapes_3d(CHANNELS, [("fore_aft_1", mode), ("", mode)])
+    assert_units(figure)
+    top = np.array([frame.data[0].x[1] for frame in figure.frames])
+    # a cosine of one period over the frames
+    assert_allclose(top, top[0] * np.cos(2 * np.pi * np.arange(len(top)) / len(top)), atol=1e-12)
+    assert figure.frames[0].traces == (1, 3)
+
+
+def test_names_need_the_yaw(observation: Observation) -> None:
+    assert [name.rpartition("_")[0] for name in mode_names(observation)] == ["mode", "mode"]
+    straight = replace(observation, record=replace(observation.record, conditions={"yaw_deg": 0.0}))
+    assert sorted(mode_names(straight)) == ["fore_aft_1", "side_side_1"]
+
+
+@pytest.fixture(scope="module")
+def page(observation: Observation, tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    return build_identification_page(observation, path).read_text(encoding="utf-8")
+
+
+def test_the_page_is_whole(page: str) -> None:
+    for part in ("Record", "Modes", "Mode shapes", "SSI-dat", "stabilisation_damping", "measured_shapes"):
+        assert part in page
+    assert 'src="http' not in page
+    assert "noise &lt;&amp;&gt; modes" in page
+
+
+def test_a_record_without_modes_has_a_page(observation: Observation, tmp_path: Path) -> None:
+    none = replace(observation, identification=replace(observation.identification, modes=()))
+    text = build_identification_page(none, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "measured_shapes" not in text
