@@ -209,6 +209,20 @@ def test_the_file_follows_openfast_s_rules(tmp_path: Path) -> None:
     np.testing.assert_allclose(start, static_internal(element), rtol=1e-8)
 
 
+def test_both_layouts_of_the_module_file_have_their_lines_in_place(tmp_path: Path) -> None:
+    """ReadPrimaryFile of ExtPtfm_MCKF_IO.f90 before and after pull request 3210: the order is what counts."""
+    element = superelement(jacket15(FEET)[0], number=2)
+    classic = ["Echo", "DT", "IntMethod", "", "FileFormat", "Red_FileName", "RedCst_FileName"]
+    classic += ["NActiveDOFList", "ActiveDOFList", "NInitPosList", "InitPosList", "NInitVelList"]
+    classic += ["InitVelList", "", "SumPrint", "OutFile", "TabDelim", "OutFmt", "TStart", "OutList"]
+    since = [*classic[:4], "RBMode", *classic[4:13], "", "Connections", "Conn_FileName", *classic[13:]]
+    for layout, wanted in (("classic", classic), ("connections", since)):
+        _, module = write_superelement(element, tmp_path / f"{layout}.dat", layout=layout)
+        lines = module.read_text().splitlines()[3 : 3 + len(wanted)]
+        for line, keyword in zip(lines, wanted, strict=True):
+            assert f" {keyword} " in line if keyword else line.startswith("---")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

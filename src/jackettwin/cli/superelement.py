@@ -29,6 +29,7 @@ from jackettwin.response.superelement_error import (
     reduced_modes,
 )
 from jackettwin.response.superelement_files import (
+    Layout,
     is_superelement,
     read_superelement,
     require_format,
@@ -86,6 +87,13 @@ from jackettwin.updating import numbered_modes
     type=click.Path(dir_okay=False, path_type=Path),
     help="FILE.npz, or FILE.dat for OpenFAST's ExtPtfm; default out/NAME.npz.",
 )
+@click.option(
+    "--layout",
+    type=click.Choice(["classic", "connections"]),
+    default="classic",
+    show_default=True,
+    help="Of ExtPtfm's module file: before, or since, it knows rigid-body modes and connections.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def superelement_command(
     structure: str,
@@ -98,6 +106,7 @@ def superelement_command(
     beam: str | None,
     subdivide: int | None,
     out: Path | None,
+    layout: Layout,
     as_json: bool,
 ) -> None:
     """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is.
@@ -107,7 +116,7 @@ def superelement_command(
     out = out or Path("out") / f"{Path(structure).stem}.npz"
     require_format(out)
     if is_superelement(Path(structure)):
-        _report(_rewritten(Path(structure), out), as_json)
+        _report(_rewritten(Path(structure), out, layout), as_json)
         return
     whole = read_structure(structure)
     foundation, rest = at_interface(whole)
@@ -128,7 +137,7 @@ def superelement_command(
     if step_s is not None:
         element = slowed(element, step_s=step_s, band_hz=band)
     plain = superelement(base, number=number, reference_m=point, band_hz=band, damped=False)
-    files = write_superelement(element, out)
+    files = write_superelement(element, out, layout=layout)
     document = _document(
         element,
         fixed_interface_frequencies(base, max(number, 1)),
@@ -140,9 +149,9 @@ def superelement_command(
     _report(document, as_json)
 
 
-def _rewritten(source: Path, out: Path) -> dict[str, Any]:
+def _rewritten(source: Path, out: Path, layout: Layout) -> dict[str, Any]:
     element = read_superelement(source)
-    files = [str(path) for path in write_superelement(element, out)]
+    files = [str(path) for path in write_superelement(element, out, layout=layout)]
     return _matrices(element, element.held_frequency_hz) | {
         "structure": source.name,
         "files": files,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -24,12 +25,28 @@ FloatArray = npt.NDArray[np.float64]
 FORMATS = (".npz", ".dat")
 _FOREVER_S = 1.0e5
 """The constant loads are given at 0 and at this time."""
+Layout = Literal["classic", "connections"]
+"""Of the module's input file: OpenFAST 2.4's, or with the lines that the hydroelastic super-element (pull
+request 3210 of February 2026) put among them."""
+_CONNECTIONS: tuple[tuple[tuple[str, ...], ...], ...] = (
+    (("False", "RBMode", "Flag for the presence of rigid-body modes (flag)"),),
+    (
+        ("CONNECTIONS",),
+        ("False", "Connections", "Flag for connections (flag)"),
+        ('"unused"', "Conn_FileName", "Path containing connections inputs (-)"),
+    ),
+)
 _MATRICES = {"mass": "Mass Matrix (Units (kg,m))", "stiffness": "Stiffness Matrix (Units (N,m))",
              "damping": "Damping Matrix (Units (N,m,kg))"}  # fmt: skip
 
 
-def write_superelement(element: Superelement, path: Path) -> tuple[Path, ...]:
+def write_superelement(element: Superelement, path: Path, *, layout: Layout = "classic") -> tuple[Path, ...]:
     """Write ``.npz``, or ``.dat`` for OpenFAST with ``NAME_ExtPtfm.dat`` beside it; return the files.
+
+    Parameters
+    ----------
+    layout : {"classic", "connections"}
+        Lines of the module's input file, which are read by their place, not by their keywords.
 
     Raises
     ------
@@ -51,7 +68,10 @@ def write_superelement(element: Superelement, path: Path) -> tuple[Path, ...]:
             )
         return (path,)
     module = path.with_name(f"{path.stem}_ExtPtfm.dat")
-    for target, text in ((path, flex_ascii(element)), (module, module_input(element, path.name))):
+    for target, text in (
+        (path, flex_ascii(element)),
+        (module, module_input(element, path.name, layout=layout)),
+    ):
         with atomic_path(target) as temporary:
             temporary.write_text(text, encoding="ascii")
     return (path, module)
@@ -182,18 +202,20 @@ def static_internal(element: Superelement) -> FloatArray:
     return np.asarray(np.linalg.solve(element.K[i, i], element.weight_n[i]))
 
 
-def module_input(element: Superelement, name: str) -> str:
+def module_input(element: Superelement, name: str, *, layout: Layout = "classic") -> str:
     """Return the text of ExtPtfm's module input file; it starts from static equilibrium."""
+    rigid, connections = _CONNECTIONS if layout == "connections" else ((), ())
     rest = static_internal(element)
     start = ", ".join(f"{q:.9e}" for q in rest) if rest.size else "0,"
     inner = element.n - INTERFACE
     channels = ["IntrfFx", "IntrfFy", "IntrfFz", "IntrfMx", "IntrfMy", "IntrfMz"]
     channels += [f"CBQ_{k:03d}" for k in range(1, min(inner, 9) + 1)]
-    rows = [
+    rows: list[tuple[str, ...]] = [
         ("False", "Echo", "Echo input data to <RootName>.ech (flag)"),
         ('"default"', "DT", 'Communication interval (s) (or "default")'),
         ("1", "IntMethod", "Integration Method {1:RK4; 2:AB4, 3:ABM4} (switch)"),
         ("REDUCTION INPUTS",),
+        *rigid,
         ("1", "FileFormat", "File Format {0:Guyan; 1:FlexASCII} (switch)"),
         (f'"{name}"', "Red_FileName", "Path of the file containing Guyan/Craig-Bampton inputs (-)"),
         ('"NA"', "RedCst_FileName", "Path of the file containing constant inputs (-) (unused)"),
@@ -203,6 +225,7 @@ def module_input(element: Superelement, name: str) -> str:
         (start, "InitPosList", "List of initial positions of the CB modes"),
         ("0", "NInitVelList", "Number of initial velocities listed in InitVelList (integer)"),
         ("0,", "InitVelList", "List of initial velocities of the CB modes"),
+        *connections,
         ("OUTPUT",),
         ("True", "SumPrint", "Print summary data to <RootName>.sum (flag)"),
         ("1", "OutFile", "Switch for the output (unused)"),
