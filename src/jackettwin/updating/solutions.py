@@ -24,6 +24,8 @@ LOCKED_DAMPER = 0.05
 """Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
 _MOST = 16
 """Starts are doubled up to this many times their number while a solution has been found only once."""
+_HOPELESS = 4
+"""So many times the starts without any minimum are enough."""
 _DEFLATED = 6
 """Most descents with the known solutions deflated; a quarter of the starts if these are few."""
 _CONFIDENCE = 0.95
@@ -142,13 +144,17 @@ def search(
             if progress is not None:
                 progress()
         valleys = gather(problem, [(end, 1) for end in ends if end.settled])
-        if 2 * n > len(points) or (valleys and all(count > 1 for _, count in valleys)):
+        enough = all(count > 1 for _, count in valleys) if valleys else n >= _HOPELESS * starts
+        if 2 * n > len(points) or enough:
             break
         n *= 2
     if deflated:
         valleys = _deflate(problem, valleys, points[:deflated])
     if not valleys:
-        raise NumericalError("no start of the search could follow the target modes")
+        raise NumericalError(
+            "no start of the search ended in a minimum: the targets are out of the supports' reach; check "
+            "their mode numbers, frequencies and damping ratios"
+        )
     valleys = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
     return Search(
         tuple(_solution(problem, settle(problem, end), count) for end, count in valleys),
