@@ -102,9 +102,9 @@ def main() -> None:
     lines = [
         "# Identifiability verdicts",
         "",
-        f"`python qualify/identifiability.py`: {cases} problems of two parameters (three laws, three stiffnesses,",
-        "three sets of data, three precisions); the right verdict from quadrature over the whole prior.",
-        f"{refused} refused as not converged. Right: {good} of {total} parameters ({100 * good / total:.1f} %).",
+        f"`python qualify/identifiability.py`: {cases} problems of two parameters (three laws, three",
+        "stiffnesses, sets of data and precisions each); the right verdict by quadrature over the prior.",
+        f"{refused} refused as not converged. Right: {good} of {total} ({100 * good / total:.1f} %).",
         "",
         "| by quadrature | parameters | right |",
         "|---|---|---|",

@@ -110,11 +110,16 @@ class Condensed:
 
     def expand(self, pole: complex, x: ComplexArray) -> ComplexArray:
         """Return the shape (assembly.n_dof,) of a mode from its coordinates (n,)."""
+        return np.asarray(self.expansion(pole) @ x)
+
+    def expansion(self, pole: complex) -> ComplexArray:
+        """Return (assembly.n_dof, n): what moves with each coordinate at a pole, truncated modes included."""
         a, b = self.pencil.rayleigh.alpha, self.pencil.rayleigh.beta
         mu = (pole * pole + a * pole) / (1.0 + b * pole)
-        x_b = x[: self.boundary.size]
-        mid = -mu / (self.mid + mu) * (self.coupling_mid.T @ x_b)
-        return np.asarray(self.basis @ x + self.basis_mid @ mid - mu * (self.basis_rest @ x_b))
+        shapes = self.basis.astype(np.complex128)
+        mid = (-mu / (self.mid + mu))[:, None] * self.coupling_mid.T
+        shapes[:, : self.boundary.size] += self.basis_mid @ mid - mu * self.basis_rest
+        return shapes
 
 
 def condense(system: System, *, below_hz: float) -> Condensed:

@@ -45,6 +45,8 @@ class UpdateSettings:
     modes: tuple[int, ...] = (1, 2, 3, 4, 5)
     damping_of: str | tuple[str, ...] = "fore_aft"
     model_errors: tuple[ModelError, ...] = ()
+    mac_std: float | None = None
+    """Standard deviation of 1 − MAC; None leaves mode shapes out of the fit."""
     dashpots: tuple[str, ...] = ()
     """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``, at the mean wind speed."""
     rotor: str | None = None

@@ -120,6 +120,7 @@ class UpdateSchema(Schema):
     modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
     damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
     model_error: list[ModelErrorSchema] = []
+    mac_std: Positive | None = None
     dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
     rotor: str | None = None
     shaft: Literal["locked", "free"] = "locked"
@@ -256,6 +257,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         modes=tuple(u.modes),
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
+        mac_std=u.mac_std,
         dashpots=tuple(dict.fromkeys(u.dashpots)),
         rotor=None if u.rotor is None else _beside(u.rotor, folder),
         shaft=u.shaft,

@@ -28,6 +28,8 @@ from jackettwin.updating import (
     update,
 )
 from jackettwin.updating.extras import Extras
+from jackettwin.updating.model import SupportModel
+from jackettwin.updating.shapes import ShapeTarget
 
 _PAIRED_MODES = 12
 """Modes of the model that measured modes may be paired with."""
@@ -79,7 +81,7 @@ def run_twin(
     updates = []
     for law in laws or config.update.laws:
         step(f"update {law}")
-        updates.append(_update(config, assembly, law, states, priors, extras, heads, shown))
+        updates.append(_update(config, assembly, law, states, priors, extras, heads, shown, found))
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -114,6 +116,7 @@ def _update(
     extras: Extras,
     heads: Support | None,
     modes: tuple[int, ...],
+    found: Measured | None,
 ) -> Update:
     chosen, s = family(law), config.update
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
@@ -130,7 +133,7 @@ def _update(
             heads=heads,
             head_priors=not any(r.relative for r, _ in states.values()),
         )
-        problem = joint(model, states)
+        problem = joint(model, states, shapes=_shapes(config, model, found, states))
     except InputError as error:
         raise error.at(file=config.path, field="update" if s.bounds or s.priors else None) from None
     return update(
@@ -151,6 +154,32 @@ def _heads(config: TwinConfig) -> Support | None:
     with located(file=config.path, field="support.stiffness"):
         source = None if config.heads == "own" else config.heads
         return read_support(source, config.structure, folder=config.path.parent)
+
+
+def _shapes(
+    config: TwinConfig, model: SupportModel, found: Measured | None, states: States
+) -> tuple[ShapeTarget, ...]:
+    """Return the shape of each fitted mode where it is most like the model's."""
+    first, _ = next(iter(states.values()))
+    if config.update.mac_std is None or found is None or first.relative:
+        return ()
+    by_channel = {sensor.channel: sensor for sensor in found.sensors}
+    channels = {
+        id(mode): seen.identification.channels
+        for seen in found.observations
+        for mode in seen.identification.modes
+    }
+    shapes = []
+    for mode in first.modes:
+        best = max(found.sightings[mode], key=lambda seen: seen.mac).estimate
+        places = tuple(by_channel[c.name] for c in channels[id(best)] if c.name in by_channel)
+        if len(places) == best.mode_shape.size:
+            shapes.append(
+                ShapeTarget.seen(
+                    model, mode, best.frequency_hz, places, best.mode_shape, config.update.mac_std
+                )
+            )
+    return tuple(shapes)
 
 
 def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:

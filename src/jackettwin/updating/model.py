@@ -126,6 +126,7 @@ class SupportModel:
         *,
         near: NumberedModes | None = None,
         slopes: bool = True,
+        shape_slopes: bool = False,
     ) -> NumberedModes:
         """Return numbered modes at many parameter vectors (n_sets, n_parameters), with slopes or without.
 
@@ -143,7 +144,8 @@ class SupportModel:
                 remedy="build the support model with a higher highest_mode",
             )
         points = self.points(theta)
-        return numbered_poles(self.condensed, points if slopes else points.plain(), modes, near=near)
+        points = points if slopes else points.plain()
+        return numbered_poles(self.condensed, points, modes, near=near, shape_slopes=shape_slopes)
 
     def predict(
         self, theta: FloatArray, modes: tuple[int, ...], *, near: Prediction | None = None

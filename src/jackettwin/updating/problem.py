@@ -13,10 +13,12 @@ from jackettwin.response.numbered import NumberedModes, Status
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior
+from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
 
 NEVER = -1e30
 """Log-likelihood where a target mode does not exist."""
@@ -35,12 +37,40 @@ class State:
     ----------
     columns : (n_model,) which of the problem's parameters are the model's in this state
     factors : (n_model,) what they are multiplied by: a rotor's dashpot grows with the wind
+    shapes : tuple of ShapeTarget
+        Of modes that the residuals hold, too.
     """
 
     name: str
     residuals: Residuals
     columns: IntArray
     factors: FloatArray
+    shapes: tuple[ShapeTarget, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """What each residual is of: frequencies and damping ratios, then shapes."""
+        return [*self.residuals.names, *(f"MAC{shape.mode}" for shape in self.shapes)]
+
+    @property
+    def log_normalisation(self) -> float:
+        """−log of the density of zero residuals."""
+        return self.residuals.log_normalisation + sum(shape.log_normalisation for shape in self.shapes)
+
+    def values(self, modes: NumberedModes, known: BoolArray) -> FloatArray:
+        """Return the residuals (n_known, n_data) of the parameter sets whose modes are known."""
+        of = self.residuals.modes.index
+        columns = [shape.values(modes.shapes[known, of(shape.mode)])[:, None] for shape in self.shapes]
+        return np.concatenate([self.residuals.values(modes.poles[known]), *columns], axis=1)
+
+    def evaluate(self, modes: NumberedModes) -> tuple[FloatArray, FloatArray]:
+        """Return the residuals (n_data,) of the first parameter set and their Jacobian."""
+        values, rows = self.residuals.evaluate(modes.poles[0], modes.slopes[0])
+        for shape in self.shapes:
+            i = self.residuals.modes.index(shape.mode)
+            value, row = shape.evaluate(modes.shapes[0, i], modes.shape_slopes[0, i])
+            values, rows = np.append(values, value), np.vstack([rows, row])
+        return values, rows
 
 
 @dataclass(frozen=True)
@@ -87,16 +117,14 @@ class Problem:
     @property
     def n_data(self) -> int:
         """Number of data residuals: they come before the priors'."""
-        return sum(state.residuals.count for state in self.states)
+        return sum(len(state.names) for state in self.states)
 
     @property
     def data_names(self) -> list[str]:
         """What each residual is of: ``f1``, ``ζ4``, with the state's name if there are several."""
         several = len(self.states) > 1
         return [
-            f"{name} ({state.name})" if several else name
-            for state in self.states
-            for name in state.residuals.names
+            f"{name} ({state.name})" if several else name for state in self.states for name in state.names
         ]
 
     def vectors(self, z: FloatArray, state: State) -> FloatArray:
@@ -111,13 +139,11 @@ class Problem:
         values, rows = [], []
         found = self._modes(z[None], near, slopes=True)
         for state, modes in zip(self.states, found, strict=True):
-            r = state.residuals
-            jacobian = np.zeros((r.count, z.size))
-            if np.isnan(modes.poles).any():
-                values.append(np.full(r.count, _LOST))
-            else:
-                value, jacobian[:, state.columns] = r.evaluate(modes.poles[0], modes.slopes[0])
-                values.append(value)
+            jacobian = np.zeros((len(state.names), z.size))
+            value = np.full(len(state.names), _LOST)
+            if not np.isnan(modes.poles).any():
+                value, jacobian[:, state.columns] = state.evaluate(modes)
+            values.append(value)
             rows.append(jacobian)
         if not self.relative:
             value, jacobian = self.prior.rows(z)
@@ -136,9 +162,9 @@ class Problem:
         cost = np.zeros(len(z))
         for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
             known = np.asarray(~np.isnan(modes.poles).any(axis=1))
-            r = state.residuals.values(modes.poles[known])
+            r = state.values(modes, known)
             cost[known] += (r * r).sum(axis=1)
-            cost[~known] += state.residuals.count * _LOST**2
+            cost[~known] += len(state.names) * _LOST**2
         if not self.relative:
             cost += [float(r @ r) for r, _ in map(self.prior.rows, z)]
         return cost
@@ -148,8 +174,8 @@ class Problem:
         log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)
         for state, modes in zip(self.states, found, strict=True):
             known = np.asarray(~np.isnan(modes.poles).any(axis=1))
-            r = state.residuals.values(modes.poles[known])
-            log_l[known] += -0.5 * (r * r).sum(axis=1) - state.residuals.log_normalisation
+            r = state.values(modes, known)
+            log_l[known] += -0.5 * (r * r).sum(axis=1) - state.log_normalisation
             log_l[~known] = NEVER
         return log_l, found
 
@@ -165,7 +191,11 @@ class Problem:
             if start is None and found and set(modes) <= set(self.states[0].residuals.modes):
                 start = _some(found[0], [self.states[0].residuals.modes.index(m) for m in modes])
             vectors = self.vectors(z, state)
-            found.append(self.model.predict_many(vectors, modes, near=start, slopes=slopes))
+            found.append(
+                self.model.predict_many(
+                    vectors, modes, near=start, slopes=slopes, shape_slopes=slopes and bool(state.shapes)
+                )
+            )
         return tuple(found)
 
 
@@ -194,6 +224,7 @@ def joint(
     states: Mapping[str, tuple[Residuals, Mapping[str, float]]],
     *,
     per_state: tuple[str, ...] = (),
+    shapes: tuple[ShapeTarget, ...] = (),
 ) -> Problem:
     """Return the problem of several operating states that share their parameters.
 
@@ -203,6 +234,8 @@ def joint(
         Factors by parameter name: what a shared parameter is multiplied by in this state.
     per_state : tuple of str
         Parameters with a value of their own in each state, named ``parameter@state``.
+    shapes : tuple of ShapeTarget
+        Measured shapes, in the first state; its residuals hold their modes, too.
 
     Raises
     ------
@@ -223,8 +256,9 @@ def joint(
             residuals,
             np.array([place.get(name, place.get(f"{name}@{state}", -1)) for name in names], dtype=np.intp),
             np.array([factors.get(name, 1.0) for name in names]),
+            () if i else shapes,
         )
-        for state, (residuals, factors) in states.items()
+        for i, (state, (residuals, factors)) in enumerate(states.items())
     )
     problem = Problem(model, built, parameters, BoxPrior.of(parameters))
     if problem.relative and any(p.median is not None for p in parameters):

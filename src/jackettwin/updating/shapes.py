@@ -1,0 +1,81 @@
+r"""Mode shapes as data: one minus the MAC at the sensors, over its standard deviation.
+
+.. math:: r = \frac{1}{σ}\left(1 - \frac{|m^H y|^2}{(m^H m)(y^H y)}\right), \quad y = T x
+
+with the measured shape m, the model's coordinates x and T their motion at the sensors. The record has been
+turned to rotor axes before, so that a yawed nacelle does not spoil m.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log, pi, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.updating.model import SupportModel
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class ShapeTarget:
+    """A measured mode shape.
+
+    Attributes
+    ----------
+    mode : int
+    at_sensors : (n_channels, n) motion of the sensors for each coordinate of the condensed model, at the
+        measured frequency
+    shape : (n_channels,) measured
+    std : float
+        Of 1 − MAC: noise at the sensors and what the model's shapes lack.
+    """
+
+    mode: int
+    at_sensors: ComplexArray
+    shape: ComplexArray
+    std: float
+
+    @classmethod
+    def seen(
+        cls,
+        model: SupportModel,
+        mode: int,
+        frequency_hz: float,
+        sensors: tuple[Sensor, ...],
+        shape: ComplexArray,
+        std: float,
+    ) -> ShapeTarget:
+        """Return the shape that sensors of a model's structure measured."""
+        expansion = model.condensed.expansion(2j * pi * frequency_hz)
+        return cls(mode, np.asarray(observation_matrix(model.assembly, sensors) @ expansion), shape, std)
+
+    @property
+    def log_normalisation(self) -> float:
+        """−log of the normal density at zero."""
+        return log(sqrt(2.0 * pi) * self.std)
+
+    def values(self, x: ComplexArray) -> FloatArray:
+        """Return the residuals (n_sets,) of shapes x (n_sets, n)."""
+        return self._parts(x)[0]
+
+    def evaluate(self, x: ComplexArray, slopes: ComplexArray) -> tuple[float, FloatArray]:
+        """Return the residual of one shape x (n,) and its derivatives from dx/dz (n_z, n)."""
+        value, y, overlap, size = self._parts(x[None])
+        dy = slopes @ self.at_sensors.T
+        d_overlap = 2.0 * (np.conj(overlap[0]) * (dy @ self.shape.conj())).real
+        d_size = 2.0 * (dy @ y[0].conj()).real
+        mac = 1.0 - self.std * value[0]
+        norm = float(np.vdot(self.shape, self.shape).real) * size[0]
+        return float(value[0]), -(d_overlap / norm - mac * d_size / size[0]) / self.std
+
+    def _parts(self, x: ComplexArray) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
+        y = np.asarray(x @ self.at_sensors.T)
+        overlap = y @ self.shape.conj()
+        size = np.einsum("ki,ki->k", y.conj(), y).real
+        mac = np.abs(overlap) ** 2 / (size * np.vdot(self.shape, self.shape).real)
+        return (1.0 - mac) / self.std, y, overlap, size

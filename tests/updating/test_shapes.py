@@ -1,0 +1,78 @@
+"""Mode shapes as data: the MAC of the full model, its gradient, and what it adds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import mac
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, support_model
+from jackettwin.updating.shapes import ShapeTarget
+
+TRUTH, MODES = np.array([6e8, 0.1]), (1, 2, 4)
+SENSORS = tuple(
+    Sensor(f"{height}{axis}", direction, height_m=height)
+    for height in (144.0, 77.0, 41.0)
+    for axis, direction in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
+)
+
+
+@pytest.fixture(scope="module")
+def model(jacket15: Assembly) -> SupportModel:
+    return support_model(
+        jacket15, family=family("maxwell-3"), rayleigh=Rayleigh.minimum(0.0055, 0.1832), highest_mode=5
+    )
+
+
+@pytest.fixture(scope="module")
+def problem(model: SupportModel) -> Problem:
+    """Frequencies, and the shapes of the full model at the truth."""
+    exact = model.exact_modes(TRUTH, MODES)
+    H = observation_matrix(model.assembly, SENSORS)
+    shapes = tuple(
+        ShapeTarget.seen(model, mode, f, SENSORS, H @ exact.shapes[:, i], 0.01)
+        for i, (mode, f) in enumerate(zip(MODES, exact.frequency_hz, strict=True))
+    )
+    targets = tuple(Target(m, f, 0.01 * f) for m, f in zip(MODES, exact.frequency_hz, strict=True))
+    return joint(model, {"": (Residuals(targets, relative=False), {})}, shapes=shapes)
+
+
+def test_at_the_truth_every_mac_is_one(problem: Problem) -> None:
+    r, _, _ = problem.evaluate(np.log(TRUTH), None)
+    assert problem.data_names == ["f1", "f2", "f4", "MAC1", "MAC2", "MAC4"]
+    np.testing.assert_allclose(r[:3], 0.0, atol=1e-6)
+    # 1 − MAC is 1e-6 at the measured frequency instead of the complex pole, over a deviation of 0.01
+    np.testing.assert_allclose(r[3:], 0.0, atol=1e-3)
+
+
+def test_the_residual_is_the_mac_of_the_full_model(problem: Problem, model: SupportModel) -> None:
+    theta = np.array([5e8, 0.2])
+    exact = model.exact_modes(theta, MODES)
+    H = observation_matrix(model.assembly, SENSORS)
+    r, _, _ = problem.evaluate(np.log(theta), None)
+    for i, shape in enumerate(problem.states[0].shapes):
+        expected = (1.0 - float(mac(shape.shape, H @ exact.shapes[:, i]))) / shape.std
+        assert r[3 + i] == pytest.approx(expected, abs=0.02)  # 2e-4 of the MAC
+
+
+def test_gradients_are_differences(problem: Problem) -> None:
+    z, h = np.log([2e8, 0.3]), 1e-4
+    _, J, near = problem.evaluate(z, None)
+    for j in range(2):
+        step = h * (np.arange(2) == j)
+        up, down = (problem.evaluate(z + s, near)[0] for s in (step, -step))
+        # second order in h
+        np.testing.assert_allclose(
+            J[:, j], (up - down) / (2 * h), rtol=1e-5, atol=1e-5 * np.abs(J[:, j]).max()
+        )
+
+
+def test_shapes_count_in_the_likelihood(problem: Problem) -> None:
+    z = np.log([[2e8, 0.3]])
+    without = replace(problem, states=(replace(problem.states[0], shapes=()),))
+    r = problem.evaluate(z[0], None)[0][3:]
+    normalisation = sum(shape.log_normalisation for shape in problem.states[0].shapes)
+    difference = problem.log_likelihood(z, None)[0] - without.log_likelihood(z, None)[0]
+    assert difference[0] == pytest.approx(-0.5 * float(r @ r) - normalisation)
