@@ -216,3 +216,33 @@ def test_loads_of_both_add(scenario_file) -> None:
 def test_calm_loads_nothing(scenario_file) -> None:
     with pytest.raises(InputError, match="nothing loads"):
         resultants(read_scenario(scenario_file()))
+
+
+def test_a_yawing_nacelle_turns_its_sensors(scenario_file) -> None:
+    """Fore-aft on the nacelle is x cos ψ + y sin ψ of the tower top at each instant; the yaw is recorded."""
+    place = {"node": "tower_top", "quantity": "displacement"}
+    s = read_scenario(
+        scenario_file(
+            **PILES,
+            wind={**WIND, "yaw_path": [[0.0, -20.0], [30.0, 40.0]]},
+            sensors=[
+                {"channel": "x", "direction": [1, 0, 0], **place},
+                {"channel": "y", "direction": [0, 1, 0], **place},
+                {"channel": "fore_aft", "direction": [2, 0, 0], "frame": "nacelle", **place},
+                {"channel": "side", "direction": [0, 1, 0], "frame": "nacelle", **place},
+            ],
+        )
+    )
+    record = simulate(s).record
+    x, y, fore_aft, side = record.data[:4]
+    psi = record.data[record.channel_names.index("nacelle_yaw")]
+    # 0 to 30 s from −20° to 40°, then it stays
+    np.testing.assert_allclose(psi[[0, 300, 600, -1]], np.radians([-20.0, 10.0, 40.0, 40.0]), atol=1e-9)
+    np.testing.assert_allclose(fore_aft, x * np.cos(psi) + y * np.sin(psi), atol=1e-12)
+    np.testing.assert_allclose(side, y * np.cos(psi) - x * np.sin(psi), atol=1e-12)
+    assert "axes" not in record.metadata
+
+
+def test_times_of_a_yaw_path_grow(scenario_file) -> None:
+    with pytest.raises(InputError, match="times must grow"):
+        read_scenario(scenario_file(**PILES, wind={**WIND, "yaw_path": [[5.0, 0.0], [5.0, 1.0]]}))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ from jackettwin.simulate.schema import (
     TimeSchema,
     WaterSchema,
     WavesSchema,
+    WindSchema,
 )
 from jackettwin.structure import Structure
 
@@ -101,7 +103,25 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
     turbulence = 0.0 if w.turbulence == "none" else w.turbulence
     with located(field="wind"):
         wind = Wind(w.speed_m_s, top + turbine.rotor.hub_height, turbulence, w.shear)
-    return Air(wind, w.seed, radians(w.yaw_deg), w.tower_drag, w.coherence, w.piece_m)
+    return Air(
+        wind=wind,
+        seed=w.seed,
+        yaw=radians(w.yaw_deg),
+        yaw_path=_yaw_path(w),
+        tower_drag=w.tower_drag,
+        coherent=w.coherence,
+        piece_m=w.piece_m,
+    )
+
+
+def _yaw_path(w: WindSchema) -> tuple[tuple[float, float], ...]:
+    path = w.yaw_path or []
+    for (before, _), (after, _) in pairwise(path):
+        if after <= before:
+            raise InputError(
+                "times must grow", field="wind.yaw_path", value=[t for t, _ in path], remedy="sort them"
+            )
+    return tuple((t, radians(yaw)) for t, yaw in path)
 
 
 def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:

@@ -20,7 +20,11 @@ from jackettwin.version import __version__
 FloatArray = npt.NDArray[np.float64]
 
 _UNITS = {"acceleration": "m/s^2", "velocity": "m/s", "displacement": "m"}
-_SIGNALS = {"wind_hub_x": ("wind speed", "m/s"), "wave_elevation": ("wave elevation", "m")}
+_SIGNALS = {
+    "wind_hub_x": ("wind speed", "m/s"),
+    "wave_elevation": ("wave elevation", "m"),
+    "nacelle_yaw": ("yaw", "rad"),
+}
 _START = datetime(2025, 1, 1, tzinfo=UTC)
 """Simulated records need a start; it means nothing."""
 
@@ -71,6 +75,7 @@ def simulate(scenario: Scenario) -> Simulation:
             "source": f"jackettwin {__version__} simulate",
             "scenario": scenario.name,
             "true_support": scenario.asset.support_text,
+            **_axes(scenario.instruments),
             "true_modes": [
                 {
                     "label": m.label,
@@ -84,6 +89,11 @@ def simulate(scenario: Scenario) -> Simulation:
         name=scenario.name,
     )
     return Simulation(record, scenario.clock.total_s, perf_counter() - start)
+
+
+def _axes(instruments: tuple[Instrument, ...]) -> dict[str, str]:
+    """Return that a record is in the rotor's axes already, if all its sensors are on the nacelle."""
+    return {"axes": "rotor"} if all(one.on_nacelle for one in instruments) else {}
 
 
 def conditions(scenario: Scenario) -> dict[str, Any]:
@@ -131,4 +141,7 @@ def _signals(motion: Motion, scenario: Scenario, n_samples: int) -> dict[str, Fl
     taken = {instrument.sensor.channel for instrument in scenario.instruments}
     t = clock.discard_s + np.arange(n_samples) * clock.step_s
     known = np.arange(motion.states.shape[0]) * motion.step_s
-    return {name: np.interp(t, known, values) for name, values in motion.signals.items() if name not in taken}
+    signals = {name: np.interp(t, known, values) for name, values in motion.signals.items()}
+    if scenario.air is not None and scenario.air.yaw_path:
+        signals["nacelle_yaw"] = scenario.air.heading(np.arange(n_samples, dtype=np.float64) * clock.step_s)
+    return {name: values for name, values in signals.items() if name not in taken}

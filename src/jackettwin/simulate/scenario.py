@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
+
 from jackettwin.loads.bem import Control
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients
@@ -19,6 +22,8 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.soil.foundation import Foundation
 from jackettwin.soil.support import Support
 from jackettwin.structure import Rayleigh, Structure
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -72,11 +77,21 @@ class Air:
     wind: Wind
     seed: int = 0
     yaw: float = 0.0
+    """Heading at which body and rotor of the nacelle act."""
+    yaw_path: tuple[tuple[float, float], ...] = ()
+    """Time in the record [s] and heading [rad] that the nacelle's sensors follow; straight in between."""
     tower_drag: float = 0.65
     coherent: Coherent = "all"
     """Which components of turbulence are coherent across rotor and tower."""
     piece_m: float = PIECE_M
     """Longest piece of a standing blade or of the tower with a wind of its own."""
+
+    def heading(self, t: FloatArray) -> FloatArray:
+        """Return the nacelle's heading [rad] at times ``t`` [s] in the record."""
+        if not self.yaw_path:
+            return np.full(t.shape, self.yaw)
+        at, yaw = np.transpose(self.yaw_path)
+        return np.asarray(np.interp(t, at, yaw), dtype=np.float64)
 
 
 @dataclass(frozen=True)

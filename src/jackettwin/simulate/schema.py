@@ -125,6 +125,7 @@ class WindSchema(Schema):
     shear: Annotated[float, Field(ge=0.0, le=1.0)] = 0.14
     seed: Seed = 0
     yaw_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 0.0
+    yaw_path: list[tuple[float, float]] | None = Field(default=None, min_length=2)
     tower_drag: NotNegative = 0.65
     coherence: Literal["all", "u"] = "all"
     piece_m: Annotated[float, Field(ge=1.0, le=200.0)] = PIECE_M

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.sensors import observation_matrix
 from jackettwin.response.time import first_order_hold
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import Instrument, Scenario
@@ -18,10 +18,34 @@ FloatArray = npt.NDArray[np.float64]
 def readings(motion: Motion, scenario: Scenario) -> FloatArray:
     """Return what the instruments read (n_instruments, n_samples), without flaws, after what is discarded.
 
-    Between load steps the motion is exact for the forces that were straight there.
+    Between load steps the motion is exact for the forces that were straight there. Instruments on the nacelle
+    point where it does at each instant.
     """
+    air, instruments = scenario.air, scenario.instruments
+    turning = [i for i, one in enumerate(instruments) if one.on_nacelle and air is not None]
+    along = [_along(instruments[i], axis) for i in turning for axis in np.eye(3)]
+    read = _read(motion, scenario, (*instruments, *along))
+    found = read[: len(instruments)]
+    if air is not None and turning:
+        global_axes = read[len(instruments) :].reshape(len(turning), 3, -1)
+        yaw = air.heading(np.arange(read.shape[1], dtype=np.float64) * scenario.clock.step_s)
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        for i, (x, y, z) in zip(turning, global_axes, strict=True):
+            d = np.asarray(instruments[i].sensor.direction) / np.linalg.norm(instruments[i].sensor.direction)
+            found[i] = (cos * d[0] - sin * d[1]) * x + (sin * d[0] + cos * d[1]) * y + d[2] * z
+    return found
+
+
+def _along(instrument: Instrument, axis: FloatArray) -> Instrument:
+    """Return the instrument along a global axis."""
+    x, y, z = (float(v) for v in axis)
+    return replace(instrument, sensor=replace(instrument.sensor, direction=(x, y, z)))
+
+
+def _read(motion: Motion, scenario: Scenario, instruments: tuple[Instrument, ...]) -> FloatArray:
+    """Return the readings of instruments whose directions are in global axes."""
     clock, space = scenario.clock, motion.space
-    C, D = _observation(motion, scenario)
+    C, D = _observation(motion, instruments)
     per_load = round(clock.load_step_s / clock.step_s)
     x, f0, f1 = motion.states[:-1], motion.force[:-1], motion.force[1:]
     out = np.empty((C.shape[0], x.shape[0], per_load))
@@ -37,13 +61,13 @@ def readings(motion: Motion, scenario: Scenario) -> FloatArray:
     return out.reshape(C.shape[0], -1)[:, first:]
 
 
-def _observation(motion: Motion, scenario: Scenario) -> tuple[FloatArray, FloatArray]:
+def _observation(motion: Motion, instruments: tuple[Instrument, ...]) -> tuple[FloatArray, FloatArray]:
     """Return C, D with readings = C x + D f."""
     space, n = motion.space, motion.space.n
-    sensors = tuple(_in_global_axes(i, scenario) for i in scenario.instruments)
+    sensors = tuple(instrument.sensor for instrument in instruments)
     rows = np.asarray(observation_matrix(motion.model.assembly, sensors) @ motion.model.reduced.basis)
     C, D = np.zeros((rows.shape[0], space.A.shape[0])), np.zeros((rows.shape[0], n))
-    for k, (row, instrument) in enumerate(zip(rows, scenario.instruments, strict=True)):
+    for k, (row, instrument) in enumerate(zip(rows, instruments, strict=True)):
         if instrument.quantity == "displacement":
             C[k, :n] = row
         elif instrument.quantity == "velocity":
@@ -51,15 +75,6 @@ def _observation(motion: Motion, scenario: Scenario) -> tuple[FloatArray, FloatA
         else:
             C[k], D[k] = row @ space.A[n : 2 * n], row @ space.B[n : 2 * n]
     return C, D
-
-
-def _in_global_axes(instrument: Instrument, scenario: Scenario) -> Sensor:
-    """Return the sensor with its direction turned with the nacelle, if it sits there."""
-    if not instrument.on_nacelle or scenario.air is None:
-        return instrument.sensor
-    cos, sin = np.cos(scenario.air.yaw), np.sin(scenario.air.yaw)
-    x, y, z = instrument.sensor.direction
-    return replace(instrument.sensor, direction=(cos * x - sin * y, sin * x + cos * y, z))
 
 
 def flawed(clean: FloatArray, instruments: tuple[Instrument, ...], *, step_s: float, seed: int) -> FloatArray:
