@@ -73,7 +73,7 @@ def progress(total: int, title: str) -> Iterator[Callable[[str], None]]:
         TextColumn("{task.completed}/{task.total}"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=messages, transient=not messages.is_terminal) as bar:
+    with Progress(*columns, console=messages, disable=not messages.is_terminal) as bar:
         task = bar.add_task(title, total=total)
         started = False
 

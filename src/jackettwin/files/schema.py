@@ -21,6 +21,15 @@ class Schema(BaseModel):
 S = TypeVar("S", bound=Schema)
 
 _BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
+_PLAIN = {
+    **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), ("not a whole number", "write e.g. 4")),
+    **dict.fromkeys(("float_parsing", "float_type"), ("not a number", "write it without a unit, e.g. 1.5e9")),
+    "finite_number": ("not a finite number", "give its value, or leave the key out"),
+    **dict.fromkeys(("bool_parsing", "bool_type"), ("not a yes or no", "write true or false")),
+    **dict.fromkeys(("list_type", "tuple_type"), ("not a list", "write [a, b, …]")),
+    **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), ("not a mapping", "write keys")),
+}
+"""What pydantic calls a mistake → what to say of it, and what to do."""
 
 
 def validate(schema: type[S], data: Any, *, file: Path | str | None = None, field: str | None = None) -> S:
@@ -64,9 +73,8 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
         return inner.at(field=field)
     bounds = [f"{symbol} {context[key]}" for key, symbol in _BOUNDS.items() if key in context]
     allowed = bounds[0] if bounds else context.get("expected")
-    return InputError(
-        error["msg"][0].lower() + error["msg"][1:], field=field, value=error["input"], allowed=allowed
-    )
+    problem, remedy = _PLAIN.get(kind, (error["msg"][0].lower() + error["msg"][1:], None))
+    return InputError(problem, field=field, value=error["input"], allowed=allowed, remedy=remedy)
 
 
 def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:

@@ -96,7 +96,8 @@ def _order(normal: _Normal, n: int, n_references: int, undo: float) -> OrderPole
     r = normal.r[: n + 1, : n + 1]
     s = normal.s[:, : n + 1, : n + 1].reshape(len(normal.s), n + 1, size)
     t = normal.t[: n + 1, :, : n + 1].reshape(size, size)
-    solved = linalg.solve(r, s.transpose(1, 0, 2).reshape(n + 1, -1), assume_a="pos", check_finite=False)
+    # powers of a narrow band are nearly dependent at high order
+    solved = linalg.lstsq(r, s.transpose(1, 0, 2).reshape(n + 1, -1), check_finite=False)[0]
     eliminated = solved.reshape(n + 1, len(s), size).transpose(1, 0, 2)
     m = t - np.einsum("oai,oaj->ij", s, eliminated)
     free = n * n_references
