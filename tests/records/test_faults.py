@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from jackettwin.records import faults
 
@@ -87,3 +88,13 @@ def test_what_does_not_vary_is_constant_and_disturbs_no_detector(y: np.ndarray) 
 
 def test_tiny_signals_on_a_large_offset_are_not_constant() -> None:
     assert not faults.is_constant(1e3 + 1e-9 * np.sin(np.arange(100.0)))
+
+
+def test_crests_of_a_smooth_response_are_no_spikes(rng: np.random.Generator) -> None:
+    """A tower mode at 20 Hz without noise: flanks follow the running median, its crests do not."""
+    pole = np.exp((-0.01 + 1j) * 2 * np.pi * 1.3 / 20.0)
+    response = signal.lfilter([1.0], [1.0, -2 * pole.real, abs(pole) ** 2], rng.normal(size=24_000))
+    smooth = signal.lfilter(*signal.butter(4, 2.0, fs=20.0), response)
+    assert not faults.spikes(smooth).any()
+    smooth[[3000, 7001, 7002]] += 10.0 * smooth.std()
+    assert np.flatnonzero(faults.spikes(smooth)).tolist() == [3000, 7001, 7002]

@@ -21,6 +21,8 @@ SPIKE_BLOCK = 256
 """Samples over which the usual departure is taken, beside the whole channel."""
 SPIKE_SIGMAS = 8.0
 """Robust standard deviations from the local median; 1e-15 for Gaussian noise."""
+CREST_SIGMAS = 4.0
+"""Robust standard deviations of the window itself: a smooth crest, which the median cuts, reaches 0.8."""
 RAIL_RATIO = 5.0
 """Samples at a rail per sample at the levels next to it; a pure sine reaches 3."""
 LEAST_AT_RAIL = 5
@@ -53,8 +55,9 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     """Mark samples that leave their neighbours for less than five samples and by far.
 
     Far is ``SPIKE_SIGMAS`` robust standard deviations of the departures from the running median, of
-    the whole channel and of the surroundings (a gust is no spike), and one robust standard deviation
-    of the signal: smaller ones do no harm. ``hold`` is the number of samples each value is repeated.
+    the whole channel and of the surroundings (a gust is no spike), ``CREST_SIGMAS`` of the window (nor is
+    the crest of a smooth wave, whose flanks the median follows), and one robust standard deviation of the
+    signal: smaller ones do no harm. ``hold`` is the number of samples each value is repeated.
     """
     finite = np.isfinite(y)
     if finite.sum() < 2 * SPIKE_WINDOW or is_constant(y):
@@ -65,8 +68,18 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     usual = np.maximum(_surroundings(departure), np.median(departure[finite]))
     quartiles = np.percentile(y[finite], [25.0, 75.0])
     least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
-    far: BoolArray = departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least)
-    return finite & far
+    far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least))
+    at = np.flatnonzero(far)
+    far[at] = departure[at] > CREST_SIGMAS * 1.4826 * _spread_around(x, at, hold)
+    return far
+
+
+def _spread_around(x: FloatArray, at: npt.NDArray[np.int64], hold: int) -> FloatArray:
+    """Return the median departure from the median within the window around some samples."""
+    reach = hold * np.arange(-(SPIKE_WINDOW // 2), SPIKE_WINDOW // 2 + 1)
+    window = x[np.clip(at[:, None] + reach, 0, len(x) - 1)]
+    out: FloatArray = np.median(np.abs(window - np.median(window, axis=1, keepdims=True)), axis=1)
+    return out
 
 
 def _surroundings(departure: FloatArray) -> FloatArray:
