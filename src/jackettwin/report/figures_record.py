@@ -84,9 +84,15 @@ def envelope(y: FloatArray, sample_rate_hz: float) -> tuple[FloatArray, FloatArr
 
 
 def spectra(
-    spectrum: Spectrum, channels: Sequence[Channel], modes: Sequence[tuple[str, ModalEstimate]]
+    spectrum: Spectrum,
+    channels: Sequence[Channel],
+    modes: Sequence[tuple[str, ModalEstimate]],
+    fit: Spectrum | None = None,
 ) -> go.Figure:
-    """Draw power spectral densities above, singular values below; ``modes`` are (label, estimate)."""
+    """Draw power spectral densities above, singular values below; ``modes`` are (label, estimate).
+
+    ``fit`` is the spectrum that the modes alone would have; its first two singular values are drawn.
+    """
     figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.07, row_heights=[0.55, 0.45])
     f = spectrum.frequencies_hz
     keep = (f > 0.0) & (f <= _upper(f, modes))
@@ -123,6 +129,8 @@ def spectra(
             hovertemplate="%{x:.4f} Hz<br>%{y:.3g} 1/Hz<extra>singular value " + str(k) + "</extra>",
         )
     limits = (0.0, _upper(f, modes))
+    if fit is not None:
+        _fit(figure, fit)
     _mark(figure, modes, limits)
     figure.update_yaxes(type="log", exponentformat="power", dtick=1)
     figure.update_yaxes(title_text=style.title("PSD", unit), row=1, col=1)
@@ -135,6 +143,22 @@ def spectra(
         margin={"l": 86, "r": 24, "t": 110, "b": 110},
         legend=style.LEGEND_BELOW | {"y": -0.1},
     )
+
+
+def _fit(figure: go.Figure, fit: Spectrum) -> None:
+    for k, values in enumerate(fit.singular_values[:2], start=1):
+        figure.add_scatter(
+            x=fit.frequencies_hz,
+            y=values,
+            mode="lines",
+            row=2,
+            col=1,
+            name="of the modes alone",
+            legendgroup="fit",
+            showlegend=k == 1,
+            line={"width": 2.2 if k == 1 else 1.6, "color": style.rgba(style.ORANGE, 0.85)},
+            hovertemplate="%{x:.4f} Hz<br>%{y:.3g} 1/Hz<extra>modes alone, " + str(k) + "</extra>",
+        )
 
 
 def _upper(f: FloatArray, modes: Sequence[tuple[str, ModalEstimate]]) -> float:

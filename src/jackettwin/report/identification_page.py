@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.identification import Identification
 from jackettwin.identification.comparison import compare_methods
+from jackettwin.identification.spectral_fit import modal_fit
 from jackettwin.records.yaw import knows_yaw
 from jackettwin.report import figures_measured, figures_record, section_records
 from jackettwin.report import tables_records as tables
@@ -63,11 +64,15 @@ def mode_names(seen: Observation) -> tuple[str, ...]:
 def _record(seen: Observation, names: tuple[str, ...]) -> list[Block]:
     found = seen.identification
     modes = list(zip(names, found.modes, strict=True))
-    caption = "Power spectral density of each channel by Welch's method, and singular values; dashed: modes."
+    caption = (
+        "Power spectral density of each channel by Welch's method, and singular values. Orange: those the "
+        "identified modes alone would have under white forces."
+    )
+    fit = modal_fit(seen.record, found)
     return [
         tables.quality_table(seen),
         Plot("time_series", f"{seen.record.name}: every channel.", figures_record.time_series(seen.record)),
-        Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes)),
+        Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes, fit)),
     ]
 
 

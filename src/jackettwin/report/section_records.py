@@ -5,6 +5,7 @@ from __future__ import annotations
 from jackettwin.identification import Identification, fuse
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.convergence import convergence
+from jackettwin.identification.spectral_fit import modal_fit
 from jackettwin.report import figures_identification, figures_likeness, figures_record
 from jackettwin.report import tables_records as tables
 from jackettwin.report.page import Block, Plot
@@ -26,10 +27,13 @@ def the_record(result: TwinResult) -> list[Block]:
         caption = (
             "Power spectral density (PSD) of each channel by Welch's method, and singular values of the "
             "spectral matrix of the channels scaled to unit variance, largest darkest. "
-            "Dashed lines: identified modes."
+            "Orange: the first two that the identified modes alone would have under white forces."
         )
+        fit = modal_fit(result.record, found)
         blocks.insert(0, tables.quality_table(result.observations[0]))
-        blocks.append(Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes)))
+        blocks.append(
+            Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes, fit))
+        )
     return blocks
 
 
