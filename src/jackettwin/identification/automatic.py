@@ -111,17 +111,21 @@ def identify(
     poles = _poles(ready, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
-    tones = find_tones(poles, found, y / scale[:, None], resolved.sample_rate_hz, settings)
+    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings)
     if wanted:
         found = picked_clusters(poles, found, wanted)
     judged = candidates(
-        poles, found, tones, settings, duration_s=record.duration_s, n_orders=len(resolved.orders)
+        poles,
+        found,
+        tones.frequency_hz,
+        settings,
+        duration_s=record.duration_s,
+        n_orders=len(resolved.orders),
     )
     if wanted:
         judged = with_verdicts(wanted, judged)
     say("refinement")
-    left = tuple(tones.values())
-    chosen = chosen_modes(judged, y, scale, ready.channels, left, ready.tones_hz, resolved, settings)
+    chosen = chosen_modes(judged, tones, ready, settings)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number

@@ -16,15 +16,14 @@ from jackettwin.identification.periodogram import DERIVATIVES
 from jackettwin.identification.refinement import Refined, refine
 from jackettwin.identification.resolve import guarded_band_hz
 from jackettwin.identification.selection import beside_tones, long_data_limits, with_covariance
-from jackettwin.identification.steady_tones import without_tones
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
-    from jackettwin.identification.selection import Candidate
+    from jackettwin.identification.prepared import Prepared
+    from jackettwin.identification.selection import Candidate, Tones
     from jackettwin.identification.settings import IdentificationSettings
-    from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -50,24 +49,10 @@ class Choice:
 
 
 def chosen_modes(
-    judged: Sequence[Candidate],
-    y: FloatArray,
-    scale: FloatArray,
-    channels: Sequence[Channel],
-    tones_hz: Collection[float],
-    removed_hz: Collection[float],
-    resolved: ResolvedSettings,
-    settings: IdentificationSettings,
+    judged: Sequence[Candidate], tones: Tones, ready: Prepared, settings: IdentificationSettings
 ) -> Choice:
-    """Refine the candidates and keep those that are modes inside the band.
-
-    Parameters
-    ----------
-    y : (n_channels, n_samples)
-        Channels divided by ``scale``.
-    tones_hz, removed_hz : collection of float
-        Tones still in y, and those that were taken out of it.
-    """
+    """Refine the candidates and keep those that are modes inside the band."""
+    y, scale, resolved = tones.clean, ready.scale, ready.settings
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
     sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
     warnings: tuple[str, ...] = ()
@@ -76,14 +61,15 @@ def chosen_modes(
         if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
             warnings = ("modes not refined: gaps remain in the record",)
         else:
-            clean = without_tones(y, resolved.sample_rate_hz, tones_hz)
-            start = _start([judged[i].mode for i in open_to], sure, scale, channels)
-            fits, warnings = _fits(clean, resolved, start)
+            start = _start([judged[i].mode for i in open_to], sure, ready, tones)
+            fits, warnings = _fits(y, resolved, start)
             for members, fit in fits:
                 for position in np.flatnonzero(members):
                     modes.pop(open_to[position], None)
                 modes |= _numbers(judged, open_to, fit, scale, y.shape[1] / resolved.sample_rate_hz)
-    return _sorted(judged, modes, tones_hz, removed_hz, resolved, settings, warnings)
+    tones_hz = (*tones.frequency_hz.values(), *ready.tones_hz)
+    found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+    return replace(found, rejected=(*found.rejected, *_tones(ready.tones_hz, resolved)))
 
 
 class _Start(TypedDict):
@@ -92,17 +78,17 @@ class _Start(TypedDict):
     shapes: FloatArray
     sure: BoolArray
     derivatives: list[int]
+    avoid_hz: tuple[tuple[float, float], ...]
 
 
-def _start(
-    modes: list[ModalEstimate], sure: BoolArray, scale: FloatArray, channels: Sequence[Channel]
-) -> _Start:
+def _start(modes: list[ModalEstimate], sure: BoolArray, ready: Prepared, tones: Tones) -> _Start:
     return _Start(
         frequency_hz=np.array([m.frequency_hz for m in modes]),
         damping_ratio=np.array([m.damping_ratio for m in modes]),
-        shapes=np.array([m.mode_shape.real for m in modes]) / scale,
+        shapes=np.array([m.mode_shape.real for m in modes]) / ready.scale,
         sure=sure,
-        derivatives=[DERIVATIVES[c.quantity] for c in channels],
+        derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
+        avoid_hz=tones.swept_hz,
     )
 
 
@@ -176,7 +162,6 @@ def _sorted(
     judged: Sequence[Candidate],
     modes: dict[int, ModalEstimate],
     tones_hz: Collection[float],
-    removed_hz: Collection[float],
     resolved: ResolvedSettings,
     settings: IdentificationSettings,
     warnings: tuple[str, ...],
@@ -190,14 +175,14 @@ def _sorted(
     for i, mode in modes.items():
         reason = _late_objection(mode, resolved, settings)
         if reason is None:
-            kept[i] = beside_tones(mode, [*tones_hz, *removed_hz])
+            kept[i] = beside_tones(mode, tones_hz)
         else:
             rejected[i] = Rejected(mode.frequency_hz, mode.damping_ratio, reason)
     order = sorted(kept, key=lambda i: kept[i].frequency_hz)
     return Choice(
         modes=tuple(kept[i] for i in order),
         candidate=tuple(order),
-        rejected=(*(rejected[i] for i in sorted(rejected)), *_tones(removed_hz, resolved)),
+        rejected=tuple(rejected[i] for i in sorted(rejected)),
         warnings=warnings,
     )
 

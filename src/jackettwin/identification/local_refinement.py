@@ -76,6 +76,7 @@ def refine_group(
     shapes: FloatArray,
     sure: BoolArray,
     derivatives: Sequence[int],
+    avoid_hz: Sequence[tuple[float, float]] = (),
 ) -> Refined:
     """Fit one group; parameters as of ``refine``, candidates counted as there.
 
@@ -91,6 +92,7 @@ def refine_group(
         shapes=shapes[among],
         sure=sure[among],
         derivatives=derivatives,
+        avoid_hz=avoid_hz,
         local=True,
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)

@@ -68,6 +68,7 @@ def periodogram(
     *,
     modes: tuple[FloatArray, FloatArray],
     derivatives: Sequence[int],
+    avoid_hz: Sequence[tuple[float, float]] = (),
     dither_share: float = DITHER_SHARE,
 ) -> Periodogram:
     """Return the grouped periodogram of the band, without a taper.
@@ -79,6 +80,8 @@ def periodogram(
     modes : (frequency_hz, damping_ratio)
         Rough modal parameters: lines are kept single where the spectrum bends.
     derivatives : (n_channels,) int
+    avoid_hz : sequence of (low, high)
+        Groups of lines that touch one of these ranges are left out.
     dither_share : float
         Of the local median. A small one keeps spectral matrices regular where a record has little noise; a
         large one hides what is not a peak.
@@ -101,6 +104,11 @@ def periodogram(
     middle = start + (count // 2).astype(int)
     power = np.abs(x) ** 2
     floor = _local_median(power, line)[:, middle].T
+    kept = np.ones(len(start), dtype=bool)
+    end = f[np.append(start[1:], len(f)) - 1]
+    for low, high in avoid_hz:
+        kept &= (end < low) | (f[start] > high)
+    omega, count, density, floor = omega[kept], count[kept], density[kept], floor[kept]
     return Periodogram(omega, count, density, floor, dither_share * floor, duration)
 
 

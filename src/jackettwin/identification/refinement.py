@@ -96,6 +96,7 @@ def refine(
     shapes: FloatArray,
     sure: BoolArray,
     derivatives: Sequence[int],
+    avoid_hz: Sequence[tuple[float, float]] = (),
     local: bool = False,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
@@ -111,6 +112,8 @@ def refine(
         At least one.
     derivatives : (n_channels,) int
         Derivatives in time by which a channel lags acceleration.
+    avoid_hz : sequence of (low, high)
+        Ranges that are left out of the fit.
     local : bool
         Whether the band holds some of the modes only: a background stands for the others, and what lies
         between the peaks counts little.
@@ -121,6 +124,7 @@ def refine(
         band_hz,
         modes=(frequency_hz, damping_ratio),
         derivatives=derivatives,
+        avoid_hz=avoid_hz,
         dither_share=LOCAL_DITHER_SHARE if local else DITHER_SHARE,
     )
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import ModalEstimate, Rejected
-from jackettwin.identification.harmonics import is_tone
+from jackettwin.identification.harmonics import is_tone, swept_hz, without_unsteady_tone
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
+from jackettwin.identification.steady_tones import without_tones
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,6 +28,25 @@ TONE_REACH = 6.0
 """A tone nearer than this many half bandwidths disturbs a mode …"""
 TONE_WIDENING = 2.0
 """… whose standard deviations are multiplied by this."""
+
+
+@dataclass(frozen=True)
+class Tones:
+    """Tones among the poles.
+
+    Attributes
+    ----------
+    frequency_hz : dict
+        By representative pole of the cluster.
+    swept_hz : tuple of (low, high)
+        Ranges that drifting tones passed.
+    clean : (n_channels, n_samples)
+        Samples less the tones.
+    """
+
+    frequency_hz: dict[int, float]
+    swept_hz: tuple[tuple[float, float], ...]
+    clean: FloatArray
 
 
 @dataclass(frozen=True)
@@ -85,16 +105,32 @@ def find_tones(
     poles: Stabilisation,
     found: list[Cluster],
     y: FloatArray,
+    scale: FloatArray,
     sample_rate_hz: float,
     settings: IdentificationSettings,
-) -> dict[int, float]:
-    """Return the frequencies of steady tones among the clusters, by representative pole."""
+) -> Tones:
+    """Return the tones among the clusters.
+
+    A drifting tone leaves several poles: all poles it passed are of it.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Divided by ``scale``.
+    """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
-    return {
-        k: float(poles.frequency_hz[k])
-        for k in likely
-        if is_tone(y, sample_rate_hz, float(poles.frequency_hz[k]), poles.mode_shape[k])
-    }
+    at = {k: (sample_rate_hz, float(poles.frequency_hz[k]), poles.mode_shape[k] / scale) for k in likely}
+    clean, passed = y, []
+    tones = {k for k in likely if is_tone(y, *at[k])}
+    for k in sorted(tones):
+        swept = swept_hz(clean, *at[k])
+        if swept is not None:
+            passed.append(swept)
+            clean = without_unsteady_tone(clean, *at[k])
+        elif is_tone(clean, *at[k]):
+            clean = without_tones(clean, sample_rate_hz, [at[k][1]])
+    tones |= {k for k in likely if any(low < at[k][1] < high for low, high in passed)}
+    return Tones({k: at[k][1] for k in sorted(tones)}, tuple(passed), clean)
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[float]) -> ModalEstimate:

@@ -157,7 +157,11 @@ def _first_tone(spectrum: ComplexArray, tested: set[int]) -> Sinusoid | None:
 
 def _less(y: FloatArray, position: float) -> FloatArray:
     """Return samples less the least-squares sinusoid of a frequency, given in lines."""
-    phase = 2.0 * np.pi * position / y.shape[1] * np.arange(y.shape[1])
+    return less_phase(y, 2.0 * np.pi * position / y.shape[1] * np.arange(y.shape[1]))
+
+
+def less_phase(y: FloatArray, phase: FloatArray) -> FloatArray:
+    """Return samples less the least-squares combination of the cosine and the sine of a phase."""
     basis = np.stack([np.cos(phase), np.sin(phase)])
     out = y.copy()
     for a, valid in enumerate(np.isfinite(y)):
