@@ -54,6 +54,9 @@ LEAST_GAIN = 0.01
 """… or the log-likelihood gains less than this."""
 KEPT_SHARE = 1e-4
 """Share of the added power kept in the Cramér-Rao bound, against rounding."""
+LEAST_SHARE = 1e-12
+"""Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
+across, and the inverse must exist."""
 FIT_BLOCKS = 40
 """Blocks of lines over which the misfit is summed."""
 ZETA_RANGE = (1e-5, 0.5)
@@ -156,7 +159,8 @@ def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray
 
 def _inverse(information: FloatArray) -> FloatArray:
     unit = 1.0 / np.sqrt(np.diag(information))
-    return np.asarray(linalg.inv(information * np.outer(unit, unit)) * np.outer(unit, unit))
+    scaled = information * np.outer(unit, unit) + LEAST_SHARE * np.eye(len(unit))
+    return np.asarray(linalg.inv(scaled) * np.outer(unit, unit))
 
 
 def _information(data: Periodogram, p: Parameters, model: Expected, white: ComplexArray) -> FloatArray:
