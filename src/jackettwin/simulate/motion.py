@@ -28,7 +28,15 @@ from jackettwin.simulate.model import (
     with_aerodynamics,
 )
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import WaterLoads, relative_drag, water_ends, water_loads, water_points
+from jackettwin.simulate.water import (
+    RelativeDrag,
+    WaterLoads,
+    relative_drag,
+    relative_drag_beyond,
+    water_ends,
+    water_loads,
+    water_points,
+)
 from jackettwin.simulate.wind import (
     RotorLoads,
     rotor_loads_in,
@@ -80,6 +88,8 @@ class _Loads:
     damping: FloatArray
     """(6, 6) of the rotor at the tower top that the model knows already."""
     signals: dict[str, FloatArray]
+    relative: RelativeDrag | None = None
+    """Drag on the members' own motion beyond what the model knows."""
 
 
 def simulate_motion(scenario: Scenario) -> Motion:
@@ -139,6 +149,9 @@ def _feedbacks(scenario: Scenario, loads: _Loads) -> list[_Part]:
     if loads.rotor is not None:
         change, n_times = loads.rotor.change(loads.damping), loads.rotor.still.shape[0]
         parts.append(_Part(model.top, lambda k, x: change(k % n_times, model.top @ x[n : 2 * n]), 1))
+    if loads.relative is not None:
+        relative, h = loads.relative, scenario.clock.load_step_s
+        parts.append(_Part(np.eye(n), lambda k, x: relative.change(k * h, x[n : 2 * n]), 1))
     if scenario.asset.foundation is not None:
         feet = CyclicFeet(model, scenario.asset.foundation)
         parts.append(_Part(feet.motion, lambda k, x: feet.force(k, feet.motion @ x[:n]), EVALUATIONS))
@@ -169,6 +182,7 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
     signals: dict[str, FloatArray] = {}
     wave: WaterLoads | None = None
     rotor: RotorLoads | None = None
+    beyond: RelativeDrag | None = None
     known = np.zeros((6, 6))
     if scenario.sea is not None:
         grid = water_points(model.assembly, scenario.sea)
@@ -179,10 +193,13 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
             np.asarray(grid.N.T @ basis),
             duration=scenario.clock.total_s,
             ends=None if ends is None else (ends, np.asarray(ends.N.T @ basis)),
+            keep_motion=scenario.sea.relative_velocity == "full",
         )
         if water is not None:
             if scenario.sea.relative_velocity != "none":
                 drag["water"] += relative_drag(grid, water, basis)
+            if scenario.sea.relative_velocity == "full":
+                beyond = relative_drag_beyond(grid, water, basis, drag["water"])
             if scenario.sea.waves is not None:
                 signals["wave_elevation"] = water.elevation(t)
             if abs(water.series.period_s - scenario.clock.total_s) < 1e-9:
@@ -203,7 +220,7 @@ def _loads(scenario: Scenario, n_steps: int) -> _Loads:
         model = with_aerodynamics(model, aero.mean._replace(damping=known))
     for source, matrix in drag.items():
         model = model.with_forces_of_motion(source, damping=matrix, stiffness=np.zeros_like(matrix))
-    return _Loads(model, repeating, wave, rotor, known, signals)
+    return _Loads(model, repeating, wave, rotor, known, signals, beyond)
 
 
 def _closed(series: FloatArray) -> FloatArray:

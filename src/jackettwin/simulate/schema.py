@@ -106,7 +106,7 @@ class WavesSchema(Schema):
     direction_deg: float = 0.0
     seed: Seed = 0
     stretching: Literal["none", "wheeler"] | None = None
-    relative_velocity: Literal["none", "linearised"] = "linearised"
+    relative_velocity: Literal["none", "linearised", "full"] = "linearised"
 
 
 class CurrentSchema(Schema):

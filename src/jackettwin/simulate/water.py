@@ -123,6 +123,7 @@ def water_loads(
     *,
     duration: float,
     ends: tuple[Ends, FloatArray] | None = None,
+    keep_motion: bool = False,
 ) -> WaterLoads | None:
     """Return loads on ``columns`` (3n, n_columns) of motion of the points; None in still water.
 
@@ -142,6 +143,7 @@ def water_loads(
         period=sea.period_s if regular else duration if waves is not None else 10.0,
         current=sea.current,
         ends=ends,
+        keep_motion=keep_motion,
     )
     return WaterLoads(series, grid, waves)
 
@@ -149,3 +151,56 @@ def water_loads(
 def relative_drag(grid: MorisonPoints, loads: WaterLoads, basis: FloatArray) -> FloatArray:
     """Return Borgman's damping (n, n) of drag on the structure's own motion, for the sea's own spread."""
     return np.asarray(basis.T @ (drag_damping(grid, loads.series.sigma) @ basis))
+
+
+@dataclass(frozen=True)
+class RelativeDrag:
+    """Drag on the velocity of water less that of the members, thesis (2.2), beyond its linear part.
+
+    Attributes
+    ----------
+    across : (n_times, n, 3) the water's velocity across the members, that repeats
+    strength : (n_times, n) ½ρC_D D times the wet length
+    motion : (3n, n_coordinates) velocity across the members from that of the coordinates
+    linear : (n_coordinates, n_coordinates) damping that the model knows already
+    """
+
+    across: FloatArray
+    strength: FloatArray
+    step_s: float
+    motion: FloatArray
+    linear: FloatArray
+
+    def change(self, t: float, velocity: FloatArray) -> FloatArray:
+        """Return F(u − ẋ) − F(u) + C ẋ (n_coordinates,) at a time [s] and velocity of the coordinates."""
+        at = t / self.step_s
+        first = int(at)
+        share, k = at - first, self.across.shape[0]
+        low, high = first % k, (first + 1) % k
+        u = (1.0 - share) * self.across[low] + share * self.across[high]
+        strength = (1.0 - share) * self.strength[low] + share * self.strength[high]
+        v = u - (self.motion @ velocity).reshape(-1, 3)
+        speed, still = (np.sqrt(np.einsum("ni,ni->n", w, w)) for w in (v, u))
+        force = (strength * speed)[:, None] * v - (strength * still)[:, None] * u
+        return np.asarray(force.ravel() @ self.motion + self.linear @ velocity)
+
+
+def relative_drag_beyond(
+    grid: MorisonPoints, loads: WaterLoads, basis: FloatArray, linear: FloatArray
+) -> RelativeDrag:
+    """Return the part of relative drag that a damping matrix (n, n) does not tell.
+
+    ``loads`` must have kept the water's motion.
+    """
+    series, c = loads.series, grid.coefficients
+    assert series.across is not None and series.wet is not None
+    n = grid.weight.size
+    motion = np.asarray(grid.N.T @ basis).reshape(n, 3, -1)
+    per_point = 0.5 * c.density_kg_m3 * c.drag * grid.diameter * grid.weight
+    return RelativeDrag(
+        series.across,
+        series.wet * per_point,
+        series.step_s,
+        np.einsum("nij,njk->nik", grid.normal, motion).reshape(3 * n, -1),
+        linear,
+    )

@@ -1,0 +1,70 @@
+"""Drag on relative velocity in time: against Morison's equation at an instant, and the motion it drives."""
+
+import numpy as np
+
+from jackettwin.loads.morison import point_forces
+from jackettwin.simulate import read_scenario
+from jackettwin.simulate.model import build_model
+from jackettwin.simulate.motion import simulate_motion
+from jackettwin.simulate.water import (
+    relative_drag,
+    relative_drag_beyond,
+    water_loads,
+    water_points,
+    wave_field,
+)
+
+FEET = {"support": "pinned", "damping": {"rayleigh": {"ratio": 0.001, "frequency_hz": 0.2}}}
+
+
+def sea(scenario_file, how: str):
+    return read_scenario(
+        scenario_file(
+            **FEET,
+            water={"depth_m": 72.0},
+            waves={"type": "airy", "height_m": 8.0, "period_s": 5.5, "relative_velocity": how},
+            time={"duration_s": 30.0, "step_s": 0.05},
+        )
+    )
+
+
+def beyond(scenario, model):
+    grid = water_points(model.assembly, scenario.sea)
+    columns = np.asarray(grid.N.T @ model.reduced.basis)
+    loads = water_loads(scenario.sea, grid, columns, duration=30.0, keep_motion=True)
+    assert loads is not None
+    C = relative_drag(grid, loads, model.reduced.basis)
+    return grid, columns, loads, C, relative_drag_beyond(grid, loads, model.reduced.basis, C)
+
+
+def test_the_change_is_morisons_equation_with_and_without_motion(scenario_file) -> None:
+    """F(u − ẋ) − F(u) at a sample of the series, on the coordinates; C ẋ is added back."""
+    scenario = sea(scenario_file, "full")
+    model = build_model(scenario)
+    grid, columns, loads, C, found = beyond(scenario, model)
+    q = 0.02 * np.random.default_rng(1).standard_normal(model.reduced.n)
+    t = 37 * loads.series.step_s
+    waves = wave_field(scenario.sea, duration=30.0)
+    u, du = waves.motion(grid.points, np.array([t]))
+    wet = loads.series.wet[37][None]
+    moving, still = (
+        point_forces(grid, u, du, velocity=v, wet=wet).ravel() @ columns
+        for v in ((columns @ q).reshape(1, -1, 3), None)
+    )
+    np.testing.assert_allclose(
+        found.change(t, q), moving - still + C @ q, rtol=1e-6, atol=1e-9 * np.abs(C @ q).max()
+    )
+
+
+def test_the_motion_is_stepped_under_it(scenario_file) -> None:
+    """Forces beyond the linearised run's are the change at the motion's own velocity, settled to 1 %."""
+    linear, full = (simulate_motion(sea(scenario_file, how)) for how in ("linearised", "full"))
+    *_, found = beyond(sea(scenario_file, "full"), full.model)
+    n = full.space.n
+    added = full.force - linear.force
+    wanted = np.array([found.change(k * full.step_s, x[n : 2 * n]) for k, x in enumerate(full.states[:200])])
+    assert np.abs(wanted).max() > 0.0
+    np.testing.assert_allclose(added[:200], wanted, atol=0.01 * np.abs(wanted).max())
+    # the legs of a jacket move little in the water: no more than 1 % of the motion hangs on this
+    a, b = (m.states[:, :n] @ m.model.top[0] for m in (linear, full))
+    np.testing.assert_allclose(b, a, atol=0.01 * np.abs(a).max())
