@@ -95,7 +95,7 @@ def _of_one(u: Update, k: Uncertainty, labels: Mapping[int, str]) -> list[Block]
         ),
         Plot(
             "profiles",
-            f"{u.law}: profile likelihoods. A line that stays below the dashed one tells nothing.",
+            f"{u.law}: profiles of the posterior density, priors included. Below the dashed line: 90 %.",
             draw.profiles(u, k),
         ),
         _predictions(u, k, labels),

@@ -38,7 +38,7 @@ _KINDS = {
     "heave": (PURPLE, "triangle-up"),
 }
 _DASHES = ("solid", "dash", "dot", "dashdot")
-_VARIANTS = ("", "-open", "-dot", "-open-dot")
+_VARIANTS = ("", "-open", "-open-dot", "-dot")
 
 
 def law_look(law: str) -> Look:
