@@ -49,6 +49,7 @@ REFUSED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
     "infinite": (lambda y, rng: np.inf * np.ones_like(y), "channel is empty"),
     "1e300": (lambda y, rng: 1e300 * y, "channel is empty"),
     "1e-300": (lambda y, rng: 1e-300 * y, "channel is constant"),
+    "a ramp": (lambda y, rng: np.arange(y.size, dtype=float).reshape(y.shape), "a slow drift alone"),
     "one constant": (put(0, 9.81), "channels.top_x"),
     "all constant": (lambda y, rng: 0.0 * y + 9.81, "channel is constant"),
     "zero": (lambda y, rng: 0.0 * y, "channel is constant"),
@@ -72,7 +73,6 @@ FLAGGED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
     "frozen": (lambda y, rng: np.where((TIME_S > 50) & (TIME_S < 150), y[:, 999:1000], y), "stuck"),
     "read slowly": (lambda y, rng: np.repeat(y[:, ::10], 10, axis=1), "held"),
     "growing": (lambda y, rng: y * np.exp(np.linspace(0, 6, 6000)), "unsteady"),
-    "ramp": (lambda y, rng: 0.0 * y + np.arange(6000), "drift"),
     "tones alone": (lambda y, rng: np.outer([1.0, 0.5], TONES), ""),
     "twice the same": (lambda y, rng: y[[0, 0]], ""),
 }

@@ -265,9 +265,11 @@ def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
 
 def _print_rejected(rejected: Sequence[Mapping[str, Any]]) -> None:
     """Print how many candidates were rejected for each reason; the JSON names them all."""
-    kinds: dict[str, list[float]] = {}
+    kinds: dict[str, list[Mapping[str, Any]]] = {}
     for r in rejected:
-        kinds.setdefault(re.sub(r"\d[\d.]*", "…", r["reason"]), []).append(r["frequency_hz"])
-    for reason, f in sorted(kinds.items(), key=lambda item: -len(item[1])):
+        kinds.setdefault(re.sub(r"\d[\d.]*", "…", r["reason"]), []).append(r)
+    for kind, of_kind in sorted(kinds.items(), key=lambda item: -len(item[1])):
+        f = [r["frequency_hz"] for r in of_kind]
+        reason = of_kind[0]["reason"] if len(of_kind) == 1 else kind
         where = f"{f[0]:.4g} Hz" if len(f) == 1 else f"{min(f):.3g} to {max(f):.3g} Hz"
         output.print(f"rejected: {len(f)} × {reason} ({where})")

@@ -27,6 +27,8 @@ EMPTY = 0.9
 """Share of missing samples beyond which a channel carries nothing."""
 DRIFT_CYCLES = 5.0
 """Drift is what is slower than this many cycles a record."""
+MOST_DRIFT = 1e9
+"""A channel that drifts over more rms than this holds a drift and its rounding, no vibration."""
 DRIFT_RATIO = 3.0
 """Range of the slow part over the rms of the rest, beyond which it is drift."""
 PARTS = 10
@@ -153,7 +155,7 @@ def _judge(
     quality = ChannelQuality(
         name=channel.name,
         score=0.0,
-        dead=dead,
+        dead=dead or drift > MOST_DRIFT,
         gap_share=float(missing.sum()) / n,
         longest_gap_s=float(longest) / record.sample_rate_hz,
         spike_share=float(spikes.sum()) / n,

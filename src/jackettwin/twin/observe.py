@@ -12,7 +12,7 @@ from jackettwin.identification import Identification, IdentificationSettings, id
 from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
-from jackettwin.records.quality import Quality
+from jackettwin.records.quality import ChannelQuality, Quality
 from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
 
@@ -127,11 +127,20 @@ def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
 def _refuse_dead(quality: Quality) -> None:
     for channel in quality.channels:
         if channel.dead:
-            empty = channel.gap_share > 0.0
+            problem, value = _why_dead(channel)
             raise InputError(
-                "channel is empty" if empty else "channel is constant",
+                problem,
                 field=f"channels.{channel.name}",
-                value=f"{100 * channel.gap_share:.0f} % missing" if empty else "no variation",
+                value=value,
                 allowed="a signal that varies",
                 remedy="repair the sensor's data, or leave the channel out (sensors: of a twin; --drop-dead)",
             )
+
+
+def _why_dead(channel: ChannelQuality) -> tuple[str, str]:
+    """Return what is wrong with a dead channel, and the value that says so."""
+    if channel.gap_share > 0.0:
+        return "channel is empty", f"{100 * channel.gap_share:.0f} % missing"
+    if channel.drift_ratio > 0.0:
+        return "channel holds a slow drift alone", "no vibration"
+    return "channel is constant", "no variation"
