@@ -13,9 +13,12 @@ from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.quality import ChannelQuality, Quality
+from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
 from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
 
+WORTH_SAYING = 1e-3
+"""Share of a channel's power from which a tone is mentioned."""
 MOTION = ("acceleration", "velocity", "displacement")
 
 
@@ -67,10 +70,32 @@ def observe(
         if not drop_dead:
             _refuse_dead(quality)
         ready, notes = in_rotor_axes(repair(chosen, quality), record)
-        found = identify(ready, settings, picks=picks)
+        speed = rotor_speed(record)
+        orders: tuple[RotorOrder, ...] = ()
+        if speed is not None:
+            ready, orders = without_orders(ready, speed)
+        found = _beside_orders(identify(ready, settings, picks=picks), orders)
         if knows_yaw(record) or record.metadata.get("axes") == "rotor":
             found = along_axes(found)
         return Observation(ready, quality, replace(found, warnings=(*notes, *found.warnings)))
+
+
+def _beside_orders(found: Identification, orders: tuple[RotorOrder, ...]) -> Identification:
+    """Say which tones of the rotor were taken out, and flag modes they passed."""
+    notes = tuple(
+        f"{o.order}P, {o.low_hz:.3g} to {o.high_hz:.3g} Hz by the measured rotor speed: taken out, "
+        f"{o.share:.1%} of a channel's power at most"
+        for o in orders
+        if o.share > WORTH_SAYING
+    )
+    modes = []
+    for mode in found.modes:
+        half = mode.damping_ratio * mode.frequency_hz
+        passing = [o for o in orders if o.low_hz - half < mode.frequency_hz < o.high_hz + half]
+        if passing and mode.status == "ok":
+            mode = replace(mode, status=f"{passing[0].order}P of the rotor passes here: distrust the damping")
+        modes.append(mode)
+    return replace(found, modes=tuple(modes), warnings=(*notes, *found.warnings))
 
 
 def in_rotor_axes(record: Record, source: Record) -> tuple[Record, tuple[str, ...]]:

@@ -1,0 +1,93 @@
+r"""Tones of the rotor where its speed is known: taken out along the measured azimuth, drifting or not.
+
+With the azimuth :math:`\theta(t) = \int \Omega\, dt` the tone of order k is
+:math:`\mathrm{Re}\, c\, e^{ik\theta}`, one complex amplitude a channel, whatever the speed does. A mode is
+driven at random and has no fixed phase towards the rotor: over T seconds the fit takes no more of it than a
+line of width 1/T. A speed wrong by more than a few tenths of a turn over the record leaves the tone in, for
+its statistics to tell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.filters import bridge
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Record
+
+FloatArray = npt.NDArray[np.float64]
+
+ORDERS = (1, 3, 6)
+"""Multiples of the rotor's speed at which three blades excite a tower."""
+FEWEST_TURNS = 20.0
+"""Fewer turns in a record are a rotor at rest, or too few to tell a tone."""
+
+
+@dataclass(frozen=True)
+class RotorOrder:
+    """A multiple of the rotor's speed.
+
+    Attributes
+    ----------
+    order : int
+        3 for 3P.
+    low_hz, high_hz : float
+        Where its frequency lay, 1st to 99th percentile.
+    share : float
+        Largest share of a channel's power it had.
+    """
+
+    order: int
+    low_hz: float
+    high_hz: float
+    share: float
+
+
+def rotor_speed(record: Record) -> FloatArray | None:
+    """Return the rotor's speed [rad/s], gaps bridged; None if it is not measured or the rotor stands."""
+    rows = [i for i, c in enumerate(record.channels) if c.quantity == "rotor speed"]
+    if not rows or not np.isfinite(record.data[rows[0]]).any():
+        return None
+    speed = np.abs(bridge(record.data[rows[0]]))
+    turns = float(np.sum(speed)) / record.sample_rate_hz / (2.0 * np.pi)
+    return speed if turns >= FEWEST_TURNS else None
+
+
+def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tuple[RotorOrder, ...]]:
+    """Return the record with the tones of the rotor taken from its vibration channels, and what they were.
+
+    Parameters
+    ----------
+    speed_rad_s : (n_samples,)
+        Without gaps.
+    """
+    azimuth = np.cumsum(speed_rad_s) / record.sample_rate_hz
+    nyquist = 0.5 * record.sample_rate_hz
+    data, orders = record.data.copy(), []
+    vibrating = [i for i, c in enumerate(record.channels) if c.quantity in VIBRATIONS]
+    for k in ORDERS:
+        low, high = np.percentile(k * speed_rad_s, [1.0, 99.0]) / (2.0 * np.pi)
+        if high >= nyquist:
+            continue
+        basis = np.stack([np.cos(k * azimuth), np.sin(k * azimuth), np.ones_like(azimuth)])
+        share = max((_take(data[i], basis) for i in vibrating), default=0.0)
+        orders.append(RotorOrder(k, float(low), float(high), share))
+    return replace(record, data=data), tuple(orders)
+
+
+def _take(y: FloatArray, basis: FloatArray) -> float:
+    """Subtract the least-squares tone from a channel in place; return its share of the power."""
+    there = np.isfinite(y)
+    if there.sum() < 10 * len(basis):
+        return 0.0
+    weights = np.linalg.lstsq(basis[:, there].T, y[there], rcond=None)[0]
+    tone = weights[:2] @ basis[:2]
+    power = float(np.var(y[there]))
+    y -= tone
+    return float(np.var(tone[there])) / power if power > 0.0 else 0.0

@@ -1,0 +1,66 @@
+"""Tones along a measured azimuth: taken out however they drift, modes left alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Channel, Record, write_record
+from jackettwin.records.rotor_orders import rotor_speed, without_orders
+from jackettwin.twin import observe
+
+F = np.array([0.3, 0.7, 1.3])
+SHAPES = np.array([[1.0, 0.4, 0.2], [-0.4, 1.0, 0.6], [0.3, -0.7, 1.0]])
+
+
+def operating(drift: float) -> tuple[Record, np.ndarray]:
+    """Three modes and a 3P as strong as the channel, from 0.45 Hz on, with the speed it came from."""
+    system = ModalSystem(F, np.full(3, 0.015), SHAPES, np.diag(F**-2.0))
+    record = simulate(system, np.random.default_rng(3), sample_rate_hz=10.0)
+    t = np.arange(record.data.shape[1]) / 10.0
+    speed = 2 * np.pi * (0.15 + drift * np.sin(2 * np.pi * t / 500.0) ** 2)
+    tone = np.sqrt(2.0) * np.cos(3.0 * np.cumsum(speed) / 10.0 + 0.4)
+    data = record.data + record.data.std(axis=1, keepdims=True) * tone
+    channels = (*(replace(c, name=f"acc_{i}") for i, c in enumerate(record.channels)),)
+    speed_channel = Channel("rotor_speed", "rotor speed", "rad/s")
+    return replace(record, data=np.vstack([data, speed]), channels=(*channels, speed_channel)), record.data
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.05])
+def test_what_is_left_is_the_record_without_the_tone(drift: float) -> None:
+    record, clean = operating(drift)
+    speed = rotor_speed(record)
+    assert speed is not None
+    left, orders = without_orders(record, speed)
+    # two parameters of 6000 samples for each of three orders, which the noise around them fills
+    assert np.abs(left.data[:3] - clean).max() < 0.3 * clean.std()
+    assert [o.order for o in orders] == [1, 3, 6]
+    assert orders[1].share == pytest.approx(0.5, abs=0.05)
+    assert orders[1].low_hz == pytest.approx(0.45, abs=0.001)
+    assert orders[1].high_hz == pytest.approx(0.45 + 3.0 * drift, abs=0.001)
+    assert orders[0].share < 0.01
+    np.testing.assert_array_equal(left.data[3], record.data[3])
+
+
+def test_a_drifting_tone_is_no_mode_and_what_it_passes_is_flagged(tmp_path: Path) -> None:
+    record, _ = operating(0.1)
+    write_record(record, tmp_path / "r.parquet")
+    found = observe(tmp_path / "r.parquet", IdentificationSettings(refine=False)).identification
+    assert [round(m.frequency_hz, 1) for m in found.modes] == [0.3, 0.7, 1.3]
+    assert "3P, 0.45 to 0.75 Hz by the measured rotor speed: taken out" in found.warnings[0]
+    # 3P passes 0.7 Hz, 6P goes from 0.9 to 1.5 Hz
+    assert ["P of the rotor passes here" in m.status for m in found.modes] == [False, True, True]
+
+
+def test_a_parked_rotor_has_no_orders() -> None:
+    record, _ = operating(0.0)
+    still = replace(record, data=np.vstack([record.data[:3], np.zeros(6000)]))
+    assert rotor_speed(still) is None
+    assert rotor_speed(record.select(record.channel_names[:3])) is None
+    missing = replace(record, data=np.vstack([record.data[:3], np.full(6000, np.nan)]))
+    assert rotor_speed(missing) is None
