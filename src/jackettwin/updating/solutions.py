@@ -155,9 +155,11 @@ def search(
             "no start of the search ended in a minimum: the targets are out of the supports' reach; check "
             "their mode numbers, frequencies and damping ratios"
         )
-    valleys = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
+    kept = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
+    # two ends of one valley may only be seen to be one from its middle
+    valleys = gather(problem, [(settle(problem, end), count) for end, count in kept])
     return Search(
-        tuple(_solution(problem, settle(problem, end), count) for end, count in valleys),
+        tuple(_solution(problem, end, count) for end, count in valleys),
         len(ends),
         deflated,
         sum(not end.settled for end in ends),
