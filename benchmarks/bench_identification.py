@@ -1,4 +1,6 @@
-"""Speed of SSI-cov side by side with pyOMA2, one thread, the same samples and block rows.
+"""Speed of SSI-cov side by side with pyOMA2 and koma, one thread, the same samples and block rows.
+
+koma asks for a 3D viewer its SSI does not use: ``pip install --no-deps koma-python`` puts it beside us.
 
 Bars: 8 channels, 600 s, 100 Hz, order 80, every order: 0.15 s and a third of pyOMA2's fastest without
 uncertainty; with it 1 CPU-s at 50 block rows and 5 at 100 (pyOMA2: 100 CPU-s, about 1400).
@@ -9,6 +11,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable
+from importlib.util import find_spec
 from statistics import median
 from time import process_time
 
@@ -67,6 +70,12 @@ def pyoma(y: np.ndarray, block_rows: int, method: str) -> None:
     ssi.SSI_poles(observability, a, c, MAX_ORDER, 1.0 / RATE, xi_max=0.1)
 
 
+def koma(y: np.ndarray, block_rows: int) -> None:
+    from koma import oma
+
+    oma.covssi(y.T, RATE, block_rows, np.arange(2, MAX_ORDER + 1), weighting="br", showinfo=False)
+
+
 def main() -> None:
     warnings.simplefilter("ignore")
     record = simulate(ten_modes(), np.random.default_rng(1), sample_rate_hz=RATE)
@@ -77,6 +86,9 @@ def main() -> None:
         for method in ("cov_R", "cov"):
             theirs = seconds(lambda: pyoma(y, block_rows, method), 1)  # noqa: B023
             report(f"  pyOMA2 {method}", theirs, theirs / ours)
+        if find_spec("koma") is not None:
+            theirs = seconds(lambda: koma(y, block_rows), 1)  # noqa: B023
+            report("  koma", theirs, theirs / ours)
         report("  with uncertainty", seconds(lambda: poles_with_uncertainty(y, block_rows), 1))  # noqa: B023
     plain = IdentificationSettings(refine=False)
     without = seconds(lambda: identify(record, plain), 3)
