@@ -31,6 +31,8 @@ CLOSE = 2.0
 """Two modes are a pair if their frequencies differ by less than this times the sum of half bandwidths."""
 PURE = 0.95
 """Share of its energy along one axis, above which the plane holds a shape of that axis."""
+APART = 0.99
+"""MAC with the pure shapes above which the record itself tells the two apart, and nothing is turned."""
 HORIZONTAL = 0.9
 """Length of the horizontal part of a channel's direction that counts."""
 
@@ -90,6 +92,8 @@ def _turned(
         return None
     pure = (plane @ vectors).T
     likeness = mac(np.array([a.mode_shape, b.mode_shape]), pure)
+    if likeness.max(axis=1).min() > APART:
+        return None
     swapped = likeness[0, 1] + likeness[1, 0] > likeness[0, 0] + likeness[1, 1]
     for_a, for_b = pure[::-1] if swapped else pure
     return _with_shape(a, for_a), _with_shape(b, for_b)
