@@ -66,7 +66,7 @@ def test_a_plane_without_pure_shapes_is_left_alone(found: Identification) -> Non
 def test_shapes_that_are_pure_already_are_left_alone(found: Identification) -> None:
     apart = replace(found, modes=(mode(0.300, Y + 0.02 * X), mode(0.309, X + 0.05j * Y)))
     assert along_axes(apart).modes == apart.modes
-    assert along_axes(apart).warnings == ()
+    assert along_axes(apart).notes == ()
 
 
 def test_sensors_off_the_axes_are_left_alone(found: Identification) -> None:
