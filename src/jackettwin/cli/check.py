@@ -8,17 +8,16 @@ import click
 from rich.table import Table
 
 from jackettwin.cli.console import output, print_json
+from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses
-from jackettwin.soil import read_support
 from jackettwin.structure import assemble, read_structure
 from jackettwin.structure.forces import section_forces, von_mises_stress
 from jackettwin.structure.iso19902 import CHECKS, EDITIONS
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
-from jackettwin.updating import numbered_modes
 
 
 @click.command("check")
@@ -67,9 +66,7 @@ def check_command(
     assert structure is not None
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
-    held = read_support(
-        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
-    )
+    held = support_option(support, assembly)
     load = nodal_load(assembly, dict(nodal_force(text) for text in forces))
     if not no_weight:
         load = load + self_weight(assembly)

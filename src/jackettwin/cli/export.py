@@ -7,13 +7,13 @@ from pathlib import Path
 import click
 
 from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
 from jackettwin.response.superelement import dissipates
-from jackettwin.soil import Support, read_support, with_static_reactions
+from jackettwin.soil import Support, with_static_reactions
 from jackettwin.structure import Structure, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.subdyn_deck import write_subdyn
-from jackettwin.updating import numbered_modes
 
 
 @click.command("export")
@@ -33,9 +33,7 @@ def export_command(structure: str, support: str | None, out: Path | None, as_jso
     if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
     whole = read_structure(structure)
-    held = read_support(
-        support, whole, first_frequency_hz=lambda: float(numbered_modes(assemble(whole), 1).frequency_hz[0])
-    )
+    held = support_option(support, assemble(whole))
     foundation, _ = at_interface(whole)
     path = out or Path("out") / f"{whole.name}_SubDyn.dat"
     files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path)]

@@ -16,7 +16,7 @@ from jackettwin.response.follow import follow
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
-from jackettwin.soil import read_support
+from jackettwin.soil import Support, read_support
 from jackettwin.structure import Assembly, Rayleigh, assemble, check, read_structure
 from jackettwin.updating import numbered_modes
 
@@ -58,15 +58,27 @@ def modes_command(
     assembly = assemble(
         chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
     )
-    held = read_support(
-        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
-    )
-    system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
+    system = build_system(assembly, support_option(support, assembly), rayleigh=rayleigh_option(rayleigh))
     document = _document(assembly, system, number)
     if as_json:
         print_json(document)
     else:
         _print(document)
+
+
+def support_option(text: str | None, assembly: Assembly) -> Support:
+    """Return what ``--support`` names; laws stated at the first frequency take that of pinned feet.
+
+    Raises
+    ------
+    InputError
+        If the text names no support of this structure.
+    """
+    return read_support(
+        text,
+        assembly.structure,
+        first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0]),
+    )
 
 
 def rayleigh_option(text: str | None) -> Rayleigh:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rich.table import Table
 
 from jackettwin.cli.console import messages, output, print_json
-from jackettwin.cli.modes import rayleigh_option
+from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
 from jackettwin.response.superelement import (
     INTERFACE,
@@ -36,11 +36,9 @@ from jackettwin.response.superelement_files import (
     write_superelement,
 )
 from jackettwin.response.system import build_system
-from jackettwin.soil import read_support
 from jackettwin.structure import Assembly, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector
-from jackettwin.updating import numbered_modes
 
 
 @click.command("superelement")
@@ -126,9 +124,7 @@ def superelement_command(
         return assemble(part, beam_theory=beam, subdivide=subdivide)
 
     complete = built(whole)
-    held = read_support(
-        support, whole, first_frequency_hz=lambda: float(numbered_modes(complete, 1).frequency_hz[0])
-    )
+    held = support_option(support, complete)
     steel = rayleigh_option(rayleigh)
     full, base = (build_system(part, held, rayleigh=steel) for part in (complete, built(foundation)))
     top = None if rest is None else built(rest)

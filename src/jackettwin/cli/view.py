@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import output, print_json
-from jackettwin.cli.modes import rayleigh_option
+from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
 from jackettwin.loads.morison import Coefficients
 from jackettwin.records import read_record
@@ -23,11 +23,9 @@ from jackettwin.response.playback import playback, record_sensors
 from jackettwin.response.sensors import Sensor
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import System, build_system
-from jackettwin.soil import read_support
 from jackettwin.structure import Assembly, assemble, check, read_structure
 from jackettwin.structure.forces import section_forces, von_mises_stress
 from jackettwin.structure.member_check import member_uses
-from jackettwin.updating import numbered_modes
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports: nothing to look at."""
@@ -88,9 +86,7 @@ def view_command(
         raise InputError("unknown format of a page", field="--out", value=out.name, allowed=".html")
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
-    held = read_support(
-        support, chosen, first_frequency_hz=lambda: float(numbered_modes(assembly, 1).frequency_hz[0])
-    )
+    held = support_option(support, assembly)
     system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
     coefficients = Coefficients(growth=tuple(_band(text) for text in growth))
     _require_parts(assembly, flooded)
