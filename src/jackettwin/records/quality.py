@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jackettwin.records.record import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 STUCK_S = 1.0
 """Shortest frozen reading [s]."""
@@ -110,10 +111,12 @@ def assess(record: Record) -> Quality:
     """
     unreadable = np.isinf(record.data) | (np.abs(record.data) > LARGEST)
     record = replace(record, data=np.where(unreadable, np.nan, record.data))
-    slow_free = _without_slow(record)
+    held = [faults.hold_length(row) for row in record.data]
+    spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
+    slow_free = _without_slow(record, spikes)
     swapped = _swapped(record, slow_free)
     judged = [
-        _judge(record, i, slow_free[i], swapped.get(channel.name))
+        _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name))
         for i, channel in enumerate(record.channels)
     ]
     channels = tuple(quality for quality, _, _ in judged)
@@ -125,17 +128,17 @@ def assess(record: Record) -> Quality:
     return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect | unreadable)
 
 
-def _without_slow(record: Record) -> FloatArray:
+def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
     """Return the data without mean and drift, spikes taken out lest they hide it."""
     data = record.data.copy()
-    for row in data:
-        row[faults.spikes(row, hold=faults.hold_length(row))] = np.nan
+    for row, mask in zip(data, spikes, strict=True):
+        row[mask] = np.nan
     return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
 
 
 def _judge(
-    record: Record, i: int, slow_free: FloatArray, sign: bool | None
-) -> tuple[ChannelQuality, npt.NDArray[np.bool_], list[Finding]]:
+    record: Record, i: int, hold: int, spikes: BoolArray, slow_free: FloatArray, sign: bool | None
+) -> tuple[ChannelQuality, BoolArray, list[Finding]]:
     """Return the quality of one channel, its suspect samples and its findings."""
     channel, y = record.channels[i], record.data[i]
     n, vibrates = max(len(y), 1), channel.quantity in VIBRATIONS
@@ -145,8 +148,8 @@ def _judge(
     dead = empty or (vibrates and faults.is_constant(y))
     none = np.zeros(len(y), dtype=np.bool_)
     look = vibrates and not dead
-    held = faults.hold_length(y) if look else 1
-    spikes = faults.spikes(y, hold=held) if look else none
+    held = hold if look else 1
+    spikes = spikes if look else none
     clipped = faults.clipped(y) if look else none
     stuck = faults.stuck(y, max(int(STUCK_S * record.sample_rate_hz), 20)) if look else none
     outliers = bool(spikes.mean() > MOST_SPIKES) if look else False
