@@ -79,7 +79,6 @@ class Climb:
     parameters: Parameters
     value: float
     converged: bool
-    iterations: int
 
 
 def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Climb:
@@ -87,8 +86,8 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
     prior = prior_of(data, p)
     value, lift = objective(data, prior, p), 1e-3
     if not np.isfinite(value):
-        return Climb(p, value, False, 0)
-    for iteration in range(1, most + 1):
+        return Climb(p, value, False)
+    for _ in range(most):
         score, fisher = scoring(data, prior, p)
         trial_value = -np.inf
         while trial_value < value and lift < 1e7:
@@ -97,14 +96,14 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
             trial_value = objective(data, prior, trial)
             lift *= 6.0
         if trial_value < value:
-            return Climb(p, value, False, iteration)
+            return Climb(p, value, False)
         n = 2 * len(p.log_f)
         small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
         gain = trial_value - value
         p, value, lift = trial, trial_value, max(lift / 60.0, 1e-6)
         if bool(np.all(small < TOLERANCE)) or gain < LEAST_GAIN:
-            return Climb(p, value, True, iteration)
-    return Climb(p, value, False, most)
+            return Climb(p, value, True)
+    return Climb(p, value, False)
 
 
 def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray) -> Parameters:

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.identification import ModalEstimate, Spectrum
-from jackettwin.quantities import VIBRATIONS, quantity
+from jackettwin.quantities import quantity
 from jackettwin.records import Channel, Record
 from jackettwin.report import style
 from jackettwin.report.numbers import words
@@ -192,8 +192,3 @@ def place(channel: Channel) -> str:
 def plain(unit: str) -> str:
     """Return a unit as printed: ``m/s²``."""
     return unit.replace("^2", "²").replace("^3", "³")
-
-
-def is_vibration(channel: Channel) -> bool:
-    """Return whether a channel measures motion of the structure."""
-    return channel.quantity in VIBRATIONS

@@ -76,8 +76,6 @@ class Search:
         Descents from scattered points.
     deflated : int
         Further descents, with the known solutions deflated.
-    unsettled : int
-        Descents that ended at no minimum.
     missed_share_95 : float
         A solution that was missed draws less than this share of the starts, with 95 % confidence.
     """
@@ -85,7 +83,6 @@ class Search:
     solutions: tuple[Solution, ...]
     starts: int
     deflated: int
-    unsettled: int
     missed_share_95: float
 
     @property
@@ -162,7 +159,6 @@ def search(
         tuple(_solution(problem, end, count) for end, count in valleys),
         len(ends),
         deflated,
-        sum(not end.settled for end in ends),
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / len(ends)),
     )
 
