@@ -14,7 +14,8 @@ from jackettwin.identification.clustering import clusters
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.fdd import fdd
-from jackettwin.identification.picks import Pick, of_record, picked_clusters, with_verdicts
+from jackettwin.identification.picked import picked_clusters, with_verdicts
+from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.plscf import plscf_poles
 from jackettwin.identification.prepared import Prepared, prepare
 from jackettwin.identification.real_poles import RealPole, real_poles

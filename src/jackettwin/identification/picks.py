@@ -7,20 +7,12 @@ criteria on clusters of poles; the limits on the band and on the uncertainty of 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from jackettwin.errors import InputError
-
-if TYPE_CHECKING:
-    from jackettwin.identification.clustering import Cluster
-    from jackettwin.identification.estimate import Stabilisation
-    from jackettwin.identification.selection import Candidate
-
-REACH = 0.02
-"""Largest relative distance of a picked frequency from a pole."""
 
 _KEYS: dict[str, tuple[tuple[type, ...], str]] = {
     "frequency_hz": ((int, float), "a frequency > 0 Hz"),
@@ -86,67 +78,6 @@ def plain_picks(picks: Sequence[Pick]) -> list[dict[str, Any]]:
 def of_record(picks: Sequence[Pick], name: str) -> tuple[Pick, ...]:
     """Return the picks that concern a record."""
     return tuple(pick for pick in picks if pick.record in (None, name))
-
-
-def picked_clusters(poles: Stabilisation, found: Sequence[Cluster], picks: Sequence[Pick]) -> list[Cluster]:
-    """Return for every pick the cluster of its pole, which then speaks for the cluster.
-
-    Raises
-    ------
-    InputError
-        If there is no pole near a pick, two picks mean one pole, or the pole belongs to no mode.
-    """
-    out: dict[int, Cluster] = {}
-    for pick in picks:
-        k = _pole(poles, found, pick)
-        if k in out:
-            raise InputError(
-                "two picks mean one pole",
-                field="picks",
-                value=pick.frequency_hz,
-                allowed=f"a pole once, here that at {poles.frequency_hz[k]:.6g} Hz",
-                remedy="remove one of them",
-            )
-        cluster = next((c for c in found if k in c.poles), None)
-        if cluster is None:
-            raise InputError(
-                "the picked pole is alone",
-                field="picks",
-                value=pick.frequency_hz,
-                allowed="poles that appear in other model orders as well",
-                remedy="pick a pole of a column in the stabilisation diagram",
-            )
-        out[k] = replace(cluster, representative=k)
-    return list(out.values())
-
-
-def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Candidate]:
-    """Return the candidates as the picks want them: no objection, and doubt only where it is said."""
-    return [
-        replace(c, objection=None, doubt=(c.doubt or "doubtful by the picks") if pick.doubtful else None)
-        for pick, c in zip(picks, judged, strict=True)
-    ]
-
-
-def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
-    """Return the position of the pole meant by a pick."""
-    if pick.order is None:
-        among = np.array([c.representative for c in found], dtype=np.int64)
-    else:
-        among = np.flatnonzero(poles.order == pick.order)
-    away = np.abs(poles.frequency_hz[among] / pick.frequency_hz - 1.0)
-    if not len(away) or away.min() > REACH:
-        orders = sorted(set(poles.order.tolist()))
-        raise InputError(
-            "no pole near the pick" + ("" if pick.order is None else f" in order {pick.order}"),
-            field="picks",
-            value=pick.frequency_hz,
-            allowed=f"within {REACH:.0%} of a pole; orders {orders[0]} to {orders[-1]}" if orders else "none",
-            remedy=f"the nearest is at {poles.frequency_hz[among[np.argmin(away)]]:.6g} Hz"
-            if len(away)
-            else "use the settings the picks were made with",
-        )
-    return int(among[np.argmin(away)])
 
 
 def _pick(entry: Any, field: str) -> Pick:
