@@ -1,0 +1,106 @@
+"""A twin's question for one law: its supports' parameters against what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from jackettwin.errors import InputError, located
+from jackettwin.soil.files import read_support
+from jackettwin.soil.support import Support
+from jackettwin.structure import Assembly
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.measure import Measured
+from jackettwin.twin.rotor import RotorDamping, States
+from jackettwin.updating import Problem, family, joint, support_model
+from jackettwin.updating.extras import Extras
+from jackettwin.updating.model import SupportModel
+from jackettwin.updating.shapes import ShapeTarget
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What every law is fitted to.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    found : Measured or None
+        What the records say; None if the twin file gives targets.
+    states : {operating state: residuals and factors of the parameters}
+    rotor : RotorDamping
+    """
+
+    assembly: Assembly
+    found: Measured | None
+    states: States
+    rotor: RotorDamping
+
+
+def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
+    """Return the residuals of all operating states against the parameters of one law.
+
+    Raises
+    ------
+    InputError
+        If bounds, priors, ties or pile heads do not fit the law.
+    """
+    chosen, given, states = family(law), config.update, evidence.states
+    extras = Extras(given.dashpots, given.steel_damping == "free", evidence.rotor.patterns)
+    own = {p.name for p in (*chosen.parameters, *extras.parameters)}
+    relative = any(residuals.relative for residuals, _ in states.values())
+    try:
+        model = support_model(
+            evidence.assembly,
+            family=chosen,
+            rayleigh=config.rayleigh,
+            tie=config.tie,
+            bounds=_of_law(given.bounds, own),
+            priors=_of_law({**evidence.rotor.priors, **given.priors}, own),
+            highest_mode=max(mode for residuals, _ in states.values() for mode in residuals.modes),
+            extras=extras,
+            heads=_heads(config),
+            head_priors=not relative,
+        )
+        return joint(model, states, shapes=_shapes(config, model, evidence))
+    except InputError as error:
+        raise error.at(file=config.path, field="update" if given.bounds or given.priors else None) from None
+
+
+def _heads(config: TwinConfig) -> Support | None:
+    """Return the pile heads that the laws scale."""
+    if config.heads is None:
+        return None
+    with located(file=config.path, field="support.stiffness"):
+        source = None if config.heads == "own" else config.heads
+        return read_support(source, config.structure, folder=config.path.parent)
+
+
+def _shapes(config: TwinConfig, model: SupportModel, evidence: Evidence) -> tuple[ShapeTarget, ...]:
+    """Return the shape of each fitted mode where it is most like the model's."""
+    found = evidence.found
+    first, _ = next(iter(evidence.states.values()))
+    if config.update.mac_std is None or found is None or first.relative:
+        return ()
+    by_channel = {sensor.channel: sensor for sensor in found.sensors}
+    channels = {
+        id(mode): seen.identification.channels
+        for seen in found.observations
+        for mode in seen.identification.modes
+    }
+    shapes = []
+    for mode in first.modes:
+        best = max(found.sightings[mode], key=lambda seen: seen.mac).estimate
+        places = tuple(by_channel[c.name] for c in channels[id(best)] if c.name in by_channel)
+        if len(places) == best.mode_shape.size:
+            shapes.append(
+                ShapeTarget.seen(
+                    model, mode, best.frequency_hz, places, best.mode_shape, config.update.mac_std
+                )
+            )
+    return tuple(shapes)
+
+
+def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:
+    """Return what is given for these parameters, with or without a tie's suffix: laws share one file."""
+    return {k: v for k, v in given.items() if any(k == n or k.startswith(f"{n}_") for n in names)}
