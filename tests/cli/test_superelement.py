@@ -67,3 +67,31 @@ def test_bad_input_exits_2(arguments: list[str], message: str) -> None:
     result = run(*arguments)
     assert result.exit_code == 2
     assert message in result.stderr.replace("\n", " ")
+
+
+def test_a_decks_own_damping(tmp_path: Path) -> None:
+    """JDampings on the internal coordinates, GuyanDampMod 1 on the interface: SubDyn's C."""
+    text = DECK.read_text()
+    deck = tmp_path / "deck.dat"
+    lines = text.splitlines()
+    for at, line in enumerate(lines):
+        if line.split()[1:2] == ["GuyanDampMod"]:
+            lines[at] = "1 GuyanDampMod"
+        if "RayleighDamp" in line.split():
+            lines[at] = "0.01, 0.002  RayleighDamp"
+        if "JDampings" in line.split():
+            lines[at] = "2, 1.5   JDampings"
+    deck.write_text("\n".join(lines))
+    (tmp_path / "Jacket_Kzz.txt").write_text((DECK.parent / "Jacket_Kzz.txt").read_text())
+    out = tmp_path / "jacket.npz"
+    result = run(str(deck), "--modes", "3", "--deck-damping", "--out", str(out), "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    expected = 0.01 * np.array(found["interface_mass"]) + 0.002 * np.array(found["interface_stiffness"])
+    np.testing.assert_allclose(found["interface_damping"], expected, rtol=1e-12)
+    with np.load(out) as data:
+        inner = 2 * np.array([0.02, 0.015, 0.015]) * np.sqrt(np.diag(data["K"])[6:])
+        np.testing.assert_allclose(np.diag(data["C"])[6:], inner, rtol=1e-12)
+    refused = run("jacket15", "--deck-damping", "--out", str(out))
+    assert refused.exit_code == 2
+    assert "only a SubDyn deck" in refused.stderr

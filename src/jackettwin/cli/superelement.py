@@ -20,6 +20,7 @@ from jackettwin.response.superelement import (
     fixed_interface_frequencies,
     slowed,
     superelement,
+    with_deck_damping,
 )
 from jackettwin.response.superelement_error import (
     ReducedModes,
@@ -39,6 +40,7 @@ from jackettwin.response.system import build_system
 from jackettwin.structure import Assembly, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector
+from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
 
 
 @click.command("superelement")
@@ -74,6 +76,7 @@ from jackettwin.structure.model import Vector
     type=click.FloatRange(min=0.0, min_open=True),
     help="Slow the fastest poles until explicit steps this long are stable.",
 )
+@click.option("--deck-damping", is_flag=True, help="Add a SubDyn deck's JDampings and GuyanDampMod.")
 @click.option(
     "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
 )
@@ -101,6 +104,7 @@ def superelement_command(
     rayleigh: str | None,
     band_hz: float | None,
     step_s: float | None,
+    deck_damping: bool,
     beam: str | None,
     subdivide: int | None,
     out: Path | None,
@@ -133,9 +137,10 @@ def superelement_command(
     if step_s is not None:
         element = slowed(element, step_s=step_s, band_hz=band)
     plain = superelement(base, number=number, reference_m=point, band_hz=band, damped=False)
-    files = write_superelement(element, out, layout=layout)
+    written = with_deck_damping(element, _deck_damping(structure)) if deck_damping else element
+    files = write_superelement(written, out, layout=layout)
     document = _document(
-        element,
+        written,
         fixed_interface_frequencies(base, max(number, 1)),
         reduced_modes(element, full, top, band_hz=band),
         reduced_modes(plain, full, top, band_hz=band),
@@ -143,6 +148,17 @@ def superelement_command(
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
     _report(document, as_json)
+
+
+def _deck_damping(structure: str) -> DeckDamping:
+    if Path(structure).suffix.lower() != ".dat":
+        raise InputError(
+            "only a SubDyn deck states its own damping",
+            field="--deck-damping",
+            value=structure,
+            remedy="name a .dat file, or use --rayleigh",
+        )
+    return read_deck_damping(Path(structure))
 
 
 def _rewritten(source: Path, out: Path, layout: Layout) -> dict[str, Any]:

@@ -37,6 +37,7 @@ from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
 from jackettwin.structure.model import Structure, Vector
+from jackettwin.structure.subdyn_damping import DeckDamping
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -205,6 +206,15 @@ def slowed(element: Superelement, *, step_s: float, band_hz: float) -> Superelem
     M[i, i] += added
     K[i, i] += (2.0 * pi * band_hz) ** 2 * added
     return replace(element, M=M, K=K)
+
+
+def with_deck_damping(element: Superelement, damping: DeckDamping) -> Superelement:
+    """Return the element with a SubDyn deck's damping: modal inside, Guyan's of the interface."""
+    b, i = slice(INTERFACE), np.arange(INTERFACE, element.n)
+    C = element.C.copy()
+    C[b, b] += damping.interface + damping.alpha * element.M[b, b] + damping.beta * element.K[b, b]
+    C[i, i] += 2.0 * damping.ratios(i.size) * np.sqrt(np.maximum(element.K[i, i], 0.0))
+    return replace(element, C=C)
 
 
 def interface_centroid(structure: Structure) -> Vector:

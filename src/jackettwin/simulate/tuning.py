@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.labels import mode_kinds
 from jackettwin.response.reduced import Reduced
@@ -102,7 +103,7 @@ def _tower_stiffness(assembly: Assembly, small: Reduced) -> tuple[FloatArray, Fl
     plain = assemble(structure, subdivide=n)
     stiffer = assemble(structure.with_material("tower", youngs_modulus=2.0), subdivide=n)
     tower = stiffer.stiffness - plain.stiffness
-    kind = np.asarray(assembly.expand.argmax(axis=0)).ravel() % 6
+    kind = assembly.independent % DOFS_PER_NODE
     both = []
     for plane in _PLANES.values():
         # axial and torsional stiffness, half to each plane

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,8 @@ class Assembly:
         On the independent DOFs; ``stiffness`` holds the geometric part if gravity acts.
     expand : (mesh.n_dof, n_dof) sparse
         Gives every node's motion from the independent DOFs (rigid links are eliminated).
+    independent : (n_dof,)
+        Which of the mesh's DOFs the independent ones are.
     gravity : bool
     """
 
@@ -39,6 +42,7 @@ class Assembly:
     stiffness: sp.csc_array
     mass: sp.csc_array
     expand: sp.csr_array
+    independent: IntArray
     gravity: bool
 
     @property
@@ -103,11 +107,13 @@ def assemble(
     K = _gather(mesh, beam.to_global(beam.stiffness(p), R))
     inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
     M = _gather(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
-    M = M + _point_masses(structure, mesh)
-    T = _rigid_links(structure, mesh)
+    K = K + _elements(structure, mesh, "stiffness")
+    M = M + _elements(structure, mesh, "mass") + _point_masses(structure, mesh)
+    T, independent = _rigid_links(structure, mesh)
     if gravity:
         K = K + _gravity_stiffness(structure, mesh, K, M, T)
-    return Assembly(structure, mesh, sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T), T, gravity)
+    K, M = sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T)
+    return Assembly(structure, mesh, K, M, T, independent, gravity)
 
 
 def _gather(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
@@ -126,6 +132,17 @@ def _blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_arr
     return total.tocsc()
 
 
+def _elements(structure: Structure, mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
+    """Return the matrices of the elements that are no tubes."""
+    return _blocks(
+        mesh,
+        [
+            (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
+            for e in structure.elements
+        ],
+    )
+
+
 def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
     blocks = [(mesh.node_dofs(m.node), rigid_body_mass(m)) for m in structure.masses]
     for reaction in structure.reactions:
@@ -134,20 +151,23 @@ def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
     return _blocks(mesh, blocks)
 
 
-def _rigid_links(structure: Structure, mesh: Mesh) -> sp.csr_array:
-    """Return T with u = T q: followers are eliminated, everybody else keeps his DOFs."""
-    leader = {link.follower: link.leader for link in structure.rigid_links}
+def _rigid_links(structure: Structure, mesh: Mesh) -> tuple[sp.csr_array, IntArray]:
+    """Return T with u = T q, and which DOFs are in q: of followers an angle for each released axis."""
     T = sp.eye_array(mesh.n_dof, format="lil")
-    for follower, name in leader.items():
-        rows, columns = mesh.node_dofs(follower), mesh.node_dofs(name)
-        arm = np.subtract(structure.nodes[follower], structure.nodes[name])
+    gone = []
+    for link in structure.rigid_links:
+        rows, columns = mesh.node_dofs(link.follower), mesh.node_dofs(link.leader)
+        arm = np.subtract(structure.nodes[link.follower], structure.nodes[link.leader])
         T[rows, rows] = 0.0
         T[rows[:, None], columns] = rigid_transfer(arm)
-    gone = np.concatenate([mesh.node_dofs(name) for name in leader]) if leader else np.empty(0, dtype=np.intp)
-    keep = np.setdiff1d(np.arange(mesh.n_dof), gone)
+        free = len(link.release)
+        for angle, axis in zip(rows[3:], link.release, strict=False):
+            T[rows[3:, None], [angle]] = np.array(axis)[:, None]
+        gone.append(np.concatenate([rows[:3], rows[3 + free :]]))
+    keep = np.setdiff1d(np.arange(mesh.n_dof), np.concatenate(gone) if gone else [])
     result = sp.csr_array(T.tocsc()[:, keep])
     result.eliminate_zeros()
-    return result
+    return result, np.asarray(keep, dtype=np.intp)
 
 
 def _gravity_stiffness(

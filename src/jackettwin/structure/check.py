@@ -66,11 +66,11 @@ def check(assembly: Assembly) -> ModelCheck:
 def rigid_body_motion(assembly: Assembly) -> FloatArray:
     """Return (n_dof, 6): unit translations along and rotations about the axes of the structure's frame."""
     everywhere = np.vstack([rigid_transfer(point) for point in assembly.mesh.coordinates])
+    motion = everywhere[assembly.independent]
     followers = [link.follower for link in assembly.structure.rigid_links]
-    gone = [assembly.mesh.node_names.index(name) for name in followers]
-    keep = np.setdiff1d(np.arange(len(assembly.mesh.node_names)), gone)
-    dofs = (DOFS_PER_NODE * keep[:, None] + np.arange(DOFS_PER_NODE)).ravel()
-    return np.asarray(everywhere[dofs])
+    hinges = [assembly.mesh.node_names.index(name) for name in followers]
+    motion[np.isin(assembly.independent // DOFS_PER_NODE, hinges)] = 0.0  # hinges stay as they are
+    return np.asarray(motion)
 
 
 def _rigid_body_modes(assembly: Assembly) -> int:

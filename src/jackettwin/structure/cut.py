@@ -53,9 +53,7 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
 def _reached(structure: Structure, start: set[str], stop: set[str]) -> set[str]:
     """Return the nodes reached from ``start`` without ``stop``."""
     neighbours: dict[str, list[str]] = {name: [] for name in structure.nodes}
-    pairs = [(m.start, m.end) for m in structure.members]
-    pairs += [(link.leader, link.follower) for link in structure.rigid_links]
-    for a, b in pairs:
+    for a, b in structure.joined:
         neighbours[a].append(b)
         neighbours[b].append(a)
     reached, stack = set(start), list(start)
@@ -71,13 +69,16 @@ def _part(structure: Structure, nodes: set[str], members: Iterable[str]) -> Stru
     names = set(members)
     used = {n for m in structure.members if m.name in names for n in (m.start, m.end)}
     links = tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= nodes)
+    elements = tuple(e for e in structure.elements if {e.start, e.end} <= nodes)
     used |= {n for link in links for n in (link.leader, link.follower)}
+    used |= {n for element in elements for n in (element.start, element.end)}
     return replace(
         structure,
         nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
         members=tuple(m for m in structure.members if m.name in names),
         masses=tuple(m for m in structure.masses if m.node in used),
         rigid_links=links,
+        elements=elements,
         reactions=tuple(r for r in structure.reactions if r.node in used),
         interface_nodes=tuple(n for n in structure.interface_nodes if n in used),
     )

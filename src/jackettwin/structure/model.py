@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.structure.two_node import TwoNodeElement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -135,10 +136,11 @@ class PointMass:
 
 @dataclass(frozen=True)
 class RigidLink:
-    """``follower`` moves as one rigid body with ``leader``."""
+    """``follower`` moves as one rigid body with ``leader``; it turns freely about the axes in ``release``."""
 
     leader: str
     follower: str
+    release: tuple[Vector, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -172,6 +174,8 @@ class Structure:
     rotary_inertia: bool = False
     shear_in_mass: bool = True
     """Whether the mass of Timoshenko beams knows their shear; SubDyn's does not."""
+    elements: tuple[TwoNodeElement, ...] = ()
+    """Cables, springs and beams that are no tubes, from SubDyn decks."""
 
     def __post_init__(self) -> None:
         for name, point in self.nodes.items():
@@ -182,6 +186,7 @@ class Structure:
         for kind, names in (
             ("masses", [m.node for m in self.masses]),
             ("rigid_links", [n for link in self.rigid_links for n in (link.leader, link.follower)]),
+            ("elements", [n for element in self.elements for n in (element.start, element.end)]),
             ("reaction_nodes", [r.node for r in self.reactions]),
             ("interface_nodes", list(self.interface_nodes)),
         ):
@@ -234,8 +239,7 @@ class Structure:
         if not self.members:
             raise InputError("a structure needs members", field="members", value=[], remedy="add members")
         neighbours: dict[str, list[str]] = {name: [] for name in self.nodes}
-        pairs = [(m.start, m.end) for m in self.members] + [(k.leader, k.follower) for k in self.rigid_links]
-        for a, b in pairs:
+        for a, b in self.joined:
             neighbours[a].append(b)
             neighbours[b].append(a)
         reached, stack = {self.members[0].start}, [self.members[0].start]
@@ -261,6 +265,15 @@ class Structure:
                 value=node,
                 remedy=did_you_mean(node, self.nodes) or "define it under nodes",
             )
+
+    @property
+    def joined(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of nodes that a member, an element or a rigid link joins."""
+        return (
+            *((m.start, m.end) for m in self.members),
+            *((e.start, e.end) for e in self.elements),
+            *((link.leader, link.follower) for link in self.rigid_links),
+        )
 
     @property
     def reaction_nodes(self) -> tuple[str, ...]:

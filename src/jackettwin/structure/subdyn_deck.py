@@ -43,6 +43,7 @@ def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
             value=[],
             remedy="name the nodes under the tower",
         )
+    _require_tubes(structure)
     grounds = {
         r.node: ssi_text(r) for r in structure.reactions if r.stiffness is not None or r.mass is not None
     }
@@ -55,6 +56,18 @@ def write_subdyn(structure: Structure, path: Path) -> tuple[Path, ...]:
         with atomic_path(target) as temporary:
             temporary.write_text(text, encoding="utf-8")
     return tuple(files)
+
+
+def _require_tubes(structure: Structure) -> None:
+    turning = [link.follower for link in structure.rigid_links if link.release]
+    others = [*(f"{e.kind} {e.name}" for e in structure.elements), *(f"hinge {name}" for name in turning)]
+    if others:
+        raise InputError(
+            "only tubes and rigid links can be written to a deck",
+            field="members",
+            value=others[0] if len(others) == 1 else others[:5],
+            remedy="edit the deck itself",
+        )
 
 
 def subdyn_text(structure: Structure, ssi_files: dict[str, str]) -> str:

@@ -86,6 +86,7 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
         members=members,
         masses=tuple(mass for mass in structure.masses if mass.node in used),
         rigid_links=tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= used),
+        elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
         interface_nodes=tuple(node for node in structure.interface_nodes if node in used),
     )
 
