@@ -10,9 +10,12 @@ from jackettwin.files.atomic import null_for_nan
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.selection import with_covariance
 from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.fitted import residuals
 from jackettwin.twin.measure import Sighting, fuse
+from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.truth import true_modes
+from jackettwin.updating import Target
 
 
 @pytest.fixture(scope="module")
@@ -123,35 +126,55 @@ def test_result_is_json_with_null_for_unknown(pile: TwinResult, thesis: TwinResu
             assert all({"value", "std", "interval_90"} <= set(p) for p in update["parameters"].values())
 
 
-def sighting(f: float, zeta: float, f_std: float | None = None, zeta_std: float | None = None) -> Sighting:
+def sighting(
+    f: float, zeta: float, f_std: float | None = None, zeta_std: float | None = None, rho: float = 0.0
+) -> Sighting:
     shape = np.array([1.0 + 0j])
     estimate = ModalEstimate(f, zeta, shape, 1.0, 0.0, 1.0)
     if f_std is not None and zeta_std is not None:
-        estimate = with_covariance(estimate, np.diag([(f_std / f) ** 2, (zeta_std / zeta) ** 2]))
+        std = np.array([f_std / f, zeta_std / zeta])
+        estimate = with_covariance(estimate, np.outer(std, std) * np.array([[1.0, rho], [rho, 1.0]]))
     return Sighting(estimate, 1.0, 600.0)
 
 
+def numbers(target: Target) -> tuple[float | None, ...]:
+    return target.frequency_hz, target.frequency_std_hz, target.damping_ratio, target.damping_ratio_std
+
+
 def test_fusing_one_record_returns_it() -> None:
-    assert fuse((sighting(0.18, 0.01, 0.001, 0.003),)) == pytest.approx((0.18, 0.001, 0.01, 0.003))
+    one = fuse(1, (sighting(0.18, 0.01, 0.001, 0.003, rho=-0.4),))
+    assert numbers(one) == pytest.approx((0.18, 0.001, 0.01, 0.003))
+    assert one.correlation == pytest.approx(-0.4)
 
 
 def test_fusing_equal_records_shrinks_the_interval_by_the_root_of_their_number() -> None:
-    f, f_std, zeta, zeta_std = fuse(tuple(sighting(0.18, 0.01, 0.001, 0.003) for _ in range(9)))
-    assert (f, f_std, zeta, zeta_std) == pytest.approx((0.18, 0.001 / 3, 0.01, 0.001))
+    mean = fuse(1, tuple(sighting(0.18, 0.01, 0.001, 0.003, rho=0.3) for _ in range(9)))
+    assert numbers(mean) == pytest.approx((0.18, 0.001 / 3, 0.01, 0.001))
+    assert mean.correlation == pytest.approx(0.3)
 
 
 def test_scatter_beyond_the_stated_precision_widens_the_interval(rng: np.random.Generator) -> None:
     values = 0.18 * np.exp(0.02 * rng.standard_normal(50))
-    _, f_std, _, _ = fuse(tuple(sighting(float(v), 0.01, 1e-5, 0.003) for v in values))
+    mean = fuse(1, tuple(sighting(float(v), 0.01, 1e-5, 0.003, rho=0.9) for v in values))
     # standard error of the mean of 50 values with 2 % scatter; ±30 % is three standard errors of a std
-    assert f_std == pytest.approx(0.18 * 0.02 / np.sqrt(50), rel=0.3)
+    assert mean.frequency_std_hz == pytest.approx(0.18 * 0.02 / np.sqrt(50), rel=0.3)
+    # scatter between records is a few hundred times the records' own: so little of 0.9 is left
+    assert abs(mean.correlation) < 0.01
 
 
 def test_records_without_a_standard_deviation_take_the_information_limit() -> None:
     """Au: CoV f = √(ζ/2πfT), CoV ζ = 1/√(2πζfT): 0.43 % and 34 % at 0.18 Hz, 1.27 %, 600 s (evidence)."""
-    f, f_std, zeta, zeta_std = fuse((sighting(0.18, 0.0127),))
-    assert f_std / f == pytest.approx(0.0043, abs=5e-5)
-    assert zeta_std / zeta == pytest.approx(0.34, abs=5e-3)
+    mean = fuse(1, (sighting(0.18, 0.0127),))
+    assert mean.log_stds == pytest.approx((0.0043, 0.34), rel=0.015)
+
+
+def test_the_models_error_adds_to_variances_and_not_to_the_covariance() -> None:
+    mode = MeasuredMode(1, "fore_aft_1", 0.2, 0.002, 0.01, 0.002, None, None, True, True, correlation=0.5)
+    settings = UpdateSettings(model_errors=(ModelError((1,), frequency=0.01, damping=0.2),))
+    config = replace(read_twin("thesis_table_6_1"), update=settings)
+    target = residuals(config, (mode,)).targets[0]
+    assert target.log_stds == pytest.approx((0.01 * np.sqrt(2.0), 0.2 * np.sqrt(2.0)))
+    assert target.correlation == pytest.approx(0.25)
 
 
 def test_nacelle_dashpots_explain_what_feet_cannot() -> None:

@@ -9,6 +9,7 @@ from jackettwin.errors import InputError
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, single, support_model
 from jackettwin.updating.extras import Extras
+from jackettwin.updating.joint import Growth
 from jackettwin.updating.posterior import sample_posterior
 from jackettwin.updating.problem import NEVER
 
@@ -118,3 +119,32 @@ def test_unknown_names_and_priors_without_weights(model: SupportModel) -> None:
         joint(model, {"": (residuals, {})}, per_state=("c_yaw",))
     with pytest.raises(InputError, match="needs data with standard deviations"):
         single(model, Residuals((Target(1, 0.18),), relative=True))
+
+
+def test_an_error_of_the_model_that_states_share_is_not_averaged_out(model: SupportModel) -> None:
+    """Nine days of the same frequency: the closed form of a mean with a common error."""
+    day = Residuals((Target(1, 0.18, 0.003 * 0.18),), relative=False)
+    problem = joint(model, {str(i): (day, {}) for i in range(9)}, errors={"f1": 0.02})
+    assert problem.parameters[-1].name == "error_f1"
+    z = np.log([*TRUTH, 1.0])
+    r, J, _ = problem.evaluate(z, None)
+    assert J[:9, -1] == pytest.approx(np.full(9, 1.0 / 0.003))
+    # what is left of ln f1 once the common error is free: 0.02² + 0.003²/9
+    information = J.T @ J
+    own, cross, rest = information[0, 0], information[0, -1], information[-1, -1]
+    slope = J[0, 0] * 0.003
+    assert (own - cross**2 / rest) / slope**2 == pytest.approx(1.0 / (0.02**2 + 0.003**2 / 9), rel=1e-6)
+
+
+def test_parameters_that_grow(model: SupportModel) -> None:
+    days = {"first": 0.0, "third": 2.0}
+    residuals = seen(model, TRUTH * np.array([1.0, 1.0, 10.0]))
+    problem = joint(model, dict.fromkeys(days, (residuals, {})), growth=Growth(("k",), days, 0.05))
+    z = np.log([3e9, 0.1, 6e4, 0.9])
+    for state, k in zip(problem.states, (3e9, 3e9 * 0.81), strict=True):
+        np.testing.assert_allclose(problem.vectors(z[None], state)[0], [k, 0.1, 6e4])
+    _, J, near = problem.evaluate(z, None)
+    h = 1e-4 * (np.arange(4) == 3)
+    up, down = (problem.evaluate(z + s, near)[0] for s in (h, -h))
+    # second order in h
+    np.testing.assert_allclose(J[:, 3], (up - down) / 2e-4, rtol=1e-5, atol=1e-6)

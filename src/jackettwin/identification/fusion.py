@@ -52,12 +52,21 @@ class Average:
         Of the mean.
     scatter : (of ln f, of ln ζ)
         Between records, beyond their own uncertainty.
+    correlation : float
+        Of ln f and ln ζ of the mean; what scatters between records counts as independent.
     """
 
     frequency_hz: float
     damping_ratio: float
     log_std: tuple[float, float]
     scatter: tuple[float, float]
+    correlation: float = 0.0
+
+    @property
+    def log_covariance(self) -> FloatArray:
+        """Covariance (2, 2) of (ln f, ln ζ)."""
+        std = np.array(self.log_std)
+        return np.asarray(np.outer(std, std) * np.array([[1.0, self.correlation], [self.correlation, 1.0]]))
 
 
 @dataclass(frozen=True)
@@ -195,13 +204,22 @@ def average(members: Sequence[ModalEstimate], duration_s: FloatArray) -> Average
         relative = random_effects(own_zeta / zeta, _variances(members, duration_s, 1, zeta))
         zeta *= relative[0]
     log_f = np.log([mode.frequency_hz for mode in members])
-    mean_f, variance_f, between_f = random_effects(log_f, _variances(members, duration_s, 0, zeta))
+    own_f, own = (_variances(members, duration_s, which, zeta) for which in (0, 1))
+    mean_f, variance_f, between_f = random_effects(log_f, own_f)
+    within = 1.0 / np.sqrt(np.sum(1.0 / own_f) * np.sum(1.0 / own))
     return Average(
         frequency_hz=float(np.exp(mean_f)),
         damping_ratio=zeta,
         log_std=(float(np.sqrt(variance_f)), float(np.sqrt(relative[1]))),
         scatter=(float(np.sqrt(between_f)), float(np.sqrt(relative[2]))),
+        correlation=_correlation(members) * float(within / np.sqrt(variance_f * relative[1])),
     )
+
+
+def _correlation(members: Sequence[ModalEstimate]) -> float:
+    """Return the correlation of ln f and ln ζ inside a record: the median over those that state it."""
+    known = [m.log_covariance for m in members if m.log_covariance is not None]
+    return float(np.median([c[0, 1] / np.sqrt(c[0, 0] * c[1, 1]) for c in known])) if known else 0.0
 
 
 def _common_channels(identifications: Sequence[Identification]) -> list[str]:
@@ -303,7 +321,7 @@ def _fused_mode(
             zeta * float(np.exp(-1.96 * std_zeta)),
             zeta * float(np.exp(1.96 * std_zeta)),
         ),
-        log_covariance=np.diag(np.square(mean.log_std)),
+        log_covariance=mean.log_covariance,
         mode_shape=shape,
         scatter_frequency=mean.scatter[0],
         scatter_damping_ratio=mean.scatter[1],

@@ -104,6 +104,7 @@ def _measured(m: MeasuredMode) -> dict[str, Any]:
         "frequency_std_hz": m.frequency_std_hz,
         "damping_ratio": m.damping_ratio,
         "damping_ratio_std": m.damping_ratio_std,
+        "frequency_damping_correlation": m.correlation,
         "mac": m.mac,
         "fits_frequency": m.fits_frequency,
         "fits_damping": m.fits_damping,

@@ -88,6 +88,7 @@ class TargetSchema(Schema):
     frequency_std_hz: Positive | None = None
     damping_ratio: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
     damping_ratio_std: Positive | None = None
+    correlation: Annotated[float, Field(gt=-1.0, lt=1.0)] = 0.0
 
 
 class ModelErrorSchema(Schema):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 from jackettwin.errors import InputError, located
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.config import ModelError, TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Residuals, Target
@@ -33,6 +33,7 @@ def _from_targets(config: TwinConfig, labels: tuple[str, ...]) -> tuple[Measured
             frequency_std_hz=t.frequency_std_hz,
             damping_ratio=t.damping_ratio,
             damping_ratio_std=t.damping_ratio_std,
+            correlation=t.correlation,
             estimate=None,
             mac=None,
             fits_frequency=t.frequency_hz is not None,
@@ -57,7 +58,7 @@ def _from_records(config: TwinConfig, found: Measured, labels: tuple[str, ...]) 
 
 
 def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighting, ...]) -> MeasuredMode:
-    f, f_std, zeta, zeta_std = fuse(seen)
+    mean = fuse(mode, seen)
     best = max(seen, key=lambda s: s.mac)
     chosen = mode in config.update.modes
     wanted = config.update.damping_of
@@ -65,7 +66,17 @@ def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighti
         wanted != "none" and (label.startswith(wanted) if isinstance(wanted, str) else label in wanted)
     )
     return MeasuredMode(
-        mode, label, f, f_std, zeta, zeta_std, best.estimate, best.mac, chosen, chosen and damped
+        mode=mode,
+        label=label,
+        frequency_hz=mean.frequency_hz,
+        frequency_std_hz=mean.frequency_std_hz,
+        damping_ratio=mean.damping_ratio,
+        damping_ratio_std=mean.damping_ratio_std,
+        correlation=mean.correlation,
+        estimate=best.estimate,
+        mac=best.mac,
+        fits_frequency=chosen,
+        fits_damping=chosen and damped,
     )
 
 
@@ -87,18 +98,20 @@ def residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residua
             remedy="give frequency_std_hz and damping_ratio_std, or weighting: relative",
         )
     relative = weighting == "relative" or not complete
-    targets = []
-    for m, error in zip(measured, errors, strict=True):
-        f = m.frequency_hz if m.fits_frequency else None
-        zeta = m.damping_ratio if m.fits_damping else None
-        targets.append(
-            Target(
-                m.mode,
-                f,
-                None if relative or f is None else hypot(m.frequency_std_hz or 0.0, error.frequency * f),
-                zeta,
-                None if relative or zeta is None else hypot(m.damping_ratio_std or 0.0, error.damping * zeta),
-            )
-        )
     with located(file=config.path):
-        return Residuals(tuple(targets), relative)
+        return Residuals(
+            tuple(_target(m, error, relative) for m, error in zip(measured, errors, strict=True)), relative
+        )
+
+
+def _target(m: MeasuredMode, error: ModelError, relative: bool) -> Target:
+    """Return what is fitted of a mode; the model's error adds to the variances, not to the covariance."""
+    f = m.frequency_hz if m.fits_frequency else None
+    zeta = m.damping_ratio if m.fits_damping else None
+    if relative:
+        return Target(m.mode, f, None, zeta, None)
+    own_f, own_zeta = m.frequency_std_hz or 0.0, m.damping_ratio_std or 0.0
+    f_std = None if f is None else hypot(own_f, error.frequency * f)
+    zeta_std = None if zeta is None else hypot(own_zeta, error.damping * zeta)
+    correlation = m.correlation * own_f * own_zeta / (f_std * zeta_std) if f_std and zeta_std else 0.0
+    return Target(m.mode, f, f_std, zeta, zeta_std, correlation)

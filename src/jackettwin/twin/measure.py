@@ -16,6 +16,7 @@ from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.observe import Observation, observe
+from jackettwin.updating import Target
 from jackettwin.updating.pairing import pair
 
 
@@ -93,11 +94,11 @@ def _wind(record: Record) -> float | None:
     return None if value is None else float(value)
 
 
-def fuse(sightings: tuple[Sighting, ...]) -> tuple[float, float, float, float]:
-    """Return (f, std f, ζ, std ζ) of one mode over records, as ``identification.fuse`` has them."""
+def fuse(mode: int, sightings: tuple[Sighting, ...]) -> Target:
+    """Return one mode over records as a target, averaged as ``identification.fuse`` does."""
     mean = average([s.estimate for s in sightings], np.array([s.duration_s for s in sightings]))
     f, zeta = mean.frequency_hz, mean.damping_ratio
-    return f, f * mean.log_std[0], zeta, zeta * mean.log_std[1]
+    return Target(mode, f, f * mean.log_std[0], zeta, zeta * mean.log_std[1], mean.correlation)
 
 
 def _sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:

@@ -29,6 +29,8 @@ class MeasuredMode:
         Between the measured shape and the model's at the sensors.
     fits_frequency, fits_damping : bool
         Whether the value took part in the update.
+    correlation : float
+        Of the logarithms of frequency and damping ratio.
     """
 
     mode: int
@@ -41,6 +43,7 @@ class MeasuredMode:
     mac: float | None
     fits_frequency: bool
     fits_damping: bool
+    correlation: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -111,8 +111,7 @@ def operating_states(
         for mode in apart:
             seen = tuple(s for s in found.sightings[mode] if s.wind_m_s == v)
             if seen:
-                _, _, zeta, std = fuse(seen)
-                targets.append(Target(mode, damping_ratio=zeta, damping_ratio_std=std))
+                targets.append(replace(fuse(mode, seen), frequency_hz=None, frequency_std_hz=None))
         factors = {name: v / wind for name in config.update.dashpots}
         states[f"{v:g} m/s"] = (Residuals(tuple(targets), relative=False), factors)
     return states

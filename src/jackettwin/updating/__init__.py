@@ -1,8 +1,9 @@
 """Modes to parameters, with uncertainty."""
 
 from jackettwin.updating.families import DEFAULT_LAWS, Parameter, family
+from jackettwin.updating.joint import joint, single
 from jackettwin.updating.model import SupportModel, numbered_modes, support_model
-from jackettwin.updating.problem import Problem, joint, single
+from jackettwin.updating.problem import Problem
 from jackettwin.updating.targets import Residuals, Target
 from jackettwin.updating.update import Update, law_probability, update
 

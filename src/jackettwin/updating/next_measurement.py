@@ -96,8 +96,7 @@ def _single(problem: Problem, mode: int, *, damping: bool) -> Extra:
             gradient, variance = -slope.real / (size * zeta) - d_ln_f, 1.0 / (2.0 * pi * zeta * cycles)
         else:
             gradient, variance = d_ln_f, zeta / (2.0 * pi * cycles)
-        full = np.zeros(point.size)
-        full[state.columns] = gradient
+        full = gradient @ state.weights
         return np.asarray(np.outer(full, full) / variance)
 
     return extra

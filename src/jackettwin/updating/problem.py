@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.errors import InputError
 from jackettwin.response.numbered import NumberedModes, Status
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
@@ -33,18 +31,24 @@ Found = tuple[NumberedModes, ...]
 class State:
     """Data measured in one operating state.
 
+    The model's parameters in this state are ``exp(weights @ z + shifts)``: shared between states or its own,
+    multiplied by a known factor, or grown with time.
+
     Attributes
     ----------
-    columns : (n_model,) which of the problem's parameters are the model's in this state
-    factors : (n_model,) what they are multiplied by: a rotor's dashpot grows with the wind
+    weights : (n_model, d)
+    shifts : (n_model,) logarithms of known factors: a rotor's dashpot grows with the wind
+    errors : (n_residuals, d) what z adds to the logarithms of the model's values: errors of the model that
+        all states share
     shapes : tuple of ShapeTarget
         Of modes that the residuals hold, too.
     """
 
     name: str
     residuals: Residuals
-    columns: IntArray
-    factors: FloatArray
+    weights: FloatArray
+    shifts: FloatArray
+    errors: FloatArray
     shapes: tuple[ShapeTarget, ...] = ()
 
     @property
@@ -57,20 +61,22 @@ class State:
         """−log of the density of zero residuals."""
         return self.residuals.log_normalisation + sum(shape.log_normalisation for shape in self.shapes)
 
-    def values(self, modes: NumberedModes, known: BoolArray) -> FloatArray:
-        """Return the residuals (n_known, n_data) of the parameter sets whose modes are known."""
+    def values(self, z: FloatArray, modes: NumberedModes) -> FloatArray:
+        """Return the residuals (n, n_data) of points z (n, d) whose modes are known."""
         of = self.residuals.modes.index
-        columns = [shape.values(modes.shapes[known, of(shape.mode)])[:, None] for shape in self.shapes]
-        return np.concatenate([self.residuals.values(modes.poles[known]), *columns], axis=1)
+        columns = [shape.values(modes.shapes[:, of(shape.mode)])[:, None] for shape in self.shapes]
+        poles = self.residuals.values(modes.poles, shift=z @ self.errors.T)
+        return np.concatenate([poles, *columns], axis=1)
 
-    def evaluate(self, modes: NumberedModes) -> tuple[FloatArray, FloatArray]:
-        """Return the residuals (n_data,) of the first parameter set and their Jacobian."""
-        values, rows = self.residuals.evaluate(modes.poles[0], modes.slopes[0])
+    def jacobian(self, modes: NumberedModes) -> FloatArray:
+        """Return the derivatives (n_data, d) of the residuals at the first of the points."""
+        own = [self.residuals.jacobian(modes.poles[0], modes.slopes[0])]
         for shape in self.shapes:
             i = self.residuals.modes.index(shape.mode)
-            value, row = shape.evaluate(modes.shapes[0, i], modes.shape_slopes[0, i])
-            values, rows = np.append(values, value), np.vstack([rows, row])
-        return values, rows
+            own.append(shape.jacobian(modes.shapes[0, i], modes.shape_slopes[0, i])[None])
+        rows = np.concatenate(own) @ self.weights
+        rows[: self.residuals.count] += self.residuals.shift_jacobian(self.errors)
+        return rows
 
 
 @dataclass(frozen=True)
@@ -82,7 +88,7 @@ class Problem:
     parameters : tuple of Parameter
         The model's, and for a state-dependent one a copy for each state.
     prior : BoxPrior
-        Of their logarithms.
+        Of their logarithms z.
     """
 
     model: SupportModel
@@ -129,7 +135,7 @@ class Problem:
 
     def vectors(self, z: FloatArray, state: State) -> FloatArray:
         """Return the model's parameter vectors (n, n_model) of points z = ln θ (n, d) in one state."""
-        return np.asarray(np.exp(z[:, state.columns]) * state.factors)
+        return np.asarray(np.exp(z @ state.weights.T + state.shifts))
 
     def evaluate(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, Found | None]:
         """Return residuals, their Jacobian by z and the modes at one point (d,); None if a mode is lost.
@@ -142,7 +148,7 @@ class Problem:
             jacobian = np.zeros((len(state.names), z.size))
             value = np.full(len(state.names), _LOST)
             if not np.isnan(modes.poles).any():
-                value, jacobian[:, state.columns] = state.evaluate(modes)
+                value, jacobian = state.values(z[None], modes)[0], state.jacobian(modes)
             values.append(value)
             rows.append(jacobian)
         if not self.relative:
@@ -161,8 +167,7 @@ class Problem:
         """Return the cost (n,), (8.4) or χ² with the normal priors, at points (n, d)."""
         cost = np.zeros(len(z))
         for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
-            known = np.asarray(~np.isnan(modes.poles).any(axis=1))
-            r = state.values(modes, known)
+            known, r = _known_residuals(state, z, modes)
             cost[known] += (r * r).sum(axis=1)
             cost[~known] += len(state.names) * _LOST**2
         if not self.relative:
@@ -173,8 +178,7 @@ class Problem:
         """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
         log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)
         for state, modes in zip(self.states, found, strict=True):
-            known = np.asarray(~np.isnan(modes.poles).any(axis=1))
-            r = state.values(modes, known)
+            known, r = _known_residuals(state, z, modes)
             log_l[known] += -0.5 * (r * r).sum(axis=1) - state.log_normalisation
             log_l[~known] = NEVER
         return log_l, found
@@ -199,6 +203,12 @@ class Problem:
         return tuple(found)
 
 
+def _known_residuals(state: State, z: FloatArray, modes: NumberedModes) -> tuple[BoolArray, FloatArray]:
+    """Return which points have every mode, (n,), and the residuals of these."""
+    known: BoolArray = np.asarray(~np.isnan(modes.poles).any(axis=1))
+    return known, state.values(z[known], replace(modes, poles=modes.poles[known], shapes=modes.shapes[known]))
+
+
 def _some(found: NumberedModes, which: list[int]) -> NumberedModes:
     """Return some of the modes; a set that lost one of them is no start."""
     poles = found.poles[:, which]
@@ -206,66 +216,3 @@ def _some(found: NumberedModes, which: list[int]) -> NumberedModes:
     return replace(
         found, poles=poles, shapes=found.shapes[:, which], slopes=found.slopes[:, which], status=status
     )
-
-
-def single(model: SupportModel, residuals: Residuals) -> Problem:
-    """Return the problem of one operating state.
-
-    Raises
-    ------
-    InputError
-        If a parameter has a lognormal prior but the residuals carry no standard deviations.
-    """
-    return joint(model, {"": (residuals, {})})
-
-
-def joint(
-    model: SupportModel,
-    states: Mapping[str, tuple[Residuals, Mapping[str, float]]],
-    *,
-    per_state: tuple[str, ...] = (),
-    shapes: tuple[ShapeTarget, ...] = (),
-) -> Problem:
-    """Return the problem of several operating states that share their parameters.
-
-    Parameters
-    ----------
-    states : {name: (residuals, factors)}
-        Factors by parameter name: what a shared parameter is multiplied by in this state.
-    per_state : tuple of str
-        Parameters with a value of their own in each state, named ``parameter@state``.
-    shapes : tuple of ShapeTarget
-        Measured shapes, in the first state; its residuals hold their modes, too.
-
-    Raises
-    ------
-    InputError
-        If a name is none of the model's, or priors meet residuals without standard deviations.
-    """
-    names = [p.name for p in model.parameters]
-    for name in (*per_state, *(name for _, factors in states.values() for name in factors)):
-        if name not in names:
-            raise InputError("no such parameter", field="states", value=name, allowed=", ".join(names))
-    shared = [p for p in model.parameters if p.name not in per_state]
-    own = [p for p in model.parameters if p.name in per_state]
-    parameters = (*shared, *(replace(p, name=f"{p.name}@{state}") for state in states for p in own))
-    place = {p.name: i for i, p in enumerate(parameters)}
-    built = tuple(
-        State(
-            state,
-            residuals,
-            np.array([place.get(name, place.get(f"{name}@{state}", -1)) for name in names], dtype=np.intp),
-            np.array([factors.get(name, 1.0) for name in names]),
-            () if i else shapes,
-        )
-        for i, (state, (residuals, factors)) in enumerate(states.items())
-    )
-    problem = Problem(model, built, parameters, BoxPrior.of(parameters))
-    if problem.relative and any(p.median is not None for p in parameters):
-        raise InputError(
-            "a prior needs data with standard deviations",
-            field="update.priors",
-            value=[p.name for p in parameters if p.median is not None],
-            remedy="give every target its standard deviation, or leave the priors out",
-        )
-    return problem

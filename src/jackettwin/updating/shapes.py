@@ -63,15 +63,15 @@ class ShapeTarget:
         """Return the residuals (n_sets,) of shapes x (n_sets, n)."""
         return self._parts(x)[0]
 
-    def evaluate(self, x: ComplexArray, slopes: ComplexArray) -> tuple[float, FloatArray]:
-        """Return the residual of one shape x (n,) and its derivatives from dx/dz (n_z, n)."""
+    def jacobian(self, x: ComplexArray, slopes: ComplexArray) -> FloatArray:
+        """Return the derivatives (n_z,) of the residual of one shape x (n,) from dx/dz (n_z, n)."""
         value, y, overlap, size = self._parts(x[None])
         dy = slopes @ self.at_sensors.T
         d_overlap = 2.0 * (np.conj(overlap[0]) * (dy @ self.shape.conj())).real
         d_size = 2.0 * (dy @ y[0].conj()).real
         mac = 1.0 - self.std * value[0]
         norm = float(np.vdot(self.shape, self.shape).real) * size[0]
-        return float(value[0]), -(d_overlap / norm - mac * d_size / size[0]) / self.std
+        return np.asarray(-(d_overlap / norm - mac * d_size / size[0]) / self.std)
 
     def _parts(self, x: ComplexArray) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
         y = np.asarray(x @ self.at_sensors.T)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from math import log, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +13,11 @@ from jackettwin.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
+
+_LEAST = 1e-9
+"""A damping ratio below this, or negative, counts as this: its logarithm exists."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +25,7 @@ class Target:
     """A mode known from elsewhere; ``mode`` counts from 1 on pinned supports.
 
     A value that is None takes no part in the fit. The standard deviations weigh the residuals; with None
-    the residual is relative, as in thesis (8.4).
+    the residual is relative, as in thesis (8.4). ``correlation`` is that of ln f and ln ζ.
     """
 
     mode: int
@@ -26,14 +33,32 @@ class Target:
     frequency_std_hz: float | None = None
     damping_ratio: float | None = None
     damping_ratio_std: float | None = None
+    correlation: float = 0.0
+
+    @property
+    def log_stds(self) -> tuple[float | None, float | None]:
+        """Standard deviations of ln f and ln ζ, where value and deviation are known."""
+        return (
+            _ratio(self.frequency_std_hz, self.frequency_hz),
+            _ratio(self.damping_ratio_std, self.damping_ratio),
+        )
+
+
+def _ratio(std: float | None, value: float | None) -> float | None:
+    return None if std is None or value is None else std / value
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """Residuals of a set of targets, differentiable in the poles.
+    r"""Residuals of a set of targets, differentiable in the poles.
 
-    ``relative`` is the thesis's cost (8.4), each residual relative to its measured value; otherwise each is a
-    logarithm over its own standard deviation, which treats a ratio that is known to 30 % as such.
+    ``relative`` is the thesis's cost (8.4), each residual relative to its measured value. Otherwise they are
+    logarithms, whitened by their covariance,
+
+    .. math:: r = L^{-1} \ln(y_\mathrm{model}/y), \quad L L^T = Σ,
+
+    Σ from the standard deviations and from the correlation of a mode's frequency and damping ratio: a ratio
+    that is known to 30 % is treated as such.
     """
 
     targets: tuple[Target, ...]
@@ -47,110 +72,111 @@ class Residuals:
         modes = [target.mode for target in self.targets]
         if len(set(modes)) != len(modes):
             raise InputError("a mode is given twice", field="targets.mode", value=modes)
-        if not any(self._used()):
+        if not self.used:
             raise InputError("no target has a frequency or a damping ratio", field="targets", value=modes)
+        for t in self.targets:
+            if not -1.0 < t.correlation < 1.0:
+                raise InputError(
+                    "a correlation lies between −1 and 1", field="targets.correlation", value=t.correlation
+                )
 
-    def _used(self) -> list[bool]:
-        return [
-            flag for t in self.targets for flag in (t.frequency_hz is not None, t.damping_ratio is not None)
-        ]
-
-    @property
+    @cached_property
     def used(self) -> tuple[Target, ...]:
         """The targets that have a value."""
         return tuple(t for t in self.targets if t.frequency_hz is not None or t.damping_ratio is not None)
 
-    @property
+    @cached_property
     def modes(self) -> tuple[int, ...]:
         """Mode numbers of the targets that have a value, in their order."""
         return tuple(target.mode for target in self.used)
 
-    @property
+    @cached_property
     def names(self) -> list[str]:
         """``f1``, ``ζ1``, … of each residual."""
-        pairs = [(letter, t.mode) for t in self.targets for letter in ("f", "ζ")]
-        return [f"{letter}{mode}" for (letter, mode), used in zip(pairs, self._used(), strict=True) if used]
+        pairs = [f"{letter}{t.mode}" for t in self.used for letter in ("f", "ζ")]
+        return [pairs[i] for i in self._places]
 
     @property
     def count(self) -> int:
         """Number of residuals."""
-        return sum(self._used())
+        return self._places.size
 
     @property
     def weighted(self) -> bool:
         """Whether every value has a standard deviation."""
-        return all(
-            std is not None
-            for t in self.targets
-            for value, std in (
-                (t.frequency_hz, t.frequency_std_hz),
-                (t.damping_ratio, t.damping_ratio_std),
-            )
-            if value is not None
-        )
+        return not np.isnan(self._log_std).any()
 
     @property
     def log_normalisation(self) -> float:
         """−log of the normal density of zero residuals in the logarithms of the measured values."""
-        scales = [
-            std / value
-            for t in self.targets
-            for value, std in (
-                (t.frequency_hz, t.frequency_std_hz),
-                (t.damping_ratio, t.damping_ratio_std),
-            )
-            if value is not None and std is not None
-        ]
-        return float(np.sum(np.log(np.sqrt(2.0 * np.pi) * np.array(scales))))
+        known = ~np.isnan(self._log_std)
+        return float(0.5 * known.sum() * log(2.0 * pi) - np.log(np.diag(self._whitener)[known]).sum())
 
-    def values(self, poles: ComplexArray) -> FloatArray:
-        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_modes)."""
-        columns = []
-        for target, pole in zip(self.used, poles.T, strict=True):
-            size = np.abs(pole)
-            if target.frequency_hz is not None:
-                columns.append(
-                    self._value(size / (2.0 * np.pi), target.frequency_hz, target.frequency_std_hz)
-                )
-            if target.damping_ratio is not None:
-                columns.append(self._value(-pole.real / size, target.damping_ratio, target.damping_ratio_std))
-        return np.stack(columns, axis=1)
+    @cached_property
+    def _places(self) -> IntArray:
+        """Which of (f, ζ) of every used mode are data."""
+        pairs = [value for t in self.used for value in (t.frequency_hz, t.damping_ratio)]
+        return np.flatnonzero([value is not None for value in pairs])
 
-    def _value(self, model: FloatArray, measured: float, std: float | None) -> FloatArray:
-        if self.relative or std is None:
-            return (model - measured) / measured
-        return np.asarray(np.log(np.maximum(model, 1e-9) / measured) / (std / measured))
+    @cached_property
+    def _measured(self) -> FloatArray:
+        pairs = [value or np.nan for t in self.used for value in (t.frequency_hz, t.damping_ratio)]
+        return np.array(pairs)[self._places]
 
-    def evaluate(self, poles: ComplexArray, slopes: ComplexArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals (count,) and their Jacobian (count, n_parameters).
+    @cached_property
+    def _log_std(self) -> FloatArray:
+        """Standard deviation of every logarithm, NaN where it is not known."""
+        pairs = [np.nan if std is None else std for t in self.used for std in t.log_stds]
+        return np.array(pairs)[self._places]
+
+    @cached_property
+    def _logarithmic(self) -> BoolArray:
+        return np.logical_and(not self.relative, ~np.isnan(self._log_std))
+
+    @cached_property
+    def _whitener(self) -> FloatArray:
+        """L⁻¹ (count, count); one for relative residuals."""
+        std = np.where(self._logarithmic, self._log_std, 1.0)
+        correlation = np.eye(self.count)
+        first = {int(place): i for i, place in enumerate(self._places)}
+        for m, t in enumerate(self.used):
+            i, j = first.get(2 * m, -1), first.get(2 * m + 1, -1)
+            if i >= 0 and j >= 0 and self._logarithmic[[i, j]].all():
+                correlation[i, j] = correlation[j, i] = t.correlation
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(correlation * np.outer(std, std))))
+
+    def values(self, poles: ComplexArray, *, shift: FloatArray | float = 0.0) -> FloatArray:
+        """Return residuals (n_sets, count) alone for many sets of poles (n_sets, n_modes).
+
+        Parameters
+        ----------
+        shift : (n_sets, count), optional
+            Added to the logarithms of the model's values: what the model itself may miss.
+        """
+        size = np.abs(poles)
+        pairs = np.stack([size / (2.0 * pi), -poles.real / size], axis=-1)
+        model = pairs.reshape(len(poles), 2 * len(self.used))[:, self._places]
+        ratio = np.maximum(model, _LEAST) / self._measured
+        deviation = np.where(self._logarithmic, np.log(ratio), model / self._measured - 1.0)
+        return np.asarray((deviation + shift) @ self._whitener.T)
+
+    def jacobian(self, poles: ComplexArray, slopes: ComplexArray) -> FloatArray:
+        """Return the residuals' derivatives (count, n_parameters).
 
         Parameters
         ----------
         poles : (n_modes,) λ of ``modes``
         slopes : (n_modes, n_parameters) dλ/d ln θ
         """
-        values, rows = [], []
-        for target, pole, slope in zip(self.used, poles, slopes, strict=True):
-            size = abs(pole)
-            radial = (np.conj(pole) * slope).real / size  # d|λ|
-            if target.frequency_hz is not None:
-                r, dr = self._residual(
-                    size / (2.0 * np.pi), radial / (2.0 * np.pi), target.frequency_hz, target.frequency_std_hz
-                )
-                values.append(r)
-                rows.append(dr)
-            if target.damping_ratio is not None:
-                zeta = -pole.real / size
-                dzeta = -slope.real / size - zeta * radial / size
-                r, dr = self._residual(zeta, dzeta, target.damping_ratio, target.damping_ratio_std)
-                values.append(r)
-                rows.append(dr)
-        return np.array(values), np.array(rows)
+        size = np.abs(poles)[:, None]
+        zeta = -poles.real[:, None] / size
+        radial = (np.conj(poles)[:, None] * slopes).real / size  # d|λ|
+        pairs = np.stack([radial / (2.0 * pi), -slopes.real / size - zeta * radial / size], axis=1)
+        model = np.stack([size / (2.0 * pi), zeta], axis=1).reshape(-1)[self._places]
+        scale = np.where(self._logarithmic, np.maximum(model, _LEAST), self._measured)
+        rows = pairs.reshape(-1, slopes.shape[1])[self._places] / scale[:, None]
+        return np.asarray(self._whitener @ rows)
 
-    def _residual(
-        self, model: float, slope: FloatArray, measured: float, std: float | None
-    ) -> tuple[float, FloatArray]:
-        value = float(self._value(np.asarray(model), measured, std))
-        if self.relative or std is None:
-            return value, slope / measured
-        return value, slope / max(model, 1e-9) * (measured / std)
+    def shift_jacobian(self, rows: FloatArray) -> FloatArray:
+        """Return the residuals' derivatives from those of the ``shift``, (count, n)."""
+        return np.asarray(self._whitener @ rows)
