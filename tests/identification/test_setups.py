@@ -18,7 +18,7 @@ from jackettwin.identification import (
     mac,
 )
 from jackettwin.identification.mac import normalised
-from jackettwin.identification.setups import merged_shape
+from jackettwin.identification.setups import ShapeSum
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel
 
@@ -71,8 +71,10 @@ def test_exact_parts_give_the_exact_shape(rng: np.random.Generator) -> None:
     whole = rng.standard_normal(7) + 1j * rng.standard_normal(7)
     rows = [np.array(r) for r in ((0, 1, 2, 3), (1, 0, 4), (0, 5, 1))]
     factors = rng.standard_normal(3) + 1j * rng.standard_normal(3)
-    parts = [factor * whole[at] for factor, at in zip(factors, rows, strict=True)]
-    shape = merged_shape(parts, rows, np.array([0, 1]), 7)
+    total = ShapeSum.none(7)
+    for factor, at in zip(factors, rows, strict=True):
+        total = total.with_shape(factor * whole[at], at)
+    shape = total.mean()
     assert np.isnan(shape[6])
     assert_allclose(shape[:6], normalised(whole[:6]), rtol=1e-9)
 
@@ -81,8 +83,10 @@ def test_complete_records_give_the_principal_direction(rng: np.random.Generator)
     shapes = rng.standard_normal(5) + 0.1 * rng.standard_normal((9, 5)) + 0j
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     principal = np.linalg.eigh(unit.T @ unit.conj())[1][:, -1]
-    shape = merged_shape(list(shapes), [np.arange(5)] * 9, np.arange(5), 5)
-    assert mac(shape, principal) == pytest.approx(1.0, abs=1e-12)
+    total = ShapeSum.none(0)
+    for one in shapes:
+        total = total.with_shape(one, np.arange(5))
+    assert mac(total.mean(), principal) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_a_name_that_moved_is_refused(merged: tuple[FusedIdentification, list[Identification]]) -> None:

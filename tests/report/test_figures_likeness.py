@@ -46,7 +46,7 @@ def test_every_sensor_of_every_mode_has_a_needle(identifications):
 
 def test_intervals_end_at_those_of_all_records(identifications):
     mode = fuse(identifications).modes[0]
-    figure = figures.interval_history([("fore_aft_1", convergence(identifications, mode))])
+    figure = figures.interval_history([("fore_aft_1", convergence(mode))])
     (line,) = figure.data
     assert list(line.x) == [1, 2, 3]
     high = line.y[-1] + line.error_y.array[-1]

@@ -12,14 +12,13 @@ import pytest
 from scipy.io import netcdf_file
 
 from jackettwin.errors import InputError
+from jackettwin.files import json_pieces
 from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.storage import to_plain
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.records import write_record
+from jackettwin.records import read_record, write_record
 from jackettwin.twin import many
 from jackettwin.twin.export import export_modes
-from jackettwin.twin.groups import grouped
-from jackettwin.twin.many import Failed, Seen, observe_many, record_files
+from jackettwin.twin.many import Batch, observe_many, record_files
 from jackettwin.twin.many_document import many_document
 
 SETTINGS = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
@@ -46,37 +45,37 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def seen_and_failed(folder: Path) -> tuple[tuple[Seen, ...], tuple[Failed, ...]]:
-    return observe_many(record_files([folder]), SETTINGS, workers=1)
+def batch(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Batch:
+    results = tmp_path_factory.mktemp("results")
+    return observe_many(record_files([folder]), SETTINGS, folder=results, workers=1)
 
 
 @pytest.fixture(scope="module")
-def document(seen_and_failed: tuple[tuple[Seen, ...], tuple[Failed, ...]]) -> dict:
-    return many_document(*seen_and_failed)
+def document(batch: Batch) -> dict:
+    return many_document(batch)
 
 
-def test_a_broken_record_stops_nothing(seen_and_failed: tuple) -> None:
-    seen, failed = seen_and_failed
-    assert [s.identification.records[0] for s in seen] == ["r0", "r1", "r2", "r3"]
-    assert len(failed) == 1
-    assert "r9.parquet" in failed[0].problem
+def test_a_broken_record_stops_nothing(batch: Batch) -> None:
+    assert [s.identification.records[0] for s in batch] == ["r0", "r1", "r2", "r3"]
+    assert len(batch.failed) == 1
+    assert "r9.parquet" in batch.failed[0].problem
 
 
-def test_processes_give_the_same_as_one(folder: Path, seen_and_failed: tuple) -> None:
+def test_processes_give_the_same_as_one(folder: Path, tmp_path: Path, batch: Batch) -> None:
     files = [folder / "r0.parquet", folder / "r9.parquet", folder / "r1.parquet"]
-    seen, failed = observe_many(files, SETTINGS, workers=2)
-    for one, before in zip(seen, seen_and_failed[0], strict=False):
+    again = observe_many(files, SETTINGS, folder=tmp_path, workers=2)
+    for one, before in zip(again, batch, strict=False):
         assert one.identification.records == before.identification.records
         a, b = one.identification.modes[0], before.identification.modes[0]
         # another number of BLAS threads rounds differently, and may pick the pole of another model order
         assert abs(a.frequency_hz - b.frequency_hz) < b.frequency_std_hz
-    assert failed == seen_and_failed[1]
+    assert again.failed == batch.failed
 
 
 def test_what_was_done_before_an_interruption_is_not_done_again(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seen_and_failed: tuple
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, batch: Batch, document: dict
 ) -> None:
-    files = record_files([folder])[:3]
+    files = record_files([folder])
     started: list[str] = []
     monkeypatch.setattr(many, "_one", counted(many._one, started))
 
@@ -85,21 +84,19 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        observe_many(files, SETTINGS, cache=tmp_path, workers=1, step=interrupt)
-    seen, _ = observe_many(files, SETTINGS, cache=tmp_path, workers=1)
-    assert started == ["r0.parquet", "r1.parquet", "r2.parquet"]
-    assert [to_plain(s.identification) for s in seen] == [
-        to_plain(s.identification) for s in seen_and_failed[0][:3]
-    ]
-    assert [s.conditions for s in seen] == [s.conditions for s in seen_and_failed[0][:3]]
+        observe_many(files, SETTINGS, folder=tmp_path, workers=1, step=interrupt)
+    again = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
+    assert started == ["r0.parquet", "r1.parquet", "r2.parquet", "r3.parquet", "r9.parquet"]
+    # to the last digit and letter
+    assert "".join(json_pieces(many_document(again))) == "".join(json_pieces(document))
     # other settings are another result
-    observe_many(files[:1], replace(SETTINGS, max_order=20), cache=tmp_path, workers=1)
-    assert started[3:] == ["r0.parquet"]
+    observe_many(files[:1], replace(SETTINGS, max_order=20), folder=tmp_path, workers=1)
+    assert started[5:] == ["r0.parquet"]
     # a result that is damaged is computed again
     for file in tmp_path.iterdir():
         file.write_text('{"identification": {')
-    observe_many(files[:1], SETTINGS, cache=tmp_path, workers=1)
-    assert started[4:] == ["r0.parquet"]
+    observe_many(files[:1], SETTINGS, folder=tmp_path, workers=1)
+    assert started[6:] == ["r0.parquet"]
 
 
 def counted(function, started: list[str]):
@@ -110,15 +107,19 @@ def counted(function, started: list[str]):
     return one
 
 
-def test_groups_are_bins_of_wind(seen_and_failed: tuple) -> None:
-    groups = grouped(seen_and_failed[0])
-    assert [(g.wind_speed_m_s, g.records) for g in groups] == [((7.0, 9.0), (0, 1, 3)), ((11.0, 13.0), (2,))]
-    assert all(g.yaw_deg == (-15.0, 15.0) and g.state == "idling" for g in groups)
+def test_groups_are_bins_of_wind(document: dict) -> None:
+    groups = document["groups"]
+    assert [(g["wind_speed_m_s"], g["records"]) for g in groups] == [
+        ((7.0, 9.0), ["r0", "r1", "r3"]),
+        ((11.0, 13.0), ["r2"]),
+    ]
+    assert all(g["yaw_deg"] == (-15.0, 15.0) and g["state"] == "idling" for g in groups)
 
 
 def test_the_document_is_json_and_complete(document: dict) -> None:
-    text = json.dumps(document, allow_nan=False)
-    assert len(json.loads(text)["records"]) == 4
+    written = json.loads("".join(json_pieces(document)))
+    assert [len(written[key]) for key in ("records", "quality")] == [4, 4]
+    assert {pick["record"] for pick in written["picks"]} == {"r0", "r1", "r2", "r3"}
     first = document["modes"][0]
     assert first["records_with_mode"] == 4
     assert [step["n_records"] for step in first["convergence"]] == [1, 2, 4]
@@ -131,14 +132,15 @@ def test_the_document_is_json_and_complete(document: dict) -> None:
     assert document["failed"][0]["record"].endswith("r9.parquet")
 
 
-def test_records_of_other_sensors_stand_for_themselves(seen_and_failed: tuple) -> None:
-    one, other = seen_and_failed[0][:2]
-    channels = tuple(replace(c, name=f"b{i}") for i, c in enumerate(other.identification.channels))
-    other = replace(other, identification=replace(other.identification, channels=channels))
-    document = many_document([one, other], [])
+def test_records_of_other_sensors_stand_for_themselves(folder: Path, tmp_path: Path) -> None:
+    record = read_record(folder / "r1.parquet")
+    channels = tuple(replace(c, name=f"b{i}") for i, c in enumerate(record.channels))
+    write_record(replace(record, channels=channels), tmp_path / "other.parquet")
+    files = [folder / "r0.parquet", tmp_path / "other.parquet"]
+    document = many_document(observe_many(files, SETTINGS, folder=tmp_path / "results", workers=1))
     assert document["modes"] == []
     assert "records share no channel" in document["warnings"][0]
-    assert len(document["records"]) == 2
+    assert len(list(document["records"])) == 2
 
 
 def test_tables_hold_every_mode_of_every_set(document: dict, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.files.atomic import null_for_nan
+from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.selection import with_covariance
 from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -14,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.files.atomic import null_for_nan
+from jackettwin.files import json_pieces
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -88,7 +87,7 @@ def progress(total: int, title: str) -> Iterator[Callable[[str], None]]:
 
 def print_json(document: object) -> None:
     """Print one JSON document on stdout: null for what is not known, never NaN."""
-    sys.stdout.write(json.dumps(null_for_nan(document), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+    sys.stdout.writelines(json_pieces(document))
 
 
 def number(value: float | None, digits: int = 4) -> str:

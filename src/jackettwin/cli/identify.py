@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -82,21 +83,33 @@ def identify_command(
     files = record_files(records)
     _refuse_many(files, {"--compare": compare, "--report": report is not None})
     if len(files) == 1:
-        document = _one(files[0], settings, drop_dead, picks, compare, report)
-    else:
-        document = _many(files, settings, drop_dead, picks, _folder(out), workers)
+        _deliver(_one(files[0], settings, drop_dead, picks, compare, report), out, as_json, _print_one)
+        return
+    with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
+        kept = Path(passing) if out is None or not _folder(out) else out / "records"
+        _deliver(_many(files, settings, drop_dead, picks, kept, workers), out, as_json, _print_many)
+
+
+def _deliver(
+    document: Mapping[str, Any],
+    out: Path | None,
+    as_json: bool,
+    show: Callable[[Mapping[str, Any]], None],
+) -> None:
     if out is not None:
-        for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
-            export_modes(document, path)
-            messages.print(f"wrote {path}")
-        if _folder(out):
-            write_json({"picks": document["picks"]}, out / "picks.json")
+        _export(document, out)
     if as_json:
         print_json(document)
-    elif len(files) == 1:
-        _print_one(document)
     else:
-        _print_many(document)
+        show(document)
+
+
+def _export(document: Mapping[str, Any], out: Path) -> None:
+    for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
+        export_modes(document, path)
+        messages.print(f"wrote {path}")
+    if _folder(out):
+        write_json({"picks": document["picks"]}, out / "picks.json")
 
 
 def _refuse_many(files: Sequence[Path], options: Mapping[str, bool]) -> None:
@@ -134,17 +147,17 @@ def _many(
     settings: IdentificationSettings,
     drop_dead: bool,
     picks: tuple[Pick, ...],
-    folder: Path | None,
+    folder: Path,
     workers: int | None,
 ) -> dict[str, Any]:
-    cache = None if folder is None else folder / "records"
+    """Return the document; its long lists are read from the folder's results as they are written."""
     with progress(len(files), "identify") as step:
-        seen, failed = observe_many(
-            files, settings, drop_dead=drop_dead, picks=picks, cache=cache, workers=workers, step=step
+        batch = observe_many(
+            files, settings, folder=folder, drop_dead=drop_dead, picks=picks, workers=workers, step=step
         )
-    if not seen:
-        raise InputError(f"no record could be identified; the first: {failed[0].problem}")
-    return many_document(seen, failed)
+    if not len(batch):
+        raise InputError(f"no record could be identified; the first: {batch.failed[0].problem}")
+    return many_document(batch)
 
 
 def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:
@@ -163,13 +176,13 @@ def _picks(path: str | None) -> tuple[Pick, ...]:
         return parse_picks(read_mapping(path, what="file of picks"))
 
 
-def _folder(out: Path | None) -> Path | None:
-    return out if out is not None and (out.is_dir() or not out.suffix) else None
+def _folder(out: Path) -> bool:
+    return out.is_dir() or not out.suffix
 
 
 def _refuse_format(out: Path | None) -> None:
     """Refuse an extension we do not write before the work, not after it."""
-    if out is not None and _folder(out) is None and out.suffix.lower() not in WRITERS:
+    if out is not None and not _folder(out) and out.suffix.lower() not in WRITERS:
         export_modes({}, out)
 
 
@@ -216,7 +229,7 @@ def _both(m: Mapping[str, Any]) -> str:
 
 
 def _print_many(document: Mapping[str, Any]) -> None:
-    n = len(document["records"])
+    n = document["records_identified"]
     _print_fused(f"{n} records fused, {document['duration_s'] / 3600:.3g} h", document["modes"], n)
     groups = document["groups"]
     for group in groups if len(groups) > 1 else ():
@@ -263,13 +276,13 @@ def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
     )
 
 
-def _print_rejected(rejected: Sequence[Mapping[str, Any]]) -> None:
+def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
     """Print how many candidates were rejected for each reason; the JSON names them all."""
-    kinds: dict[str, list[Mapping[str, Any]]] = {}
+    kinds: dict[str, tuple[int, float, float, str]] = {}
     for r in rejected:
-        kinds.setdefault(re.sub(r"\d[\d.]*", "…", r["reason"]), []).append(r)
-    for kind, of_kind in sorted(kinds.items(), key=lambda item: -len(item[1])):
-        f = [r["frequency_hz"] for r in of_kind]
-        reason = of_kind[0]["reason"] if len(of_kind) == 1 else kind
-        where = f"{f[0]:.4g} Hz" if len(f) == 1 else f"{min(f):.3g} to {max(f):.3g} Hz"
-        output.print(f"rejected: {len(f)} × {reason} ({where})")
+        f, kind = r["frequency_hz"], re.sub(r"\d[\d.]*", "…", r["reason"])
+        n, low, high, _ = kinds.get(kind, (0, f, f, ""))
+        kinds[kind] = n + 1, min(low, f), max(high, f), r["reason"]
+    for kind, (n, low, high, reason) in sorted(kinds.items(), key=lambda item: -item[1][0]):
+        where = f"{low:.4g} Hz" if n == 1 else f"{low:.3g} to {high:.3g} Hz"
+        output.print(f"rejected: {n} × {reason if n == 1 else kind} ({where})")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import shutil
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,25 +54,3 @@ def _named(target: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(target)) from None
-
-
-def write_json(data: object, path: Path | str) -> None:
-    """Write JSON with ``null`` for what is not known; never NaN."""
-    text = json.dumps(null_for_nan(data), indent=1, ensure_ascii=False, allow_nan=False)
-    with atomic_path(path) as temporary:
-        temporary.write_text(text + "\n", encoding="utf-8")
-
-
-def null_for_nan(value: Any) -> Any:
-    """Return plain JSON data: arrays to lists, NumPy numbers to Python's, NaN and infinity to None."""
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, complex):
-        return [null_for_nan(value.real), null_for_nan(value.imag)]
-    if isinstance(value, dict):
-        return {str(key): null_for_nan(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [null_for_nan(item) for item in value]
-    return value

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
-from jackettwin.identification.fusion import FusedMode, fuse
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from jackettwin.identification.estimate import Identification
+from jackettwin.identification.fusion import FusedMode, average
 
 
 @dataclass(frozen=True)
@@ -24,22 +18,18 @@ class Step:
     damping_ratio_interval_95: tuple[float, float]
 
 
-def convergence(identifications: Sequence[Identification], mode: FusedMode) -> tuple[Step, ...]:
+def convergence(mode: FusedMode) -> tuple[Step, ...]:
     """Return a fused mode after 1, 2, 4, … and all of the records that hold it, in their order."""
-    alone = [
-        replace(identifications[r], modes=(member,))
-        for r, member in zip(mode.records, mode.members, strict=True)
-    ]
     steps = []
-    for n in _doublings(len(alone)):
-        fused = max(fuse(alone[:n]).modes, key=lambda m: len(m.records))
+    for n in _doublings(len(mode.sightings)):
+        mean = average(mode.sightings.at(slice(n)))
         steps.append(
             Step(
                 n,
-                fused.frequency_hz,
-                fused.frequency_interval_95,
-                fused.damping_ratio,
-                fused.damping_ratio_interval_95,
+                mean.frequency_hz,
+                mean.frequency_interval_95,
+                mean.damping_ratio,
+                mean.damping_ratio_interval_95,
             )
         )
     return tuple(steps)

@@ -17,27 +17,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
 
-from jackettwin.errors import InputError
-from jackettwin.identification.mac import mac
-from jackettwin.identification.setups import WEAK_TIE, all_channels, merged_shape, tie
+from jackettwin.identification.setups import WEAK_TIE, tie
+from jackettwin.identification.tracking import Followed, Track, follow
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Hashable, Iterable, Sequence
 
-    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.identification.estimate import Identification
+    from jackettwin.identification.sightings import Sightings
     from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-FREQUENCY_SCALE = 0.03
-"""Relative change of frequency that counts as much as shapes at right angles."""
-SHAPE_SLACK = 2.0
-"""So many times the variance of two shapes may their 1 − MAC be without counting."""
-SAME_MODE = 1.0
-"""Largest distance, frequency and shape together, of one mode in two records."""
 FEWEST_SHARE = 0.3
 """A fused mode must be found in this share of the records."""
 
@@ -68,6 +61,16 @@ class Average:
         std = np.array(self.log_std)
         return np.asarray(np.outer(std, std) * np.array([[1.0, self.correlation], [self.correlation, 1.0]]))
 
+    @property
+    def frequency_interval_95(self) -> tuple[float, float]:
+        """On the logarithm of f."""
+        return _interval(self.frequency_hz, self.log_std[0])
+
+    @property
+    def damping_ratio_interval_95(self) -> tuple[float, float]:
+        """On the logarithm of ζ."""
+        return _interval(self.damping_ratio, self.log_std[1])
+
 
 @dataclass(frozen=True)
 class FusedMode:
@@ -86,10 +89,8 @@ class FusedMode:
     scatter_frequency, scatter_damping_ratio : float
         Between-record standard deviations of f and ζ, relative, beyond what the records' own uncertainty
         explains: wind, tide and temperature show here.
-    records : tuple of int
-        Positions of the records that hold the mode.
-    members : tuple of ModalEstimate
-        The mode in each of these records.
+    sightings : Sightings
+        The mode in each record that holds it.
     """
 
     frequency_hz: float
@@ -102,8 +103,7 @@ class FusedMode:
     mode_shape: ComplexArray
     scatter_frequency: float
     scatter_damping_ratio: float
-    records: tuple[int, ...]
-    members: tuple[ModalEstimate, ...]
+    sightings: Sightings
 
 
 @dataclass(frozen=True)
@@ -117,31 +117,36 @@ class FusedIdentification:
     warnings: tuple[str, ...]
 
 
-def fuse(identifications: Sequence[Identification]) -> FusedIdentification:
-    """Fuse the modes of several records.
+def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
+    """Fuse the modes of several records, each met once and not kept.
 
-    Modes are recognised by the channels that all records share; shapes hold every channel (``setups``).
+    Modes are followed in the order of the records (``tracking``); shapes hold every channel (``setups``).
 
     Raises
     ------
     InputError
         If there is no record, records share no channel, or one name stands for different sensors.
     """
-    if not identifications:
-        raise InputError("nothing to fuse", field="records", allowed="at least one record")
-    names = _common_channels(identifications)
-    channels = all_channels(identifications)
-    rows = [_rows(result, names) for result in identifications]
-    tracks = _tracks(identifications, rows)
-    fewest = max(1, round(FEWEST_SHARE * len(identifications)))
-    kept = [track for track in tracks if len(track) >= fewest]
-    modes = [_fused_mode(identifications, channels, names, track) for track in kept]
+    return fused_records(follow((found, None) for found in identifications))
+
+
+def fused_records(followed: Followed, key: Hashable = None) -> FusedIdentification:
+    """Return the modes of records that were followed, over those of one key; over all if it is None.
+
+    A mode counts if it is found in ``FEWEST_SHARE`` of them.
+    """
+    mine = np.array([key is None or own == key for own in followed.keys])
+    keys = dict.fromkeys(followed.keys if key is None else [key])
+    at_least = max(1, round(FEWEST_SHARE * int(mine.sum())))
+    parts = ((track, track.sightings()) for track in followed.tracks)
+    kept = [(track, seen.at(mine[seen.record])) for track, seen in parts]
+    modes = [_fused_mode(track, seen, keys, followed) for track, seen in kept if len(seen) >= at_least]
     return FusedIdentification(
-        records=tuple(name for result in identifications for name in result.records),
-        channels=channels,
+        records=tuple(name for name, own in zip(followed.records, mine, strict=True) if own),
+        channels=followed.channels,
         modes=tuple(sorted(modes, key=lambda mode: mode.frequency_hz)),
-        duration_s=float(sum(result.duration_s for result in identifications)),
-        warnings=_warnings(channels, names, modes),
+        duration_s=float(followed.duration_s[mine].sum()),
+        warnings=_warnings(followed, modes),
     )
 
 
@@ -172,179 +177,80 @@ def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, fl
     return float(mean), float(max(spread, fixed)), between
 
 
-def _warnings(channels: Sequence[Channel], shared: list[str], modes: list[FusedMode]) -> tuple[str, ...]:
-    """Say so if records hold different channels, and where those they share hardly move."""
-    if len(shared) == len(channels):
-        return ()
-    at = _places(channels, shared)
-    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_TIE]
-    return (
-        f"not every record has every channel: shapes are tied by {', '.join(shared)}",
-        *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),
-    )
-
-
-def _places(channels: Sequence[Channel], names: Sequence[str]) -> npt.NDArray[np.int64]:
-    order = [c.name for c in channels]
-    return np.array([order.index(name) for name in names], dtype=np.int64)
-
-
-def average(members: Sequence[ModalEstimate], duration_s: FloatArray) -> Average:
+def average(seen: Sightings) -> Average:
     """Return the mean of one mode over records: ln f and ζ, with random effects.
 
-    Parameters
-    ----------
-    members : sequence of ModalEstimate
-        The mode in each record; one without a covariance takes the long-data limits.
-    duration_s : (n_records,)
+    A record that does not know its variance takes the long-data limits.
     """
-    own_zeta = np.array([mode.damping_ratio for mode in members])
-    zeta = float(np.mean(own_zeta))
+    zeta = float(np.mean(seen.damping_ratio))
     for _ in range(3):
-        relative = random_effects(own_zeta / zeta, _variances(members, duration_s, 1, zeta))
+        relative = random_effects(seen.damping_ratio / zeta, _variances(seen, 1, zeta))
         zeta *= relative[0]
-    log_f = np.log([mode.frequency_hz for mode in members])
-    own_f, own = (_variances(members, duration_s, which, zeta) for which in (0, 1))
-    mean_f, variance_f, between_f = random_effects(log_f, own_f)
+    own_f, own = (_variances(seen, which, zeta) for which in (0, 1))
+    mean_f, variance_f, between_f = random_effects(np.log(seen.frequency_hz), own_f)
     within = 1.0 / np.sqrt(np.sum(1.0 / own_f) * np.sum(1.0 / own))
     return Average(
         frequency_hz=float(np.exp(mean_f)),
         damping_ratio=zeta,
         log_std=(float(np.sqrt(variance_f)), float(np.sqrt(relative[1]))),
         scatter=(float(np.sqrt(between_f)), float(np.sqrt(relative[2]))),
-        correlation=_correlation(members) * float(within / np.sqrt(variance_f * relative[1])),
+        correlation=_correlation(seen) * float(within / np.sqrt(variance_f * relative[1])),
     )
 
 
-def _correlation(members: Sequence[ModalEstimate]) -> float:
+def _correlation(seen: Sightings) -> float:
     """Return the correlation of ln f and ln ζ inside a record: the median over those that state it."""
-    known = [m.log_covariance for m in members if m.log_covariance is not None]
-    return float(np.median([c[0, 1] / np.sqrt(c[0, 0] * c[1, 1]) for c in known])) if known else 0.0
+    c = seen.log_covariance
+    known = (c[:, 0, 1] / np.sqrt(c[:, 0, 0] * c[:, 1, 1]))[np.isfinite(c[:, 0, 0])]
+    return float(np.median(known)) if len(known) else 0.0
 
 
-def _common_channels(identifications: Sequence[Identification]) -> list[str]:
-    sets = [{c.name for c in result.channels} for result in identifications]
-    common = set.intersection(*sets)
-    if not common:
-        raise InputError(
-            "records share no channel",
-            field="records",
-            value=[result.records[0] for result in identifications],
-            remedy="fuse records of the same sensors",
-        )
-    return [c.name for c in identifications[0].channels if c.name in common]
-
-
-def _rows(result: Identification, names: list[str]) -> list[int]:
-    order = [c.name for c in result.channels]
-    return [order.index(name) for name in names]
-
-
-def _tracks(identifications: Sequence[Identification], rows: list[list[int]]) -> list[dict[int, int]]:
-    """Return for every track the mode it takes in each record.
-
-    Records join one after the other, the one with most modes first. Within a record, modes go to tracks
-    such that the sum of the distances is least, none twice, so that modes that cross keep their shapes.
-    """
-    tracks: list[dict[int, int]] = []
-    order = sorted(range(len(identifications)), key=lambda r: -len(identifications[r].modes))
-    for r in order:
-        found = identifications[r].modes
-        if not found:
-            continue
-        f = np.log([mode.frequency_hz for mode in found])
-        shapes = np.array([mode.mode_shape[rows[r]] for mode in found])
-        free = set(range(len(found)))
-        if tracks:
-            vague = np.array([_vagueness(mode) for mode in found])
-            apart = np.array([_distance(identifications, rows, track, f, shapes, vague) for track in tracks])
-            for t, m in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
-                if apart[t, m] < SAME_MODE:
-                    tracks[t][r] = int(m)
-                    free.remove(int(m))
-        tracks.extend({r: m} for m in sorted(free))
-    return tracks
-
-
-def _distance(
-    identifications: Sequence[Identification],
-    rows: list[list[int]],
-    track: dict[int, int],
-    f: FloatArray,
-    shapes: ComplexArray,
-    vague: FloatArray,
-) -> FloatArray:
-    """Return the distance of every mode of a record from the members of a track, medians over members.
-
-    Inside a close pair the shapes of one record mix: so much of 1 − MAC as their own uncertainty explains
-    does not count.
-    """
-    members = [identifications[r].modes[m] for r, m in track.items()]
-    track_f = np.median(np.log([mode.frequency_hz for mode in members]))
-    track_shapes = np.array([mode.mode_shape[rows[r]] for r, mode in zip(track, members, strict=True)])
-    explained = SHAPE_SLACK * (vague[:, None] + [_vagueness(mode) for mode in members])
-    unlike = np.median(np.maximum(1.0 - mac(shapes, track_shapes) - explained, 0.0), axis=1)
-    return np.asarray(np.abs(f - track_f) / FREQUENCY_SCALE + unlike)
-
-
-def _vagueness(mode: ModalEstimate) -> float:
-    """Return the variance of a shape's entries over the square of its length."""
-    if mode.mode_shape_std is None:
-        return 0.0
-    return float(np.sum(mode.mode_shape_std**2) / np.sum(np.abs(mode.mode_shape) ** 2))
-
-
-def _fused_mode(
-    identifications: Sequence[Identification],
-    channels: Sequence[Channel],
-    shared: list[str],
-    track: dict[int, int],
-) -> FusedMode:
-    order = sorted(track)
-    members = [identifications[r].modes[track[r]] for r in order]
-    mean = average(members, np.array([identifications[r].duration_s for r in order]))
+def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followed: Followed) -> FusedMode:
+    mean = average(seen)
     f, zeta = mean.frequency_hz, mean.damping_ratio
-    std_f, std_zeta = mean.log_std
-    shape = merged_shape(
-        [mode.mode_shape for mode in members],
-        [_places(channels, [c.name for c in identifications[r].channels]) for r in order],
-        _places(channels, shared),
-        len(channels),
-    )
     return FusedMode(
         frequency_hz=f,
         damping_ratio=zeta,
-        frequency_std_hz=float(f * std_f),
-        damping_ratio_std=float(zeta * std_zeta),
-        frequency_interval_95=(f * float(np.exp(-1.96 * std_f)), f * float(np.exp(1.96 * std_f))),
-        damping_ratio_interval_95=(
-            zeta * float(np.exp(-1.96 * std_zeta)),
-            zeta * float(np.exp(1.96 * std_zeta)),
-        ),
+        frequency_std_hz=float(f * mean.log_std[0]),
+        damping_ratio_std=float(zeta * mean.log_std[1]),
+        frequency_interval_95=mean.frequency_interval_95,
+        damping_ratio_interval_95=mean.damping_ratio_interval_95,
         log_covariance=mean.log_covariance,
-        mode_shape=shape,
+        mode_shape=track.shape(keys, len(followed.channels)),
         scatter_frequency=mean.scatter[0],
         scatter_damping_ratio=mean.scatter[1],
-        records=tuple(order),
-        members=tuple(members),
+        sightings=seen,
     )
 
 
-def _variances(
-    members: Sequence[ModalEstimate], duration_s: FloatArray, which: int, zeta: float
-) -> FloatArray:
-    """Return the variance of ln f (0) or ln ζ (1) of each member, were its damping the common one.
+def _interval(value: float, log_std: float) -> tuple[float, float]:
+    return value * float(np.exp(-1.96 * log_std)), value * float(np.exp(1.96 * log_std))
+
+
+def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
+    """Return the variance of ln f (0) or ln ζ (1) of each record, were its damping the common one.
 
     The information limit at the common damping, inflated by the median ratio of claimed variance to limit.
     """
-    f = np.array([mode.frequency_hz for mode in members])
-    own_zeta = np.array([mode.damping_ratio for mode in members])
-    cycles = 2.0 * np.pi * f * duration_s
+    cycles = 2.0 * np.pi * seen.frequency_hz * seen.duration_s
     limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
+    own_zeta = seen.damping_ratio
     own_limit = own_zeta / cycles if which == 0 else 1.0 / (own_zeta * cycles)
-    claimed = [
-        mode.log_covariance[which, which] / own
-        for mode, own in zip(members, own_limit, strict=True)
-        if mode.log_covariance is not None
-    ]
-    return np.asarray(limit * (np.median(claimed) if claimed else 1.0))
+    claimed = seen.log_covariance[:, which, which] / own_limit
+    claimed = claimed[np.isfinite(claimed)]
+    return np.asarray(limit * (np.median(claimed) if len(claimed) else 1.0))
+
+
+def _warnings(followed: Followed, modes: Sequence[FusedMode]) -> tuple[str, ...]:
+    """Say so if records hold different channels, and where those they share hardly move."""
+    names = [c.name for c in followed.channels]
+    if len(followed.shared) == len(names):
+        return ()
+    if not followed.shared:
+        return ("not every record has every channel, and none is in all: shapes are tied record by record",)
+    at = np.array([names.index(name) for name in followed.shared], dtype=np.int64)
+    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_TIE]
+    return (
+        f"not every record has every channel: shapes are tied by {', '.join(followed.shared)}",
+        *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),
+    )

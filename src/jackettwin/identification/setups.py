@@ -4,13 +4,17 @@ Each setup knows its part of a shape up to a factor. The sensors they share tie 
 estimation re-scaling"; Reynders, Magalhães, De Roeck & Cunha 2009): factors and whole shape follow from
 
 .. math:: \min_{\Phi,\, \alpha_r} \sum_r \lVert \alpha_r \phi_r - \Phi_{(r)} \rVert^2,
-          \quad \lVert\Phi\rVert = 1
+          \quad \sum_r \lVert\Phi_{(r)}\rVert^2 = 1
 
-with :math:`\Phi_{(r)}` the entries of the channels of setup r, by alternating least squares.
+with :math:`\Phi_{(r)}` the entries of the channels of setup r. With the best factors in place, what is left
+is an eigenvalue problem of the size of the channels, :math:`G\Phi = \mu D\Phi` with the largest μ, where G
+is the sum of the :math:`\phi_r\phi_r^H/\lVert\phi_r\rVert^2` and D counts the setups of each channel: sums
+over any number of records are enough.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,88 +29,108 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification
     from jackettwin.records import Channel
 
+FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
-ROUNDS = 200
-SETTLED = 1e-12
-"""Change of the shape, of unit length, at which the rounds end."""
 WEAK_TIE = 0.05
 """Share of a shape's energy at the shared sensors, below which setups are hardly tied."""
 
 
-def all_channels(found: Sequence[Identification]) -> tuple[Channel, ...]:
-    """Return the channels of all records, each once, in the order in which they appear.
+@dataclass(frozen=True)
+class ShapeSum:
+    """Shapes of one mode, summed up.
+
+    Attributes
+    ----------
+    gram : (n_channels, n_channels) complex
+        Sum of the shapes' outer products with themselves, each of unit length.
+    count : (n_channels,)
+        Shapes that hold each channel.
+    """
+
+    gram: ComplexArray
+    count: FloatArray
+
+    @classmethod
+    def none(cls, n_channels: int) -> ShapeSum:
+        """Return the sum of no shapes."""
+        return cls(np.zeros((n_channels, n_channels), dtype=complex), np.zeros(n_channels))
+
+    def with_shape(self, shape: ComplexArray, at: IntArray) -> ShapeSum:
+        """Return the sum with one more shape, at these channels."""
+        own = ShapeSum.none(int(at.max()) + 1)
+        own.gram[np.ix_(at, at)] = np.outer(shape, shape.conj()) / np.sum(np.abs(shape) ** 2)
+        own.count[at] = 1.0
+        return self.plus(own)
+
+    def plus(self, other: ShapeSum) -> ShapeSum:
+        """Return the sum of both; the one of fewer channels has the first of them."""
+        small, large = sorted((self, other), key=lambda total: len(total.count))
+        n = len(small.count)
+        out = ShapeSum(large.gram.copy(), large.count.copy())
+        out.gram[:n, :n] += small.gram
+        out.count[:n] += small.count
+        return out
+
+    def mean(self) -> ComplexArray:
+        """Return the shape, (n_channels,), 1 at its largest entry; NaN where no setup has the channel.
+
+        Examples
+        --------
+        >>> top, low = np.array([1.0, 0.5]), np.array([2.0j, -0.5j])
+        >>> total = ShapeSum.none(3).with_shape(top, np.array([0, 1])).with_shape(low, np.array([0, 2]))
+        >>> total.mean().round(12).real.tolist()
+        [1.0, 0.5, -0.25]
+        """
+        has = self.count > 0.0
+        root = np.sqrt(self.count[has])
+        _, vectors = np.linalg.eigh(self.gram[np.ix_(has, has)] / np.multiply.outer(root, root))
+        shape = np.full(len(has), np.nan, dtype=complex)
+        shape[has] = normalised(np.asarray(vectors[:, -1] / root, dtype=complex))
+        return shape
+
+
+def joined_channels(known: dict[str, Channel], result: Identification) -> None:
+    """Add the channels of a record to those known by name, in the order in which they appear.
 
     Raises
     ------
     InputError
         If one name stands for sensors of different kind, place or direction.
     """
-    channels: dict[str, Channel] = {}
-    for result in found:
-        for channel in result.channels:
-            known = channels.setdefault(channel.name, channel)
-            if _differ(known, channel):
-                raise InputError(
-                    "one name stands for different sensors",
-                    file=result.records[0],
-                    field=f"channels.{channel.name}",
-                    value=_said(channel),
-                    allowed=_said(known),
-                    remedy="rename the sensor that moved",
-                )
-    return tuple(channels.values())
+    for channel in result.channels:
+        before = known.setdefault(channel.name, channel)
+        if _differ(before, channel):
+            raise InputError(
+                "one name stands for different sensors",
+                file=result.records[0],
+                field=f"channels.{channel.name}",
+                value=_said(channel),
+                allowed=_said(before),
+                remedy="rename the sensor that moved",
+            )
 
 
-def merged_shape(
-    shapes: Sequence[ComplexArray], rows: Sequence[IntArray], shared: IntArray, n_channels: int
-) -> ComplexArray:
-    """Return the shape at all channels, 1 at its largest entry; NaN where no setup has the channel.
+def tied(sets: Sequence[Sequence[str]]) -> bool:
+    """Tell whether sets of channels hang together: each shares one with the others, directly or through them.
 
-    Parameters
-    ----------
-    shapes : (n_channels of the setup,) each
-    rows : (n_channels of the setup,) int each
-        Positions of the setup's channels among all.
-    shared : (n_shared,) int
-        Positions of the channels that all setups have.
-    n_channels : int
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> top, low = np.array([1.0, 0.5]), np.array([2.0j, -0.5j])
-    >>> merged_shape([top, low], [np.array([0, 1]), np.array([0, 2])], np.array([0]), 3).real.tolist()
-    [1.0, 0.5, -0.25]
+    >>> tied([("a", "b"), ("c",), ("b", "c")]), tied([("a",), ("b",)])
+    (True, False)
     """
-    parts = np.zeros((len(shapes), n_channels), dtype=complex)
-    has = np.zeros((len(shapes), n_channels))
-    for r, (shape, at) in enumerate(zip(shapes, rows, strict=True)):
-        parts[r, at], has[r, at] = shape, 1.0
-    count = has.sum(axis=0)
-    start = np.linalg.svd(parts[:, shared])[2][0]
-    power = np.sum(np.abs(parts[:, shared]) ** 2, axis=1)
-    factors = (parts[:, shared].conj() @ start) / np.maximum(power, np.finfo(float).tiny)
-    whole = _mean(parts, factors, count)
-    for _ in range(ROUNDS):
-        factors = np.sum(parts.conj() * whole, axis=1) / np.sum(np.abs(parts) ** 2, axis=1)
-        before, whole = whole, _mean(parts, factors, count)
-        if np.linalg.norm(whole - before) < SETTLED:
-            break
-    shape = normalised(whole)
-    shape[count == 0] = np.nan
-    return shape
+    reached, left = set(sets[0]), list(sets[1:])
+    while left:
+        near = [one for one in left if reached & set(one)]
+        if not near:
+            return False
+        reached |= set().union(*near)
+        left = [one for one in left if one not in near]
+    return True
 
 
 def tie(shape: ComplexArray, shared: IntArray) -> float:
     """Return the share of a shape's energy at the shared channels."""
     return float(np.sum(np.abs(shape[shared]) ** 2) / np.nansum(np.abs(shape) ** 2))
-
-
-def _mean(parts: ComplexArray, factors: ComplexArray, count: npt.NDArray[np.float64]) -> ComplexArray:
-    mean = factors @ parts / np.maximum(count, 1.0)
-    return np.asarray(mean / np.linalg.norm(mean))
 
 
 def _differ(a: Channel, b: Channel) -> bool:

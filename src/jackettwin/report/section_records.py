@@ -108,13 +108,10 @@ def _history(result: TwinResult) -> list[Block]:
         return []
     histories = []
     for mode in fuse(result.identifications).modes:
-        seen = [
-            result.names[r][result.identifications[r].modes.index(member)]
-            for r, member in zip(mode.records, mode.members, strict=True)
-        ]
+        seen = [result.names[r][m] for r, m in zip(mode.sightings.record, mode.sightings.mode, strict=True)]
         label = max(set(seen), key=seen.count)
         if label:
-            histories.append((label, convergence(result.identifications, mode)))
+            histories.append((label, convergence(mode)))
     if not histories:
         return []
     caption = "Damping ratios with 95 % intervals as records are fused, in their order."

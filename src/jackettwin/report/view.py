@@ -18,7 +18,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from jackettwin.files import atomic_path
-from jackettwin.files.atomic import null_for_nan
+from jackettwin.files.json import null_for_nan
 from jackettwin.loads.morison import Coefficients
 from jackettwin.report.figures_structure import member_text, sensor_points
 from jackettwin.report.view_motions import Motion

@@ -6,7 +6,7 @@ The table holds the modes of every set in the document: ``fused``, each group, e
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,20 +53,19 @@ def export_modes(document: Mapping[str, Any], path: Path) -> None:
         writer(document, temporary)
 
 
-def mode_rows(document: Mapping[str, Any]) -> list[Row]:
-    """Return one row a mode: its set, its number in it, its numbers and its shape by channel."""
+def mode_rows(document: Mapping[str, Any]) -> Iterator[Row]:
+    """Yield one row a mode: its set, its number in it, its numbers and its shape by channel."""
     if "groups" not in document:
-        return _rows(", ".join(document["records"]), document["modes"])
-    rows = _rows("fused", document["modes"])
+        yield from _rows(", ".join(document["records"]), document["modes"])
+        return
+    yield from _rows("fused", document["modes"])
     for group in document["groups"]:
-        rows += _rows(_group_name(group), group["modes"])
+        yield from _rows(_group_name(group), group["modes"])
     for record in document["records"]:
-        rows += _rows(", ".join(record["records"]), record["modes"])
-    return rows
+        yield from _rows(", ".join(record["records"]), record["modes"])
 
 
-def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> list[Row]:
-    rows = []
+def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
     for number, mode in enumerate(modes, start=1):
         f_low, f_high = mode["frequency_interval_95"] or (None, None)
         low, high = mode["damping_ratio_interval_95"] or (None, None)
@@ -74,8 +73,7 @@ def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> list[Row]:
         row |= {key: mode.get(key) for key in NUMBERS}
         row |= {"frequency_low_95_hz": f_low, "frequency_high_95_hz": f_high}
         row |= {"damping_ratio_low_95": low, "damping_ratio_high_95": high}
-        rows.append({**row, "mode_shape": mode["mode_shape"]})
-    return rows
+        yield {**row, "mode_shape": mode["mode_shape"]}
 
 
 def _group_name(group: Mapping[str, Any]) -> str:
@@ -88,18 +86,17 @@ def _group_name(group: Mapping[str, Any]) -> str:
     return ", ".join(part for part in parts if part) or "no conditions"
 
 
-def _channels(rows: Sequence[Row]) -> list[str]:
+def _channels(rows: Iterable[Row]) -> list[str]:
     return list(dict.fromkeys(name for row in rows for name in row["mode_shape"]))
 
 
 def _write_csv(document: Mapping[str, Any], path: Path) -> None:
-    rows = mode_rows(document)
-    channels = _channels(rows)
+    channels = _channels(mode_rows(document))
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
         shapes = [f"shape_{part}_{name}" for name in channels for part in ("real", "imag")]
         table.writerow(["set", "mode", *NUMBERS, *shapes])
-        for row in rows:
+        for row in mode_rows(document):
             parts = [value for name in channels for value in row["mode_shape"].get(name, ("", ""))]
             numbers = ["" if row[key] is None else row[key] for key in NUMBERS]
             table.writerow([row["set"], row["mode"], *numbers, *parts])
@@ -107,21 +104,21 @@ def _write_csv(document: Mapping[str, Any], path: Path) -> None:
 
 def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
     """Write NetCDF-3: dimensions mode and channel, one variable a column."""
-    rows = mode_rows(document)
-    channels = _channels(rows)
+    channels = _channels(mode_rows(document))
+    sets = [row["set"] for row in mode_rows(document)]
     with netcdf_file(str(path), "w") as file:
-        file.createDimension("mode", len(rows))
+        file.createDimension("mode", len(sets))
         file.createDimension("channel", len(channels))
-        _texts(file, "set", "mode", [row["set"] for row in rows])
+        _texts(file, "set", "mode", sets)
         _texts(file, "channel_name", "channel", channels)
-        for key, unit in NUMBERS.items():
-            column = _column(file, key, ("mode",), unit)
-            column[:] = np.array([np.nan if row[key] is None else row[key] for row in rows], dtype=float)
-        unknown = (np.nan, np.nan)
-        shapes = np.array([[row["mode_shape"].get(name, unknown) for name in channels] for row in rows])
-        for part, key in enumerate(("mode_shape_real", "mode_shape_imag")):
-            column = _column(file, key, ("mode", "channel"), "1")
-            column[:] = shapes.reshape(len(rows), len(channels), 2)[:, :, part]
+        columns = {key: _column(file, key, ("mode",), unit) for key, unit in NUMBERS.items()}
+        shapes = [_column(file, f"mode_shape_{part}", ("mode", "channel"), "1") for part in ("real", "imag")]
+        for i, row in enumerate(mode_rows(document)):
+            for key, column in columns.items():
+                column[i] = np.nan if row[key] is None else row[key]
+            parts = np.array([row["mode_shape"].get(name, (np.nan, np.nan)) for name in channels])
+            for column, part in zip(shapes, parts.reshape(-1, 2).T, strict=True):
+                column[i] = part
 
 
 def _column(file: Any, name: str, dimensions: tuple[str, ...], unit: str) -> Any:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import floor
 from typing import Any
 
-from jackettwin.identification import FusedIdentification, fuse
-from jackettwin.twin.many import Seen
+from jackettwin.identification import FusedIdentification
+from jackettwin.identification.fusion import fused_records
+from jackettwin.identification.tracking import Followed
 
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
@@ -16,6 +17,7 @@ YAW_BIN_DEG = 30.0
 """Width of a yaw sector, centred on north, 30°, …"""
 
 Interval = tuple[float, float]
+Key = tuple[Interval | None, Interval | None, str | None]
 
 
 @dataclass(frozen=True)
@@ -32,19 +34,17 @@ class Group:
     fused: FusedIdentification
 
 
-def grouped(seen: Sequence[Seen]) -> tuple[Group, ...]:
-    """Return the groups of the records, each fused; sorted by state, wind speed and yaw."""
-    members: dict[tuple[Interval | None, Interval | None, str | None], list[int]] = {}
-    for i, one in enumerate(seen):
-        members.setdefault(_key(one.conditions), []).append(i)
-    groups = [
-        Group(wind, yaw, state, tuple(rows), fuse([seen[i].identification for i in rows]))
-        for (wind, yaw, state), rows in members.items()
-    ]
+def grouped(followed: Followed) -> tuple[Group, ...]:
+    """Return the groups of records followed under ``group_key``, each fused; by state, wind speed and yaw."""
+    members: dict[Key, list[int]] = {}
+    for i, key in enumerate(followed.keys):
+        members.setdefault(key, []).append(i)  # type: ignore[arg-type]
+    groups = [Group(*key, tuple(rows), fused_records(followed, key)) for key, rows in members.items()]
     return tuple(sorted(groups, key=lambda g: (g.state or "", g.wind_speed_m_s or (), g.yaw_deg or ())))
 
 
-def _key(conditions: Mapping[str, Any]) -> tuple[Interval | None, Interval | None, str | None]:
+def group_key(conditions: Mapping[str, Any]) -> Key:
+    """Return wind speed bin, yaw sector and state of a record; None for what it does not say."""
     wind = _number(conditions, "mean_wind_speed_m_s", "wind_speed_m_s")
     yaw = _number(conditions, "yaw_deg")
     state = conditions.get("state")

@@ -1,7 +1,9 @@
 """Many records: every core at work, memory flat, nothing done twice.
 
 Each record becomes a few kilobytes of JSON in a folder, under a name that holds a hash of the file's
-size and time, its description and the settings: what is there already is not computed again.
+size and time, its description and the settings: what is there already is not computed again. Results are
+read back from there one by one, in the order of the files, whoever wants them: none stays in memory, and a
+run that was stopped gives to the last digit what it would have given in one go.
 """
 
 from __future__ import annotations
@@ -18,7 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.files import write_json
+from jackettwin.files import atomic_path
+from jackettwin.files.json import null_for_nan
 from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
@@ -61,6 +64,28 @@ class Failed:
 
 
 @dataclass(frozen=True)
+class Batch:
+    """Observed records, on disk: iterating reads them in the order of the files.
+
+    Attributes
+    ----------
+    results : tuple of Path
+        One file for every record that was identified.
+    failed : tuple of Failed
+        The others.
+    """
+
+    results: tuple[Path, ...]
+    failed: tuple[Failed, ...]
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def __iter__(self) -> Iterator[Seen]:
+        return map(_read, self.results)
+
+
+@dataclass(frozen=True)
 class _Work:
     """What is done with every record."""
 
@@ -98,49 +123,43 @@ def observe_many(
     files: Sequence[Path],
     settings: IdentificationSettings,
     *,
+    folder: Path,
     drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
-    cache: Path | None = None,
     workers: int | None = None,
     step: Callable[[str], None] = lambda _: None,
-) -> tuple[tuple[Seen, ...], tuple[Failed, ...]]:
+) -> Batch:
     """Observe records on all cores; one that cannot be identified is listed and stops nothing.
 
     Parameters
     ----------
+    folder : Path
+        Of results: those that are there are not computed again, new ones are put there as they come.
     picks : tuple of Pick
         Poles to take instead of the automatic selection, for the records they name.
-    cache : Path, optional
-        Folder of results so far: they are taken from there, and new ones put there as they come.
     workers : int, optional
         Processes; default one a core. One works in this process.
     step : callable
         Told the name of every record that is done.
-
-    Returns
-    -------
-    (seen, failed)
-        Both in the order of the files.
     """
     work = _Work(settings, drop_dead, picks)
-    done: dict[int, Seen | Failed] = {}
+    places = [_place(folder, file, work) for file in files]
     left = []
-    for i, file in enumerate(files):
-        kept = None if cache is None else _from_cache(_cache_path(cache, file, work))
-        if kept is None:
-            left.append(i)
+    for i, place in enumerate(places):
+        if _readable(place):
+            step(files[i].name)
         else:
-            done[i] = kept
-            step(file.name)
+            left.append(i)
+    failed: dict[int, Failed] = {}
     for i, result in _computed(files, left, work, workers):
-        done[i] = result
-        if cache is not None and isinstance(result, Seen):
-            write_json(_plain(result), _cache_path(cache, files[i], work))
+        if isinstance(result, Failed):
+            failed[i] = result
+        else:
+            _write(result, places[i])
         step(files[i].name)
-    in_order = [done[i] for i in range(len(files))]
-    return (
-        tuple(r for r in in_order if isinstance(r, Seen)),
-        tuple(r for r in in_order if isinstance(r, Failed)),
+    return Batch(
+        tuple(place for i, place in enumerate(places) if i not in failed),
+        tuple(failed[i] for i in sorted(failed)),
     )
 
 
@@ -193,28 +212,36 @@ def _one(file: Path, work: _Work) -> Seen | Failed:
         return Failed(str(file), str(error))
 
 
-def _cache_path(cache: Path, file: Path, work: _Work) -> Path:
+def _place(folder: Path, file: Path, work: _Work) -> Path:
+    """Return where the result of a record is kept."""
     stamps = [
         (p.name, p.stat().st_size, p.stat().st_mtime_ns)
         for p in (file, file.with_suffix(".json"))
         if p.exists()
     ]
     key = json.dumps([str(file.resolve()), stamps, asdict(work), __version__], default=str)
-    return cache / f"{file.stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
+    return folder / f"{file.stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"
 
 
-def _plain(seen: Seen) -> dict[str, Any]:
-    return {
+def _write(seen: Seen, path: Path) -> None:
+    plain = {
         "identification": to_plain(seen.identification),
         "quality": seen.quality,
         "conditions": seen.conditions,
     }
+    with atomic_path(path) as temporary:
+        temporary.write_text(json.dumps(null_for_nan(plain), ensure_ascii=False), encoding="utf-8")
 
 
-def _from_cache(path: Path) -> Seen | None:
-    """Return a result kept earlier; None if there is none, or none that this version can read."""
+def _read(path: Path) -> Seen:
+    plain = json.loads(path.read_text(encoding="utf-8"))
+    return Seen(from_plain(plain["identification"]), plain["quality"], plain["conditions"])
+
+
+def _readable(path: Path) -> bool:
+    """Tell whether there is a result, one that this version can read."""
     try:
-        plain = json.loads(path.read_text(encoding="utf-8"))
-        return Seen(from_plain(plain["identification"]), plain["quality"], plain["conditions"])
+        _read(path)
     except (OSError, ValueError, KeyError, TypeError):
-        return None
+        return False
+    return True

@@ -1,63 +1,82 @@
-"""Many identified records as plain JSON data."""
+"""Many identified records as plain JSON data; what grows with their number is made as it is written."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
 from jackettwin.errors import InputError
-from jackettwin.identification import FusedIdentification, FusedMode, fuse
+from jackettwin.files import Streamed
+from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.convergence import convergence
+from jackettwin.identification.fusion import fused_records
 from jackettwin.identification.picks import plain_picks
+from jackettwin.identification.tracking import follow
 from jackettwin.twin.document import identification_document
-from jackettwin.twin.groups import Group, grouped
-from jackettwin.twin.many import Failed, Seen
+from jackettwin.twin.groups import Group, group_key, grouped
+from jackettwin.twin.many import Batch
 
 
-def many_document(seen: Sequence[Seen], failed: Sequence[Failed]) -> dict[str, Any]:
-    """Return the document of ``jackettwin identify`` for several records: fused, by group, one by one."""
-    warnings: list[str] = []
-    found = [one.identification for one in seen]
+def many_document(batch: Batch) -> dict[str, Any]:
+    """Return the document of ``jackettwin identify`` for several records: fused, by group, one by one.
+
+    ``records``, ``rejected``, ``quality`` and ``picks`` are ``Streamed``.
+    """
+    modes, groups, warnings, duration_s = _fused(batch)
+    return {
+        "modes": modes,
+        "groups": groups,
+        "records": Streamed(lambda: _records(batch)),
+        "rejected": Streamed(lambda: _rejected(batch)),
+        "quality": Streamed(
+            lambda: (
+                {"record": one.identification.records[0], "score": one.quality.get("score")} for one in batch
+            )
+        ),
+        "picks": Streamed(lambda: (pick for one in batch for pick in plain_picks(one.identification.picks))),
+        "failed": [asdict(one) for one in batch.failed],
+        "records_identified": len(batch),
+        "duration_s": duration_s,
+        "warnings": warnings,
+    }
+
+
+def _fused(batch: Batch) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[str], float]:
+    """Return fused modes, groups, warnings and the records' length together."""
     try:
-        fused, groups = fuse(found), grouped(seen)
+        followed = follow((one.identification, group_key(one.conditions)) for one in batch)
     except InputError as error:
         # loggers of different sensors: each stands for itself
-        fused, groups = None, ()
-        warnings.append(f"not fused: {error}")
-    names = [] if fused is None else [channel.name for channel in fused.channels]
-    modes = [] if fused is None else fused.modes
-    return {
-        "modes": [
-            {
-                **fused_mode_document(mode, names),
-                "convergence": [asdict(step) for step in convergence(found, mode)],
-            }
-            for mode in modes
-        ],
-        "groups": [_group_document(group, seen) for group in groups],
-        "records": [
-            {**identification_document(one.identification, one.quality), "conditions": one.conditions}
-            for one in seen
-        ],
-        "rejected": [
-            {
+        return [], [], [f"not fused: {error}"], sum(one.identification.duration_s for one in batch)
+    fused = fused_records(followed)
+    names = [channel.name for channel in fused.channels]
+    modes = [
+        {
+            **fused_mode_document(mode, names),
+            "convergence": [asdict(step) for step in convergence(mode)],
+        }
+        for mode in fused.modes
+    ]
+    groups = [_group_document(group) for group in grouped(followed)]
+    return modes, groups, list(fused.warnings), fused.duration_s
+
+
+def _records(batch: Batch) -> Iterator[dict[str, Any]]:
+    for one in batch:
+        document = identification_document(one.identification, one.quality)
+        yield {**document, "conditions": one.conditions}
+
+
+def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
+    for one in batch:
+        for r in one.identification.rejected:
+            yield {
                 "record": one.identification.records[0],
                 "frequency_hz": r.frequency_hz,
                 "damping_ratio": r.damping_ratio,
                 "reason": r.reason,
             }
-            for one in seen
-            for r in one.identification.rejected
-        ],
-        "quality": [
-            {"record": one.identification.records[0], "score": one.quality.get("score")} for one in seen
-        ],
-        "picks": [pick for one in seen for pick in plain_picks(one.identification.picks)],
-        "failed": [asdict(one) for one in failed],
-        "duration_s": sum(one.duration_s for one in found),
-        "warnings": [*warnings, *([] if fused is None else fused.warnings)],
-    }
 
 
 def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, Any]:
@@ -71,7 +90,7 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
         "damping_ratio_interval_95": mode.damping_ratio_interval_95,
         "relative_scatter_frequency": mode.scatter_frequency,
         "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
-        "records_with_mode": len(mode.records),
+        "records_with_mode": len(mode.sightings),
         "mode_shape": {
             name: [float(v.real), float(v.imag)]
             for name, v in zip(channels, mode.mode_shape, strict=True)
@@ -80,14 +99,14 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
     }
 
 
-def _group_document(group: Group, seen: Sequence[Seen]) -> dict[str, Any]:
+def _group_document(group: Group) -> dict[str, Any]:
     fused: FusedIdentification = group.fused
     names = [channel.name for channel in fused.channels]
     return {
         "wind_speed_m_s": group.wind_speed_m_s,
         "yaw_deg": group.yaw_deg,
         "state": group.state,
-        "records": [seen[i].identification.records[0] for i in group.records],
+        "records": list(fused.records),
         "duration_s": fused.duration_s,
         "modes": [fused_mode_document(mode, names) for mode in fused.modes],
     }

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from jackettwin.errors import located
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.fusion import average
+from jackettwin.identification.sightings import sightings as columns
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
@@ -96,7 +95,7 @@ def _wind(record: Record) -> float | None:
 
 def fuse(mode: int, sightings: tuple[Sighting, ...]) -> Target:
     """Return one mode over records as a target, averaged as ``identification.fuse`` does."""
-    mean = average([s.estimate for s in sightings], np.array([s.duration_s for s in sightings]))
+    mean = average(columns([s.estimate for s in sightings], [s.duration_s for s in sightings]))
     f, zeta = mean.frequency_hz, mean.damping_ratio
     return Target(mode, f, f * mean.log_std[0], zeta, zeta * mean.log_std[1], mean.correlation)
 

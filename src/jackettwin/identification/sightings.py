@@ -1,0 +1,67 @@
+"""One mode in every record that holds it, as columns: all that a mean over records needs of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.estimate import ModalEstimate
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+UNKNOWN = np.full((2, 2), np.nan)
+
+
+@dataclass(frozen=True)
+class Sightings:
+    """A mode over records.
+
+    Attributes
+    ----------
+    record : (n,) int
+        Position of each record among all.
+    mode : (n,) int
+        Position of the mode among those of its record.
+    frequency_hz, damping_ratio, duration_s : (n,)
+    log_covariance : (n, 2, 2)
+        Of (ln f, ln ζ); NaN where it is not known.
+    """
+
+    record: IntArray
+    mode: IntArray
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    duration_s: FloatArray
+    log_covariance: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.record)
+
+    def at(self, rows: npt.NDArray[np.bool_] | slice) -> Sightings:
+        """Return some of the sightings."""
+        return Sightings(*(column[rows] for column in vars(self).values()))
+
+
+def log_covariance(mode: ModalEstimate) -> FloatArray:
+    """Return the covariance (2, 2) of (ln f, ln ζ), NaN where it is not known."""
+    return UNKNOWN if mode.log_covariance is None else mode.log_covariance
+
+
+def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Sightings:
+    """Return one mode seen in records of these lengths, one after the other."""
+    n = np.arange(len(modes), dtype=np.int64)
+    return Sightings(
+        record=n,
+        mode=np.zeros_like(n),
+        frequency_hz=np.array([mode.frequency_hz for mode in modes]),
+        damping_ratio=np.array([mode.damping_ratio for mode in modes]),
+        duration_s=np.asarray(duration_s, dtype=float),
+        log_covariance=np.array([log_covariance(mode) for mode in modes]).reshape(-1, 2, 2),
+    )
