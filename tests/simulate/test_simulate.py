@@ -9,9 +9,11 @@ from jackettwin.errors import InputError
 from jackettwin.records import read_record, write_record
 from jackettwin.response.energy import energy
 from jackettwin.simulate import loads_document, read_scenario, simulate
+from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.motion import simulate_motion
 from jackettwin.simulate.resultant import resultants
 from jackettwin.simulate.sensing import flawed, readings
+from jackettwin.simulate.wind import rotor_loads_in, wind_field
 
 WIND = {"speed_m_s": 14.0, "seed": 1}
 SEA = {"type": "jonswap", "hs_m": 3.0, "tp_s": 9.0, "seed": 2}
@@ -241,6 +243,46 @@ def test_a_yawing_nacelle_turns_its_sensors(scenario_file) -> None:
     np.testing.assert_allclose(fore_aft, x * np.cos(psi) + y * np.sin(psi), atol=1e-12)
     np.testing.assert_allclose(side, y * np.cos(psi) - x * np.sin(psi), atol=1e-12)
     assert "axes" not in record.metadata
+
+
+def test_a_path_that_stays_is_a_yaw(scenario_file) -> None:
+    """Loads, mass, truth and start: 20° as a path of one heading is 20°."""
+    place = [{"channel": "x", "direction": [1, 0, 0], "node": "tower_top"}]
+    first, second = (
+        simulate(read_scenario(scenario_file(**PILES, wind={**WIND, **yaw}, sensors=place))).record
+        for yaw in ({"yaw_deg": 20.0}, {"yaw_path": [[0.0, 20.0], [30.0, 20.0]]})
+    )
+    np.testing.assert_allclose(second.data[0], first.data[0], rtol=1e-9, atol=1e-12)
+    for one, other in zip(first.metadata["true_modes"], second.metadata["true_modes"], strict=True):
+        assert other["damping_ratio"] == pytest.approx(one["damping_ratio"], rel=1e-9)
+    assert second.conditions["yaw_deg"] == pytest.approx(20.0)
+
+
+def test_rotor_loads_follow_a_yaw_path(scenario_file) -> None:
+    """At every step the loads are those of a rotor that always stood at that heading."""
+    wind = {**WIND, "yaw_path": [[0.0, -20.0], [30.0, 40.0]]}
+    s = read_scenario(scenario_file(**PILES, wind=wind))
+    air, step = s.air, s.clock.load_step_s
+    aero = aerodynamics(air, s.turbine)
+    field = wind_field(air, aero, duration=s.clock.total_s, step=step)
+    heading = air.heading(np.arange(field.n_times) * step)
+    turning = rotor_loads_in(field, air, aero, heading=heading)
+    for k in (0, field.n_times // 3, field.n_times - 1):
+        fixed = rotor_loads_in(field, air, aero, heading=float(heading[k]))
+        np.testing.assert_allclose(turning.still[k], fixed.still[k], rtol=1e-12)
+        push = np.array([0.3, -0.2, 0.1, 0.0, 0.01, 0.0])
+        change = [loads.change(np.zeros((6, 6)))(k, push) for loads in (turning, fixed)]
+        np.testing.assert_allclose(change[0], change[1], rtol=1e-9, atol=1e-6)
+    ends = [rotor_loads_in(field, air, aero, heading=np.radians(d)).mean_damping() for d in (-20.0, 40.0)]
+    between = turning.mean_damping()
+    assert min(e[1, 1] for e in ends) < between[1, 1] < max(e[1, 1] for e in ends)
+
+
+def test_a_heading_is_given_once(scenario_file) -> None:
+    with pytest.raises(InputError, match="given twice.*keep yaw_path"):
+        read_scenario(
+            scenario_file(**PILES, wind={**WIND, "yaw_deg": 5.0, "yaw_path": [[0.0, 0.0], [5.0, 1.0]]})
+        )
 
 
 def test_times_of_a_yaw_path_grow(scenario_file) -> None:

@@ -59,16 +59,17 @@ class RotorWind:
         """Return the hub's wind, mean included (n_times, 3) [m/s]."""
         return np.asarray(self.hub + [self.wind.speed_m_s, 0.0, 0.0])
 
-    def on_blades(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float = 0.0) -> FloatArray:
+    def on_blades(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> FloatArray:
         """Return the wind at the blade elements (n_times, n_elements, 3), in the nacelle's axes.
 
         Parameters
         ----------
         azimuth : (n_times,) [rad]
             Of a rotor that turns; one that stands does so where its wind was made.
-        yaw : heading of the nacelle, anticlockwise from +x seen from above [rad]
+        yaw : float or (n_times,)
+            Heading of the nacelle, anticlockwise from +x seen from above [rad].
         """
-        turn = rotation(np.array([0.0, 0.0, 1.0]), yaw)
+        turn = np.array([rotation(np.array([0.0, 0.0, 1.0]), float(one)) for one in np.atleast_1d(yaw)])
         r, n = rotor.hub_radius + rotor.blade.z, rotor.n_blades
         if self.azimuth is not None:
             pieces = self.rotor.shape[1] // n

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from math import radians
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
@@ -103,25 +104,38 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
     turbulence = 0.0 if w.turbulence == "none" else w.turbulence
     with located(field="wind"):
         wind = Wind(w.speed_m_s, top + turbine.rotor.hub_height, turbulence, w.shear)
+    path = _yaw_path(w, schema.time.duration_s)
     return Air(
         wind=wind,
         seed=w.seed,
-        yaw=radians(w.yaw_deg),
-        yaw_path=_yaw_path(w),
+        yaw=_mean_heading(path) if path else radians(w.yaw_deg),
+        yaw_path=path,
         tower_drag=w.tower_drag,
         coherent=w.coherence,
         piece_m=w.piece_m,
     )
 
 
-def _yaw_path(w: WindSchema) -> tuple[tuple[float, float], ...]:
-    path = w.yaw_path or []
-    for (before, _), (after, _) in pairwise(path):
-        if after <= before:
-            raise InputError(
-                "times must grow", field="wind.yaw_path", value=[t for t, _ in path], remedy="sort them"
-            )
-    return tuple((t, radians(yaw)) for t, yaw in path)
+def _yaw_path(w: WindSchema, duration_s: float) -> tuple[tuple[float, float], ...]:
+    """Return times [s] from the record's start to its end and the headings [rad] there; empty if none."""
+    if w.yaw_path is None:
+        return ()
+    if w.yaw_deg != 0.0:
+        raise InputError(
+            "the heading is given twice", field="wind.yaw_deg", value=w.yaw_deg, remedy="keep yaw_path"
+        )
+    at, yaw = np.array(w.yaw_path, dtype=np.float64).T
+    if np.any(np.diff(at) <= 0.0):
+        raise InputError("times must grow", field="wind.yaw_path", value=at.tolist(), remedy="sort them")
+    inside = at[(at > 0.0) & (at < duration_s)]
+    times = np.concatenate([[0.0], inside, [duration_s]])
+    headings = np.radians(np.interp(times, at, yaw))
+    return tuple(zip(times.tolist(), headings.tolist(), strict=True))
+
+
+def _mean_heading(path: tuple[tuple[float, float], ...]) -> float:
+    at, yaw = np.transpose(path)
+    return float(np.trapezoid(yaw, at) / (at[-1] - at[0]))
 
 
 def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:

@@ -117,27 +117,33 @@ class Aerodynamics:
 
 
 def aerodynamics(air: Air, turbine: Turbine) -> Aerodynamics:
-    """Return the rotor linearised about the mean wind at the hub."""
-    speed, heading = air.wind.speed_m_s, -air.yaw
+    """Return the rotor linearised about the mean wind at the hub, averaged over the nacelle's headings."""
+    speed, operation = air.wind.speed_m_s, None
     if turbine.state == "operating":
         operation = operating_point(turbine.rotor, turbine.control, speed)
         turbine = replace(turbine, pitch=operation.pitch)
-        found = operating_damping(turbine.rotor, operation, yaw_error=heading)
+    parts = [_linearised_at(yaw, speed, turbine, operation) for yaw in air.headings()]
+    mean = Linearised(*(np.mean(matrices, axis=0) for matrices in zip(*parts, strict=True)))
+    return Aerodynamics(mean, operation, turbine)
+
+
+def _linearised_at(yaw: float, speed: float, turbine: Turbine, operation: Operation | None) -> Linearised:
+    """Return the rotor's load, damping and stiffness at a heading [rad], in global axes."""
+    if operation is not None:
+        found = operating_damping(turbine.rotor, operation, yaw_error=-yaw)
     else:
-        operation = None
         found = linearise(
             turbine.rotor,
             speed,
             pitch=turbine.pitch,
-            yaw_error=heading,
+            yaw_error=-yaw,
             azimuth=turbine.azimuth,
             shaft="free" if turbine.state == "idling" else "locked",
         )
-    R = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), air.yaw))
-    turned = Linearised(
-        R @ found.load, in_global_axes(found.damping, air.yaw), in_global_axes(found.stiffness, air.yaw)
+    R = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), yaw))
+    return Linearised(
+        R @ found.load, in_global_axes(found.damping, yaw), in_global_axes(found.stiffness, yaw)
     )
-    return Aerodynamics(turned, operation, turbine)
 
 
 def with_aerodynamics(model: Model, mean: Linearised) -> Model:

@@ -18,33 +18,10 @@ from jackettwin.response.time import (
     periodic_start,
     state_space,
 )
+from jackettwin.simulate.driving import Loads, loads_on
 from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
-from jackettwin.simulate.model import (
-    Model,
-    TrueMode,
-    aerodynamics,
-    build_model,
-    true_modes,
-    with_aerodynamics,
-)
+from jackettwin.simulate.model import Model, TrueMode, true_modes
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import (
-    RelativeDrag,
-    WaterLoads,
-    relative_drag,
-    relative_drag_beyond,
-    water_ends,
-    water_loads,
-    water_points,
-)
-from jackettwin.simulate.wind import (
-    RotorLoads,
-    rotor_loads_in,
-    tower_damping,
-    tower_loads,
-    tower_points,
-    wind_field,
-)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -75,23 +52,6 @@ class Motion:
     signals: dict[str, FloatArray] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class _Loads:
-    """What drives the model: forces known beforehand, and the rotor's answer to motion."""
-
-    model: Model
-    repeating: FloatArray
-    """(n_steps + 1, n) forces that repeat after the simulated time."""
-    wave: WaterLoads | None
-    """Regular waves, which repeat after their own period."""
-    rotor: RotorLoads | None
-    damping: FloatArray
-    """(6, 6) of the rotor at the tower top that the model knows already."""
-    signals: dict[str, FloatArray]
-    relative: RelativeDrag | None = None
-    """Drag on the members' own motion beyond what the model knows."""
-
-
 def simulate_motion(scenario: Scenario) -> Motion:
     """Return the motion of a scenario's asset, from a start without transient.
 
@@ -107,10 +67,10 @@ def simulate_motion(scenario: Scenario) -> Motion:
     """
     clock = scenario.clock
     n_steps = round(clock.total_s / clock.load_step_s)
-    loads = _loads(scenario, n_steps)
+    loads = loads_on(scenario, n_steps)
     space = state_space(loads.model.reduced.pencil)
     hold = first_order_hold(space.A, space.B, clock.load_step_s)
-    x0 = periodic_start(hold, loads.repeating)
+    x0 = periodic_start(hold, loads.before)
     force = loads.repeating
     if loads.wave is not None:
         series = loads.wave.series
@@ -142,7 +102,7 @@ class _Part(NamedTuple):
     evaluations: int
 
 
-def _feedbacks(scenario: Scenario, loads: _Loads) -> list[_Part]:
+def _feedbacks(scenario: Scenario, loads: Loads) -> list[_Part]:
     """Return what depends on the motion beyond the linear model."""
     model, n = loads.model, loads.model.reduced.n
     parts = []
@@ -170,58 +130,3 @@ def _with_feedback(
     evaluations = max(part.evaluations for part in parts)
     states, extra = march_with_feedback(hold, own, x0, force, feedback, evaluations=evaluations)
     return states, force + extra @ rows
-
-
-def _loads(scenario: Scenario, n_steps: int) -> _Loads:
-    """Return model and loads, with n_steps + 1 rows of which the last repeats the first."""
-    model = build_model(scenario)
-    basis, step = model.reduced.basis, scenario.clock.load_step_s
-    t = np.arange(n_steps + 1, dtype=np.float64) * step
-    repeating = np.zeros((n_steps + 1, model.reduced.n))
-    drag = {source: np.zeros((model.reduced.n,) * 2) for source in ("water", "rotor")}
-    signals: dict[str, FloatArray] = {}
-    wave: WaterLoads | None = None
-    rotor: RotorLoads | None = None
-    beyond: RelativeDrag | None = None
-    known = np.zeros((6, 6))
-    if scenario.sea is not None:
-        grid = water_points(model.assembly, scenario.sea)
-        ends = water_ends(model.assembly, scenario.sea)
-        water = water_loads(
-            scenario.sea,
-            grid,
-            np.asarray(grid.N.T @ basis),
-            duration=scenario.clock.total_s,
-            ends=None if ends is None else (ends, np.asarray(ends.N.T @ basis)),
-            keep_motion=scenario.sea.relative_velocity == "full",
-        )
-        if water is not None:
-            if scenario.sea.relative_velocity != "none":
-                drag["water"] += relative_drag(grid, water, basis)
-            if scenario.sea.relative_velocity == "full":
-                beyond = relative_drag_beyond(grid, water, basis, drag["water"])
-            if scenario.sea.waves is not None:
-                signals["wave_elevation"] = water.elevation(t)
-            if abs(water.series.period_s - scenario.clock.total_s) < 1e-9:
-                repeating += water.at(t)
-            else:
-                wave = water
-    if scenario.air is not None and scenario.turbine is not None:
-        air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
-        field_ = wind_field(air, aero, duration=scenario.clock.total_s, step=step)
-        rotor = rotor_loads_in(field_, air, aero)
-        known = rotor.mean_damping()
-        repeating += _closed(rotor.still) @ model.top
-        signals["wind_hub_x"] = _closed(field_.at_hub()[:, 0])
-        tower = tower_points(model.assembly, air)
-        if tower is not None:
-            repeating += _closed(tower_loads(field_, tower, np.asarray(tower.N.T @ basis)))
-            drag["rotor"] += tower_damping(air, tower, basis)
-        model = with_aerodynamics(model, aero.mean._replace(damping=known))
-    for source, matrix in drag.items():
-        model = model.with_forces_of_motion(source, damping=matrix, stiffness=np.zeros_like(matrix))
-    return _Loads(model, repeating, wave, rotor, known, signals, beyond)
-
-
-def _closed(series: FloatArray) -> FloatArray:
-    return np.concatenate([series, series[:1]])

@@ -50,7 +50,8 @@ def resultants(scenario: Scenario) -> dict[str, FloatArray]:
     if scenario.air is not None and scenario.turbine is not None:
         air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
         field = wind_field(air, aero, duration=total_s, step=scenario.clock.load_step_s)
-        still = rotor_loads_in(field, air, aero).still
+        t = np.arange(field.n_times, dtype=np.float64) * field.step_s - scenario.clock.discard_s
+        still = rotor_loads_in(field, air, aero, heading=air.heading(t) if air.yaw_path else None).still
         top = np.array(assembly.structure.nodes[assembly.structure.top_node])
         arm = top - [0.0, 0.0, assembly.structure.sea_level_z_m]
         total = np.hstack([still[:, :3], still[:, 3:] + np.cross(arm, still[:, :3])])

@@ -70,6 +70,10 @@ class Sea:
     ends: EndCoefficients = EndCoefficients()
 
 
+_HEADINGS = 9
+"""Over which the rotor's mean stiffness is averaged."""
+
+
 @dataclass(frozen=True)
 class Air:
     """Wind along +x; ``yaw`` is the nacelle's heading, anticlockwise from +x seen from above [rad]."""
@@ -77,9 +81,9 @@ class Air:
     wind: Wind
     seed: int = 0
     yaw: float = 0.0
-    """Heading at which body and rotor of the nacelle act."""
+    """The mean heading of a path: at which the nacelle's mass stands."""
     yaw_path: tuple[tuple[float, float], ...] = ()
-    """Time in the record [s] and heading [rad] that the nacelle's sensors follow; straight in between."""
+    """Time in the record [s], first to last, and heading [rad] of rotor and sensors; straight in between."""
     tower_drag: float = 0.65
     coherent: Coherent = "all"
     """Which components of turbulence are coherent across rotor and tower."""
@@ -92,6 +96,13 @@ class Air:
             return np.full(t.shape, self.yaw)
         at, yaw = np.transpose(self.yaw_path)
         return np.asarray(np.interp(t, at, yaw), dtype=np.float64)
+
+    def headings(self) -> FloatArray:
+        """Return headings [rad] that stand for the record, each for as much of it."""
+        if not self.yaw_path:
+            return np.array([self.yaw])
+        first, last = self.yaw_path[0][0], self.yaw_path[-1][0]
+        return self.heading(first + (last - first) * (np.arange(_HEADINGS) + 0.5) / _HEADINGS)
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from jackettwin.structure import Assembly
 
 FloatArray = npt.NDArray[np.float64]
 
+_UP = np.array([0.0, 0.0, 1.0])
 _TOWER_SPACING_M = 4.0
 _INSTANTS = 500
 """Times over which the damping is averaged."""
@@ -35,7 +36,7 @@ class RotorLoads:
     on_blades : (n_times, n_elements, 3) wind in the nacelle's axes
     azimuth : (n_times,)
     radius : of the rotor [m]
-    turn : (6, 6) global from nacelle's axes
+    turn : (n_times, 6, 6) global from nacelle's axes; (1, 6, 6) if it does not yaw
     """
 
     rotor: CompiledRotor
@@ -47,11 +48,12 @@ class RotorLoads:
 
     def change(self, damping: FloatArray) -> Callable[[int, FloatArray], FloatArray]:
         """Return F(v) − F(0) + C v at step k for a velocity v (6,) of the top: what C does not know."""
-        turn, back = self.turn, np.ascontiguousarray(self.turn.T)
+        turns = self.turn.shape[0]
 
         def at(k: int, velocity: FloatArray) -> FloatArray:
+            turn = self.turn[k % turns]
             moving = self.rotor.loads(
-                self.on_blades[k : k + 1], (back @ velocity)[None], self.azimuth[k : k + 1]
+                self.on_blades[k : k + 1], (velocity @ turn)[None], self.azimuth[k : k + 1]
             )[0]
             return np.asarray(turn @ moving - self.still[k] + damping @ velocity)
 
@@ -65,13 +67,14 @@ class RotorLoads:
         """
         every = max(1, self.azimuth.size // _INSTANTS)
         wind, azimuth = self.on_blades[::every], self.azimuth[::every]
-        damping = np.empty((6, 6))
+        damping = np.empty((azimuth.size, 6, 6))
         for j, step in enumerate((*[_STEP_M_S] * 3, *[_STEP_M_S / self.radius] * 3)):
             velocity = np.zeros((azimuth.size, 6))
             velocity[:, j] = step
             ahead, behind = (self.rotor.loads(wind, sign * velocity, azimuth) for sign in (1.0, -1.0))
-            damping[:, j] = (behind - ahead).mean(axis=0) / (2.0 * step)
-        return np.asarray(self.turn @ damping @ self.turn.T)
+            damping[:, :, j] = (behind - ahead) / (2.0 * step)
+        turn = self.turn[::every] if self.turn.shape[0] > 1 else self.turn
+        return np.asarray((turn @ damping @ turn.swapaxes(1, 2)).mean(axis=0))
 
 
 def wind_field(air: Air, aero: Aerodynamics, *, duration: float, step: float) -> RotorWind:
@@ -89,8 +92,10 @@ def wind_field(air: Air, aero: Aerodynamics, *, duration: float, step: float) ->
     )
 
 
-def rotor_loads_in(field: RotorWind, air: Air, aero: Aerodynamics) -> RotorLoads:
-    """Return the rotor's loads in turbulent wind."""
+def rotor_loads_in(
+    field: RotorWind, air: Air, aero: Aerodynamics, *, heading: float | FloatArray | None = None
+) -> RotorLoads:
+    """Return the rotor's loads in turbulent wind; ``heading`` [rad], one or (n_times,), default the air's."""
     turbine, operation = aero.turbine, aero.operation
     speed = 0.0 if operation is None else operation.rotor_speed
     rotor = compiled_rotor(
@@ -101,12 +106,12 @@ def rotor_loads_in(field: RotorWind, air: Air, aero: Aerodynamics) -> RotorLoads
         induced=None if operation is None else operation.induced,
     )
     azimuth = turbine.azimuth + speed * field.step_s * np.arange(field.n_times, dtype=np.float64)
-    on_blades = field.on_blades(turbine.rotor, azimuth, yaw=air.yaw)
-    turn = np.kron(np.eye(2), rotation(np.array([0.0, 0.0, 1.0]), air.yaw))
-    still = rotor.loads(on_blades, np.zeros((field.n_times, 6)), azimuth) @ turn.T
-    return RotorLoads(
-        rotor, turbine.rotor.radius, still, on_blades, azimuth, np.asarray(turn, dtype=np.float64)
-    )
+    yaw = air.yaw if heading is None else heading
+    on_blades = field.on_blades(turbine.rotor, azimuth, yaw=yaw)
+    turn = np.array([np.kron(np.eye(2), rotation(_UP, float(one))) for one in np.atleast_1d(yaw)])
+    still = rotor.loads(on_blades, np.zeros((field.n_times, 6)), azimuth)
+    turned = (turn @ still[:, :, None])[:, :, 0]
+    return RotorLoads(rotor, turbine.rotor.radius, turned, on_blades, azimuth, turn)
 
 
 def tower_points(assembly: Assembly, air: Air) -> MorisonPoints | None:
