@@ -50,7 +50,18 @@ def test_loads_have_the_keys_of_the_contract(case: Path) -> None:
     for key in ("force_n", "moment_msl_n_m"):
         assert set(document[key]) == {"x", "y", "z"}
         assert {"max", "min", "std"} <= set(document[key]["x"])
-    assert "Fx" in CliRunner().invoke(main, ["loads", str(case)]).stdout
+    shown = CliRunner().invoke(main, ["loads", str(case)]).stdout
+    assert "Fx" in shown and "at the bed, z = -72 m: base shear" in shown and "over one wave" in shown
+    first = document["phases"][0]
+    assert first["wave_elevation_m"] == pytest.approx(3.0)
+    # M about the bed is M about still water + 72 m × F
+    assert first["moment_mudline_n_m"][1] == pytest.approx(
+        first["moment_msl_n_m"][1] + 72.0 * first["force_n"][0]
+    )
+    at_bed = document["mudline"]["moment_n_m"]
+    assert max(abs(at_bed["y"]["max"]), abs(at_bed["y"]["min"])) <= document["mudline"][
+        "overturning_moment_n_m"
+    ] * (1 + 1e-12)
 
 
 def test_bad_scenarios_end_with_two(case: Path) -> None:

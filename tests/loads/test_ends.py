@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
-from jackettwin.loads.morison import SEA_WATER_KG_M3, Coefficients
 from jackettwin.loads.regular_waves import RegularWave
 from jackettwin.loads.waves import airy_wave, irregular_sea
 from jackettwin.structure import Section, Structure, assemble
@@ -78,7 +78,7 @@ def test_legs_run_through_and_braces_do_not() -> None:
 def test_acceleration_and_drag_at_an_end() -> None:
     """ρ C_a (2π/3)R³ u̇ across a free end along x, and ¼ρC_d A|u|u in a current; growth widens both."""
     R = 0.5 * D + 0.1
-    growth = ((0.0, -50.0, 0.1),)
+    growth = (GrowthBand(0.0, -50.0, 0.1),)
     line = ((0.0, 0.0, -20.0), (8.0, 0.0, -20.0))
     ends = ends_of(line, growth=growth, added_mass=0.7)
     du = WAVE.motion(ends.points, TIMES)[1]

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
 from jackettwin.loads.current import Current
 from jackettwin.loads.morison import (
-    SEA_WATER_KG_M3,
-    Coefficients,
     added_mass,
     drag_damping,
     morison_points,
@@ -61,7 +60,9 @@ def test_inertia_on_a_vertical_cylinder() -> None:
 def test_drag_on_a_vertical_cylinder() -> None:
     """F = ½ρ C_D D a²ω² (sinh 2kd + 2kd)/(4k sinh² kd) under the crest."""
     assembly = cylinder()
-    grid = morison_points(assembly, highest_z=10.0, coefficients=Coefficients(inertia=0.0), spacing=1.0)
+    grid = morison_points(
+        assembly, highest_z=10.0, coefficients=Coefficients(added_mass=0.0, pressure=0.0), spacing=1.0
+    )
     wave = airy_wave(height=2.0, period=9.0, depth=DEPTH)
     force, _ = resultant(assembly, wave_loads(grid, wave, np.zeros(1))[0])
     k, omega = float(wave.k[0]), float(wave.omega[0])
@@ -79,7 +80,9 @@ def test_drag_on_a_vertical_cylinder() -> None:
 def test_wheeler_loads_the_crest() -> None:
     """Uniform current under a crest 3 m high: the wet length is d + η."""
     assembly = cylinder()
-    grid = morison_points(assembly, highest_z=10.0, coefficients=Coefficients(inertia=0.0), spacing=0.5)
+    grid = morison_points(
+        assembly, highest_z=10.0, coefficients=Coefficients(added_mass=0.0, pressure=0.0), spacing=0.5
+    )
     still = airy_wave(height=1e-9, period=9.0, depth=DEPTH, stretching="wheeler")
     current = Current(depth=DEPTH, subsurface_m_s=1.0)
     force, _ = resultant(assembly, wave_loads(grid, still, np.zeros(1), current=current)[0])
@@ -107,14 +110,14 @@ def test_a_current_pushes_an_inclined_cylinder_normally(tilt: float) -> None:
 
 def test_moving_with_the_water_feels_no_drag() -> None:
     assembly = cylinder()
-    grid = morison_points(assembly, highest_z=0.0, coefficients=Coefficients(inertia=0.0))
+    grid = morison_points(assembly, highest_z=0.0, coefficients=Coefficients(added_mass=0.0, pressure=0.0))
     u = np.full((grid.weight.size, 3), 0.7)
     np.testing.assert_array_equal(point_forces(grid, u, 0 * u, velocity=u), 0.0)
 
 
 def test_added_mass_and_displaced_water() -> None:
     assembly = cylinder()
-    grid = morison_points(assembly, highest_z=10.0, coefficients=Coefficients(inertia=1.8))
+    grid = morison_points(assembly, highest_z=10.0, coefficients=Coefficients(added_mass=0.8))
     shift = np.tile([1.0, 0, 0, 0, 0, 0], assembly.n_dof // 6)
     lift = np.tile([0, 0, 1.0, 0, 0, 0], assembly.n_dof // 6)
     A = added_mass(grid)
@@ -135,7 +138,7 @@ def test_linear_drag_damping_is_borgmans() -> None:
 
 
 def test_growth_widens_and_dry_structures_are_refused() -> None:
-    growth = Coefficients(growth=((2.0, -10.0, 0.1),))
+    growth = Coefficients(growth=(GrowthBand(2.0, -10.0, 0.1),))
     grid = morison_points(cylinder(), highest_z=0.0, coefficients=growth)
     z = grid.points[:, 2]
     np.testing.assert_allclose(grid.diameter, np.where((z <= 2.0) & (z >= -10.0), D + 0.2, D), rtol=1e-9)

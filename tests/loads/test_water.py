@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.morison import SEA_WATER_KG_M3, Coefficients, morison_points
-from jackettwin.loads.water import GROWTH_KG_M3, Water, water_mass, water_weight
+from jackettwin.loads.coefficients import GROWTH_KG_M3, SEA_WATER_KG_M3, Coefficients, GrowthBand
+from jackettwin.loads.morison import morison_points
+from jackettwin.loads.water import Water, water_mass, water_weight
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import clamped
@@ -13,7 +14,7 @@ from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member, Reaction
 
 D, T, DEPTH, RHO = 1.2, 0.03, 40.0, SEA_WATER_KG_M3
-GROWTH = Coefficients(inertia=2.0, growth=((2.0, -40.0, 0.05),))
+GROWTH = Coefficients(growth=(GrowthBand(2.0, -40.0, 0.05),))
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.morison import Coefficients, morison_points, nodal_loads
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.morison import morison_points, nodal_loads
 from jackettwin.loads.rotor import AIR_KG_M3
 from jackettwin.loads.wind import Wind, kaimal, tower_drag, tower_drag_damping
 from jackettwin.structure import assemble, read_structure
@@ -31,7 +32,7 @@ def test_kaimal_integrates_to_its_variance(component: int) -> None:
 def test_tower_drag_and_its_damping() -> None:
     """Uniform wind on the tower: F = ½ρC_D V²∫D dz; damping 2F/V along, F/V across the wind."""
     assembly = assemble(read_structure("jacket15"))
-    coefficients = Coefficients(drag=0.5, inertia=0.0, density_kg_m3=AIR_KG_M3)
+    coefficients = Coefficients(drag=0.5, added_mass=0.0, pressure=0.0, density_kg_m3=AIR_KG_M3)
     grid = morison_points(
         assembly, lowest_z=28.5, coefficients=coefficients, exclude_parts=("jacket", "transition_piece")
     )

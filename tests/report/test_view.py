@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.report.view import Quantity, View, thickness_quantities, view_document, write_view
 from jackettwin.report.view_motions import damped_motion, undamped_motion, wave_motion
 from jackettwin.response.modal import damped_modes, undamped_modes
@@ -45,7 +45,7 @@ def view(system: System) -> View:
         ),
         motions,
         (Sensor("top </script>", (0.0, 2.0, 0.0), "tower_top"),),
-        Coefficients(growth=((2.0, -40.0, 0.1),)),
+        Coefficients(growth=(GrowthBand(2.0, -40.0, 0.1),)),
         ("jacket",),
         ("a fact",),
     )

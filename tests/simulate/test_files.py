@@ -5,6 +5,7 @@ from math import pi
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import GrowthBand, Strip, StripTable
 from jackettwin.simulate import read_scenario, shipped_scenarios
 
 WAVES = {"type": "airy", "height_m": 6.0, "period_s": 10.0}
@@ -21,7 +22,7 @@ def test_defaults_are_stated(scenario_file) -> None:
     s = read_scenario(scenario_file(waves=WAVES, wind={"speed_m_s": 10.0}))
     assert s.sea is not None and s.air is not None and s.turbine is not None
     assert s.sea.depth_m == pytest.approx(72.0)
-    assert s.sea.coefficients.inertia == 2.0
+    assert (s.sea.coefficients.pressure, s.sea.coefficients.added_mass) == (1.0, 1.0)
     assert s.sea.water is None
     assert s.air.wind.hub_height_m == pytest.approx(144.0 + 5.614)
     assert (s.turbine.state, s.turbine.pitch) == ("parked", pytest.approx(pi / 2))
@@ -33,12 +34,46 @@ def test_growth_and_flooding_add_their_mass_unless_told_otherwise(scenario_file)
     growth = {"marine_growth": [{"top_z_m": 2.0, "bottom_z_m": -20.0, "thickness_m": 0.1}]}
     sea = read_scenario(scenario_file(water=growth)).sea
     assert sea is not None and sea.water is not None
-    assert sea.coefficients.growth == ((2.0, -20.0, 0.1),)
+    assert sea.coefficients.growth == (GrowthBand(2.0, -20.0, 0.1),)
     sea = read_scenario(scenario_file(water={**growth, "adds_mass": False})).sea
     assert sea is not None and sea.water is None
 
 
+def test_water_as_a_hydrodyn_user_gives_it(scenario_file) -> None:
+    """Growth by depth, coefficients with and without it, over the height and of some members."""
+    water = {
+        "drag": 0.8,
+        "pressure": 0.9,
+        "with_growth": {"drag": 1.1},
+        "marine_growth": [
+            {"z_m": -40.0, "thickness_m": 0.05},
+            {"z_m": 2.0, "thickness_m": 0.1, "density": 1400.0},
+        ],
+        "coefficients": [
+            {"members": ["tower"], "at": [{"z_m": 0.0, "drag": 0.7, "with_growth": {"added_mass": 0.9}}]}
+        ],
+        "growth_density": 1300.0,
+    }
+    sea = read_scenario(scenario_file(water=water)).sea
+    assert sea is not None
+    c = sea.coefficients
+    assert c.growth == (GrowthBand(2.0, -40.0, 0.1, 0.05, 1400.0, 1300.0),)
+    assert (c.bare, c.grown) == (Strip(0.8, 1.0, 0.9), Strip(1.1, 1.0, 0.9))
+    assert c.tables == (StripTable((0.0,), (Strip(0.7, 1.0, 0.9),), (Strip(0.7, 0.9, 0.9),), ("tower",)),)
+
+
+GROWN = {"z_m": 0.0, "thickness_m": 0.1}
 BAD = {
+    "growth without heights": ({"water": {"marine_growth": [{"thickness_m": 0.1}]}}, "top_z_m.*z_m at every"),
+    "one height of growth": ({"water": {"marine_growth": [GROWN]}}, "water.marine_growth.*two at least"),
+    "growth upside down": (
+        {"water": {"marine_growth": [{"top_z_m": -9.0, "bottom_z_m": 2.0, "thickness_m": 0.1}]}},
+        "water.marine_growth.*must lie above",
+    ),
+    "coefficients of no member": (
+        {"water": {"coefficients": [{"members": ["legs"], "at": [{"z_m": 0.0}]}]}},
+        "water.coefficients.*no such member",
+    ),
     "unknown key": ({"wavess": WAVES}, "wavess.*did you mean 'waves'"),
     "unknown nested key": ({"wind": {"speed_m_s": 9.0, "turbulance": "B"}}, "wind.turbulance.*turbulence"),
     "no such wave": ({"waves": {**WAVES, "type": "gerstner"}}, "waves.*gerstner"),

@@ -12,7 +12,7 @@ from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
-from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.records import read_record
 from jackettwin.report.view import Quantity, View, thickness_quantities, write_view
 from jackettwin.report.view_motions import Motion, damped_motion, record_motion, undamped_motion, wave_motion
@@ -124,9 +124,8 @@ def view_command(
         output.print(f"wrote {path}")
 
 
-def _band(text: str) -> tuple[float, float, float]:
-    top, bottom, thickness = _numbers(text, "--growth", (3,))
-    return (top, bottom, thickness)
+def _band(text: str) -> GrowthBand:
+    return GrowthBand(*_numbers(text, "--growth", (3,)))
 
 
 def _numbers(text: str, option: str, counts: tuple[int, ...]) -> tuple[float, ...]:

@@ -19,8 +19,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
-from jackettwin.loads.morison import Coefficients
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly
 

@@ -2,8 +2,8 @@ r"""Morison's equation on every member: thesis (5.1), with relative velocity (2.
 
 Per unit length, everything normal to the member (subscript n):
 
-.. math:: f = ½ρ C_D D |v_n| v_n + ρ C_M \tfrac{π}{4}D^2 \dot u_n − ρ (C_M − 1) \tfrac{π}{4}D^2 \ddot x_n,
-          \qquad v = u − \dot x
+.. math:: f = ½ρ C_D D |v_n| v_n + ρ C_M \tfrac{π}{4}D^2 \dot u_n − ρ C_a \tfrac{π}{4}D^2 \ddot x_n,
+          \qquad v = u − \dot x,\quad C_M = C_p + C_a
 
 Loads are integrated at Gauss points by the elements' own shape functions, so that forces, motions of the
 members, added mass and linear drag damping all go through one sparse matrix N.
@@ -18,6 +18,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.kernels import morison
 from jackettwin.loads.waves import Waves
@@ -25,35 +26,6 @@ from jackettwin.structure import Assembly, beam
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
-
-SEA_WATER_KG_M3 = 1025.0
-
-
-@dataclass(frozen=True)
-class Coefficients:
-    """Drag and inertia coefficients, marine growth and water density.
-
-    ``growth`` holds (top z, bottom z, thickness) [m] bands, z up from still water; growth adds to the
-    hydrodynamic diameter.
-    """
-
-    drag: float = 1.0
-    inertia: float = 2.0
-    growth: tuple[tuple[float, float, float], ...] = ()
-    density_kg_m3: float = SEA_WATER_KG_M3
-
-    def __post_init__(self) -> None:
-        for field in ("drag", "inertia", "density_kg_m3"):
-            value = getattr(self, field)
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError("out of range", field=field, value=value, allowed="≥ 0")
-
-    def thickness(self, z: FloatArray) -> FloatArray:
-        """Return the growth's thickness [m] at ``z``."""
-        t = np.zeros_like(z)
-        for top, bottom, thick in self.growth:
-            t = np.where((z <= top) & (z >= bottom), thick, t)
-        return t
 
 
 @dataclass(frozen=True)
@@ -64,9 +36,11 @@ class MorisonPoints:
     ----------
     points : (n, 3) z up from still water [m]
     weight : (n,) member length each stands for [m]
-    half_height : (n,) half the vertical extent of that length [m]: how sharply it gets wet
+    middle_z, half_height : (n,) middle and half the height of that length [m]: when it gets wet
     diameter : (n,) hydrodynamic, growth included [m]
     tube_diameter, bore : (n,) outer and inner diameter of the steel [m]
+    growth_density : (n,) of what lies between both diameters [kg/m³]
+    drag, added_mass, pressure : (n,) C_D, C_a and C_p
     member : (n,) index into the structure's members
     normal : (n, 3, 3) projector onto the plane normal to the member
     N : (assembly.n_dof, 3n) sparse; nodal loads from point forces, and its transpose point motion from DOFs
@@ -74,14 +48,19 @@ class MorisonPoints:
 
     points: FloatArray
     weight: FloatArray
+    middle_z: FloatArray
     half_height: FloatArray
     diameter: FloatArray
     tube_diameter: FloatArray
     bore: FloatArray
+    growth_density: FloatArray
+    drag: FloatArray
+    added_mass: FloatArray
+    pressure: FloatArray
     member: IntArray
     normal: FloatArray
     N: sp.csr_array
-    coefficients: Coefficients
+    density_kg_m3: float
 
     def motion(self, x: FloatArray) -> FloatArray:
         """Return the motion of the points (..., n, 3) from that of the DOFs (..., n_dof)."""
@@ -118,31 +97,50 @@ def morison_points(
             field="sea_level_z_m",
             value=structure.sea_level_z_m,
         )
-    xi, weight = zip(*(_gauss(float(mesh.properties.L[e]), spacing) for e in wanted), strict=True)
-    element = np.repeat(wanted, [x.size for x in xi])
-    at, length = np.concatenate(xi), np.concatenate(weight)
+    pieces = [_gauss(float(mesh.properties.L[e]), spacing) for e in wanted]
+    element = np.repeat(wanted, [weight.size for _, _, weight in pieces])
+    at, middle, length = (np.concatenate(part) for part in zip(*pieces, strict=True))
     start, end = ends[mesh.start[element]], ends[mesh.end[element]]
     points = start + at[:, None] * (end - start)
-    outer, bore = _diameters(mesh.properties)
+    member, z = mesh.member[element], points[:, 2]
+    outer, bore = _diameters(assembly, member, points)
+    drag, added, pressure = coefficients.at(z, member, [(m.name, m.part) for m in structure.members])
     axis = mesh.axes[element, 0]
     return MorisonPoints(
         points=points,
         weight=length,
+        middle_z=start[:, 2] + middle * (end - start)[:, 2],
         half_height=0.5 * length * np.abs(axis[:, 2]),
-        diameter=outer[element] + 2.0 * coefficients.thickness(points[:, 2]),
-        tube_diameter=outer[element],
-        bore=bore[element],
-        member=mesh.member[element],
+        diameter=outer + 2.0 * coefficients.thickness(z),
+        tube_diameter=outer,
+        bore=bore,
+        growth_density=coefficients.growth_density(z),
+        drag=drag,
+        added_mass=added,
+        pressure=pressure,
+        member=member,
         normal=np.eye(3) - axis[:, :, None] * axis[:, None, :],
         N=_distribution(assembly, element, at),
-        coefficients=coefficients,
+        density_kg_m3=coefficients.density_kg_m3,
     )
 
 
-def _diameters(p: beam.BeamProperties) -> tuple[FloatArray, FloatArray]:
-    """Return outer and inner diameter from A = π(R² − r²) and 4I/A = R² + r²."""
-    difference, total = p.A / np.pi, 4.0 * p.I / p.A
-    return np.sqrt(2.0 * (total + difference)), np.sqrt(2.0 * np.maximum(total - difference, 0.0))
+def _diameters(assembly: Assembly, member: IntArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return outer and inner diameter at points on members, straight between the ends of each."""
+    structure = assembly.structure
+    sea = np.array([0.0, 0.0, structure.sea_level_z_m])
+    ends = np.array([[structure.nodes[m.start], structure.nodes[m.end]] for m in structure.members]) - sea
+    size = np.array(
+        [
+            [(s.outer_diameter_m, s.outer_diameter_m - 2.0 * s.thickness_m) for s in sections]
+            for sections in ((m.section_start, m.section_end) for m in structure.members)
+        ]
+    )
+    first, last = np.moveaxis(ends, 1, 0)
+    along = np.linalg.norm(points - first[member], axis=1) / np.linalg.norm(last - first, axis=1)[member]
+    start, end = np.moveaxis(size[member], 1, 0)
+    outer, bore = (start + along[:, None] * (end - start)).T
+    return outer, bore
 
 
 def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.csr_array:
@@ -160,19 +158,26 @@ def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.c
     return sp.csr_array(assembly.expand.T @ full.tocsr())
 
 
-def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray]:
-    """Return places x/L and lengths [m] of two Gauss points a piece."""
+def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return x/L of two Gauss points a piece, x/L of the middle of the half they stand for, lengths [m]."""
     n = int(np.ceil(L / spacing))
     x, _ = np.polynomial.legendre.leggauss(2)
-    xi = ((np.arange(n)[:, None] + 0.5 + 0.5 * x) / n).ravel()
-    return xi, np.full(xi.size, 0.5 * L / n)
+    xi, middle = (((np.arange(n)[:, None] + 0.5 + 0.5 * at) / n).ravel() for at in (x, 0.5 * np.sign(x)))
+    return xi, middle, np.full(xi.size, 0.5 * L / n)
 
 
 def wetness(grid: MorisonPoints, eta: FloatArray) -> FloatArray:
     """Return the wet share (0 to 1) of each point's length under surface ``eta`` (..., n) [m]."""
-    depth = eta - grid.points[:, 2]
     half = np.maximum(grid.half_height, 1e-9)
-    return np.asarray(np.clip(0.5 + 0.5 * depth / half, 0.0, 1.0))
+    return np.asarray(np.clip(0.5 + 0.5 * (eta - grid.middle_z) / half, 0.0, 1.0))
+
+
+def above_bed(grid: MorisonPoints, depth: float) -> FloatArray:
+    """Return the share (0 to 1) of each point's length above the bed at ``depth`` [m], (n,)."""
+    height, half = grid.middle_z + depth, grid.half_height
+    share = np.clip(0.5 + 0.5 * height / np.maximum(half, 1e-9), 0.0, 1.0)
+    # 1 mm: a level brace on the bed is above it whatever the rounding
+    return np.asarray(np.where(half < 1e-6, height > -1e-3, share))
 
 
 def point_forces(
@@ -194,15 +199,15 @@ def point_forces(
     wet : (..., n)
         Wet share of each point.
     """
-    c, D = grid.coefficients, grid.diameter
+    rho, D = grid.density_kg_m3, grid.diameter
     v = u if velocity is None else u - velocity
     shape = np.broadcast_shapes(v.shape, du.shape)
     flat = (-1, *shape[-2:])
     length = np.broadcast_to(grid.weight * wet, shape[:-1])
     forces = np.empty((int(np.prod(shape[:-2])), *shape[-2:]))
     morison(
-        0.5 * c.density_kg_m3 * c.drag * D,
-        0.25 * np.pi * c.density_kg_m3 * c.inertia * D**2,
+        0.5 * rho * grid.drag * D,
+        0.25 * np.pi * rho * (grid.pressure + grid.added_mass) * D**2,
         grid.normal,
         np.broadcast_to(v, shape).reshape(flat),
         np.broadcast_to(du, shape).reshape(flat),
@@ -240,9 +245,8 @@ def wave_loads(
 
 
 def added_mass(grid: MorisonPoints, *, eta: float = 0.0) -> sp.csr_array:
-    """Return the hydrodynamic added mass ρ(C_M − 1)πD²/4 of the wet length, (n_dof, n_dof)."""
-    c = grid.coefficients
-    per_length = c.density_kg_m3 * (c.inertia - 1.0) * 0.25 * np.pi * grid.diameter**2
+    """Return the hydrodynamic added mass ρC_a πD²/4 of the wet length, (n_dof, n_dof)."""
+    per_length = grid.density_kg_m3 * grid.added_mass * 0.25 * np.pi * grid.diameter**2
     wet = per_length * wetness(grid, np.full(grid.weight.size, eta))
     return spread(grid, wet[:, None, None] * grid.normal)
 
@@ -254,9 +258,8 @@ def drag_damping(grid: MorisonPoints, sigma: FloatArray) -> sp.csr_array:
     ----------
     sigma : (n,) standard deviation of the water's normal velocity at the points [m/s]
     """
-    c = grid.coefficients
     wet = wetness(grid, np.zeros(grid.weight.size))
-    per_length = 0.5 * c.density_kg_m3 * c.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet
+    per_length = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * np.sqrt(8.0 / np.pi) * sigma * wet
     return spread(grid, per_length[:, None, None] * grid.normal)
 
 

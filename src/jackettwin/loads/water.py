@@ -13,25 +13,18 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.axes import GRAVITY_M_S2
-from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import require_members
 from jackettwin.loads.morison import MorisonPoints, added_mass, nodal_loads, spread, wetness
 from jackettwin.structure import Assembly
 
 FloatArray = npt.NDArray[np.float64]
 
-GROWTH_KG_M3 = 1325.0
-"""Density of marine growth, ISO 19901-1 (2015) annex: 1325 kg/m³ unless measured."""
-
 
 @dataclass(frozen=True)
 class Water:
-    """Which members are flooded, and what growth weighs.
-
-    ``flooded`` names members or whole parts of the structure; their bore is filled up to still water.
-    """
+    """Which members are flooded: members or whole parts, filled up to still water."""
 
     flooded: tuple[str, ...] = ()
-    growth_density_kg_m3: float = GROWTH_KG_M3
 
 
 def water_mass(assembly: Assembly, grid: MorisonPoints, water: Water) -> sp.csr_array:
@@ -45,10 +38,8 @@ def water_mass(assembly: Assembly, grid: MorisonPoints, water: Water) -> sp.csr_
         If a flooded member or part does not exist.
     """
     wet = wetness(grid, np.zeros(grid.weight.size))
-    carried = _growth_area(grid) * water.growth_density_kg_m3
-    carried = carried + _bore_area(grid) * grid.coefficients.density_kg_m3 * wet * _flooded(
-        assembly, grid, water
-    )
+    carried = _growth_area(grid) * grid.growth_density
+    carried = carried + _bore_area(grid) * grid.density_kg_m3 * wet * _flooded(assembly, grid, water)
     return sp.csr_array(spread(grid, carried[:, None, None] * np.eye(3)) + added_mass(grid))
 
 
@@ -58,9 +49,9 @@ def water_weight(assembly: Assembly, grid: MorisonPoints, water: Water) -> Float
     Buoyancy is the weight of the water displaced by member and growth, as for closed ends.
     """
     wet = wetness(grid, np.zeros(grid.weight.size))
-    rho = grid.coefficients.density_kg_m3
+    rho = grid.density_kg_m3
     inside = _bore_area(grid) * rho * wet * _flooded(assembly, grid, water)
-    growth = _growth_area(grid) * water.growth_density_kg_m3
+    growth = _growth_area(grid) * grid.growth_density
     displaced = 0.25 * np.pi * grid.diameter**2 * rho * wet
     forces = np.zeros_like(grid.points)
     forces[:, 2] = GRAVITY_M_S2 * (displaced - inside - growth) * grid.weight
@@ -77,11 +68,6 @@ def _bore_area(grid: MorisonPoints) -> FloatArray:
 
 def _flooded(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
     members = assembly.structure.members
-    known = {member.name for member in members} | {member.part for member in members}
-    for name in water.flooded:
-        if name not in known:
-            raise InputError(
-                "no such member or part", field="flooded", value=name, remedy="name a member or a part"
-            )
+    require_members(water.flooded, [(m.name, m.part) for m in members], "flooded")
     named = np.array([member.name in water.flooded or member.part in water.flooded for member in members])
     return named[grid.member].astype(np.float64)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import Ends, end_forces
-from jackettwin.loads.morison import MorisonPoints, point_forces, wetness
+from jackettwin.loads.morison import MorisonPoints, above_bed, point_forces, wetness
 from jackettwin.loads.sea_series import sea_series
 from jackettwin.loads.waves import AirySea, Waves
 
@@ -97,7 +97,7 @@ def wave_series(
             u, du = waves.motion(part.points, t)
         if current is not None:
             u = u + current.velocity(part.points[:, 2])
-        wet = wetness(part, surface) * (part.points[:, 2] >= -depth)
+        wet = wetness(part, surface) * above_bed(part, depth)
         if across is not None and share is not None:
             across[:, here], share[:, here] = np.einsum("nij,tnj->tni", part.normal, u), wet
         forces = point_forces(part, u, du, wet=wet)
@@ -115,5 +115,5 @@ def wave_series(
 def some_points(grid: MorisonPoints, here: slice) -> MorisonPoints:
     """Return a part of the points."""
     N = sp.csr_array(grid.N[:, 3 * here.start : 3 * here.stop])
-    per_point = ("points", "weight", "half_height", "diameter", "tube_diameter", "bore", "member", "normal")
-    return replace(grid, N=N, **{name: getattr(grid, name)[here] for name in per_point})
+    rest = {f.name: getattr(grid, f.name)[here] for f in fields(grid) if f.name not in ("N", "density_kg_m3")}
+    return replace(grid, N=N, **rest)

@@ -100,8 +100,7 @@ def tower_drag_damping(grid: MorisonPoints, wind: FloatArray) -> sp.csr_array:
 
     d(½ρC_D D|v|v)/dv = ½ρC_D D (|v| I + v vᵀ/|v|), v normal to the member.
     """
-    c = grid.coefficients
     v = np.einsum("nij,nj->ni", grid.normal, wind)
     speed = np.maximum(np.linalg.norm(v, axis=1), 1e-12)[:, None, None]
     tangent = speed * grid.normal + v[:, :, None] * v[:, None, :] / speed
-    return spread(grid, 0.5 * c.density_kg_m3 * c.drag * grid.diameter[:, None, None] * tangent)
+    return spread(grid, (0.5 * grid.density_kg_m3 * grid.drag * grid.diameter)[:, None, None] * tangent)

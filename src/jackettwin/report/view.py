@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
-from jackettwin.loads.morison import Coefficients
+from jackettwin.loads.coefficients import Coefficients
 from jackettwin.report.figures_structure import member_text, sensor_points
 from jackettwin.report.view_motions import Motion
 from jackettwin.response.sensors import Sensor

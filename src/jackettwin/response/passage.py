@@ -9,7 +9,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.loads import airy_wave, morison_points
-from jackettwin.loads.morison import Coefficients, MorisonPoints, nodal_loads, point_forces, wetness
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.morison import MorisonPoints, nodal_loads, point_forces, wetness
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
 

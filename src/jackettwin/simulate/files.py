@@ -13,8 +13,6 @@ from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients
 from jackettwin.loads.files import read_rotor
-from jackettwin.loads.morison import Coefficients
-from jackettwin.loads.water import Water
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor
@@ -25,10 +23,10 @@ from jackettwin.simulate.schema import (
     ScenarioSchema,
     SensorSchema,
     TimeSchema,
-    WaterSchema,
     WavesSchema,
     WindSchema,
 )
+from jackettwin.simulate.water_files import WaterSchema, carried_water, water_coefficients
 from jackettwin.structure import Structure
 
 REGULAR = ("airy", "stokes5", "stream")
@@ -143,7 +141,7 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
     if schema.water is None and w is None and c is None:
         return None
     given = schema.water or WaterSchema()
-    coefficients, water = _water(given, structure)
+    coefficients, water = water_coefficients(given), carried_water(given, structure)
     depth = given.depth_m or _depth(structure)
     current = (
         None if c is None else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg))
@@ -180,19 +178,6 @@ def _depth(structure: Structure) -> float:
             "water depth is not known", field="water.depth_m", value=depth, remedy="state it in metres"
         )
     return depth
-
-
-def _water(w: WaterSchema, structure: Structure) -> tuple[Coefficients, Water | None]:
-    """Return the coefficients, and the water that moves with the structure if its mass is to be added."""
-    growth = tuple((g.top_z_m, g.bottom_z_m, g.thickness_m) for g in w.marine_growth)
-    if isinstance(w.flooded, bool):
-        everything = {m.name for m in structure.members if m.part not in ("tower", "piles")}
-        flooded = tuple(sorted(everything)) if w.flooded else ()
-    else:
-        flooded = tuple(w.flooded)
-    adds = bool(growth or flooded) if w.adds_mass is None else w.adds_mass
-    water = Water(flooded, w.growth_density) if adds else None
-    return Coefficients(w.drag, 1.0 + w.added_mass, growth, w.density), water
 
 
 def _size(w: WavesSchema) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_ends, water_loads, water_points
+from jackettwin.simulate.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import assemble
 
@@ -19,6 +19,9 @@ FloatArray = npt.NDArray[np.float64]
 
 _FINE_M = 0.5
 """Longest piece of a member: the loads themselves are the result."""
+RANDOM = ("jonswap", "pierson-moskowitz")
+PHASES = 16
+"""Phases of a regular wave that are tabulated."""
 
 
 def resultants(scenario: Scenario) -> dict[str, FloatArray]:
@@ -75,11 +78,64 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
     total = parts[next(iter(parts))]
     if len(parts) == 2:
         total = _together(scenario, parts)
+    sea_level = scenario.asset.structure.sea_level_z_m
     return {
         **_statistics(total),
+        **_at_the_mudline(scenario, total),
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
-        "reference_point_m": [0.0, 0.0, scenario.asset.structure.sea_level_z_m],
+        "reference_point_m": [0.0, 0.0, sea_level],
+        "phases": _phases(scenario, parts),
     }
+
+
+def _at_the_mudline(scenario: Scenario, total: FloatArray) -> dict[str, Any]:
+    """Return base shear and overturning moment: largest horizontal force, and moment about the bed."""
+    if scenario.sea is None:
+        return {"mudline": None}
+    moved = about_mudline(total, scenario.sea.depth_m)
+    axes = dict(zip("xyz", moved[:, 3:].T, strict=True))
+    return {
+        "mudline": {
+            "z_msl_m": -scenario.sea.depth_m,
+            "base_shear_n": float(np.hypot(moved[:, 0], moved[:, 1]).max()),
+            "overturning_moment_n_m": float(np.hypot(moved[:, 3], moved[:, 4]).max()),
+            "moment_n_m": {axis: _spread(column) for axis, column in axes.items()},
+        }
+    }
+
+
+def about_mudline(loads: FloatArray, depth_m: float) -> FloatArray:
+    """Return force and moment (n, 6) about the bed under the origin from those about still water.
+
+    M_bed = M + (0, 0, d) × F
+    """
+    moved = loads.copy()
+    moved[:, 3] -= depth_m * loads[:, 1]
+    moved[:, 4] += depth_m * loads[:, 0]
+    return moved
+
+
+def _phases(scenario: Scenario, parts: dict[str, FloatArray]) -> list[dict[str, Any]] | None:
+    """Return a regular wave's loads over one period; None without one."""
+    sea = scenario.sea
+    if sea is None or sea.waves is None or sea.waves in RANDOM:
+        return None
+    water = parts["water"]
+    steps = np.arange(0, water.shape[0], water.shape[0] // PHASES)
+    moved = about_mudline(water, sea.depth_m)
+    waves = wave_field(sea, duration=scenario.clock.total_s)
+    assert waves is not None
+    eta = waves.elevation(np.zeros((1, 3)), steps * (sea.period_s / water.shape[0]))[:, 0]
+    return [
+        {
+            "phase_deg": 360.0 * float(k) / water.shape[0],
+            "wave_elevation_m": float(level),
+            "force_n": water[k, :3].tolist(),
+            "moment_msl_n_m": water[k, 3:].tolist(),
+            "moment_mudline_n_m": moved[k, 3:].tolist(),
+        }
+        for k, level in zip(steps, eta, strict=True)
+    ]
 
 
 def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
@@ -87,7 +143,7 @@ def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
     wind, water = parts["wind"], parts["water"]
     clock, sea = scenario.clock, scenario.sea
     assert sea is not None
-    random = sea.waves in ("jonswap", "pierson-moskowitz")
+    random = sea.waves in RANDOM
     period = clock.total_s if random else sea.period_s or clock.total_s
     t = np.arange(wind.shape[0]) * clock.load_step_s
     at = np.arange(water.shape[0]) * (period / water.shape[0])
@@ -96,14 +152,15 @@ def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
 
 
 def _statistics(loads: FloatArray) -> dict[str, Any]:
-    def of(column: FloatArray) -> dict[str, float]:
-        return {
-            "max": float(column.max()),
-            "min": float(column.min()),
-            "std": float(column.std()),
-            "mean": float(column.mean()),
-        }
-
-    force = {axis: of(loads[:, i]) for i, axis in enumerate("xyz")}
-    moment = {axis: of(loads[:, 3 + i]) for i, axis in enumerate("xyz")}
+    force = {axis: _spread(loads[:, i]) for i, axis in enumerate("xyz")}
+    moment = {axis: _spread(loads[:, 3 + i]) for i, axis in enumerate("xyz")}
     return {"force_n": force, "moment_msl_n_m": moment}
+
+
+def _spread(column: FloatArray) -> dict[str, float]:
+    return {
+        "max": float(column.max()),
+        "min": float(column.min()),
+        "std": float(column.std()),
+        "mean": float(column.mean()),
+    }

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.loads.bem import Control
+from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients
-from jackettwin.loads.morison import Coefficients
 from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.turbulence import Coherent

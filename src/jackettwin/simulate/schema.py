@@ -7,9 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jackettwin.files import Schema
-from jackettwin.loads.morison import SEA_WATER_KG_M3
 from jackettwin.loads.rotor_wind import PIECE_M
-from jackettwin.loads.water import GROWTH_KG_M3
+from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.soil.foundation import (
     CurvesSchema,
     DampingSchema,
@@ -61,36 +60,6 @@ class GroundSchema(Schema):
     law: LawSchema | None = None
     radiation: RadiationSchema | None = None
     hysteresis: bool = False
-
-
-class GrowthSchema(Schema):
-    """A band of marine growth; heights above still water."""
-
-    top_z_m: float
-    bottom_z_m: float
-    thickness_m: NotNegative
-
-
-class EndsSchema(Schema):
-    """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
-
-    pressure: NotNegative = 0.0
-    added_mass: NotNegative = 0.0
-    drag: NotNegative = 0.0
-
-
-class WaterSchema(Schema):
-    """``water``: one drag and one added-mass coefficient for all members (C_M = 1 + C_a)."""
-
-    depth_m: Positive | None = None
-    density: Positive = SEA_WATER_KG_M3
-    drag: NotNegative = 1.0
-    added_mass: NotNegative = 1.0
-    marine_growth: list[GrowthSchema] = []
-    growth_density: Positive = GROWTH_KG_M3
-    flooded: bool | list[str] = []
-    ends: EndsSchema = EndsSchema()
-    adds_mass: bool | None = None
 
 
 class WavesSchema(Schema):

@@ -192,11 +192,11 @@ def relative_drag_beyond(
 
     ``loads`` must have kept the water's motion.
     """
-    series, c = loads.series, grid.coefficients
+    series = loads.series
     assert series.across is not None and series.wet is not None
     n = grid.weight.size
     motion = np.asarray(grid.N.T @ basis).reshape(n, 3, -1)
-    per_point = 0.5 * c.density_kg_m3 * c.drag * grid.diameter * grid.weight
+    per_point = 0.5 * grid.density_kg_m3 * grid.drag * grid.diameter * grid.weight
     return RelativeDrag(
         series.across,
         series.wet * per_point,

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.loads.morison import Coefficients, MorisonPoints, morison_points
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.morison import MorisonPoints, morison_points
 from jackettwin.loads.rotor import AIR_KG_M3, CompiledRotor, compiled_rotor, rotation
 from jackettwin.loads.rotor_wind import RotorWind, rotor_wind
 from jackettwin.loads.wind import tower_drag, tower_drag_damping
@@ -122,7 +123,7 @@ def tower_points(assembly: Assembly, air: Air) -> MorisonPoints | None:
     return morison_points(
         assembly,
         lowest_z=0.0,
-        coefficients=Coefficients(drag=air.tower_drag, inertia=0.0, density_kg_m3=AIR_KG_M3),
+        coefficients=Coefficients(drag=air.tower_drag, added_mass=0.0, pressure=0.0, density_kg_m3=AIR_KG_M3),
         spacing=_TOWER_SPACING_M,
         exclude_parts=others,
     )

@@ -1,0 +1,192 @@
+"""Drag, added mass and pressure coefficients of members, and the marine growth on them.
+
+As in OpenFAST's HydroDyn: one set for all members, or tables over the height, for all members or for some;
+each with a second set for where growth covers the member.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+SEA_WATER_KG_M3 = 1025.0
+GROWTH_KG_M3 = 1325.0
+"""Density of marine growth, ISO 19901-1 (2015) annex: 1325 kg/m³ unless measured."""
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Coefficients per length of a member, across it.
+
+    Attributes
+    ----------
+    drag : C_D
+    added_mass : C_a, of the water's acceleration relative to the member
+    pressure : C_p, of the undisturbed water's own acceleration (Froude–Krylov); C_M = C_p + C_a
+    """
+
+    drag: float = 1.0
+    added_mass: float = 1.0
+    pressure: float = 1.0
+
+    def __post_init__(self) -> None:
+        for field in ("drag", "added_mass", "pressure"):
+            _require_not_negative(field, getattr(self, field))
+
+    def row(self) -> tuple[float, float, float]:
+        """Return C_D, C_a, C_p."""
+        return (self.drag, self.added_mass, self.pressure)
+
+
+@dataclass(frozen=True)
+class StripTable:
+    """Coefficients at heights, straight in between and constant beyond.
+
+    Attributes
+    ----------
+    z_m : falling or rising heights from still water [m]
+    bare, grown : coefficients there, without and with growth
+    members : members or parts of the structure they hold for; all if empty
+    """
+
+    z_m: tuple[float, ...]
+    bare: tuple[Strip, ...]
+    grown: tuple[Strip, ...]
+    members: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.z_m or len(set(self.z_m)) < len(self.z_m):
+            raise InputError("heights must differ", field="z_m", value=list(self.z_m))
+
+    def at(self, z: FloatArray, grown: npt.NDArray[np.bool_]) -> FloatArray:
+        """Return C_D, C_a, C_p at heights ``z``, (3, n)."""
+        order = np.argsort(self.z_m)
+        known = np.take(self.z_m, order)
+        bare, covered = (
+            np.array([strip.row() for strip in strips]).T[:, order] for strips in (self.bare, self.grown)
+        )
+        return np.array(
+            [
+                np.where(grown, np.interp(z, known, c), np.interp(z, known, b))
+                for b, c in zip(bare, covered, strict=True)
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class GrowthBand:
+    """Marine growth between two heights from still water [m], straight in between.
+
+    ``bottom_thickness_m`` and ``bottom_density_kg_m3`` are those of the top unless given.
+    """
+
+    top_z_m: float
+    bottom_z_m: float
+    thickness_m: float
+    bottom_thickness_m: float | None = None
+    density_kg_m3: float = GROWTH_KG_M3
+    bottom_density_kg_m3: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.top_z_m > self.bottom_z_m:
+            raise InputError(
+                "the top of growth must lie above its bottom",
+                field="top_z_m",
+                value=self.top_z_m,
+                allowed=f"> {self.bottom_z_m:g}",
+            )
+        _require_not_negative("thickness_m", self.thickness_m)
+        _require_not_negative("bottom_thickness_m", self.bottom_thickness_m or 0.0)
+        _require_not_negative("density_kg_m3", self.density_kg_m3)
+
+    def share(self, z: FloatArray) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+        """Return where ``z`` lies within the band, and how far from its top to its bottom (0 to 1)."""
+        inside = (z <= self.top_z_m) & (z >= self.bottom_z_m)
+        return inside, np.asarray((self.top_z_m - z) / (self.top_z_m - self.bottom_z_m))
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """Coefficients of all members, marine growth and the density of the water.
+
+    Growth adds to the hydrodynamic diameter. ``grown`` are the coefficients where it does, ``bare`` unless
+    given. Later ``tables`` take the place of earlier ones and of these.
+    """
+
+    drag: float = 1.0
+    added_mass: float = 1.0
+    pressure: float = 1.0
+    growth: tuple[GrowthBand, ...] = ()
+    grown: Strip | None = None
+    tables: tuple[StripTable, ...] = ()
+    density_kg_m3: float = SEA_WATER_KG_M3
+
+    def __post_init__(self) -> None:
+        _require_not_negative("density_kg_m3", self.density_kg_m3)
+        _ = self.bare
+
+    @property
+    def bare(self) -> Strip:
+        """The coefficients of a member without growth."""
+        return Strip(self.drag, self.added_mass, self.pressure)
+
+    def thickness(self, z: FloatArray) -> FloatArray:
+        """Return the growth's thickness [m] at ``z``; of two bands that meet the later one counts."""
+        t = np.zeros_like(z)
+        for band in self.growth:
+            inside, share = band.share(z)
+            bottom = band.thickness_m if band.bottom_thickness_m is None else band.bottom_thickness_m
+            t = np.where(inside, band.thickness_m + share * (bottom - band.thickness_m), t)
+        return t
+
+    def growth_density(self, z: FloatArray) -> FloatArray:
+        """Return the growth's density [kg/m³] at ``z``, zero where there is none."""
+        rho = np.zeros_like(z)
+        for band in self.growth:
+            inside, share = band.share(z)
+            top, bottom = band.density_kg_m3, band.bottom_density_kg_m3
+            bottom = top if bottom is None else bottom
+            rho = np.where(inside, top + share * (bottom - top), rho)
+        return rho
+
+    def at(self, z: FloatArray, member: IntArray, names: Sequence[tuple[str, str]]) -> FloatArray:
+        """Return C_D, C_a, C_p (3, n) at heights ``z`` on members given by number.
+
+        ``names`` holds each member's name and part.
+
+        Raises
+        ------
+        InputError
+            If a table is for a member or part that is not there.
+        """
+        covered = self.thickness(z) > 0.0
+        everywhere = StripTable((0.0,), (self.bare,), (self.grown or self.bare,))
+        found = everywhere.at(z, covered)
+        for table in self.tables:
+            require_members(table.members, names, "coefficients")
+            meant = np.array([not table.members or bool(set(both) & set(table.members)) for both in names])
+            found = np.where(meant[member], table.at(z, covered), found)
+        return found
+
+
+def require_members(wanted: Iterable[str], names: Sequence[tuple[str, str]], field: str) -> None:
+    """Refuse what is neither the name nor the part of a member."""
+    known = {word for both in names for word in both}
+    for word in wanted:
+        if word not in known:
+            raise InputError(
+                "no such member or part", field=field, value=word, remedy="name a member or a part"
+            )
+
+
+def _require_not_negative(field: str, value: float) -> None:
+    if not (np.isfinite(value) and value >= 0.0):
+        raise InputError("out of range", field=field, value=value, allowed="≥ 0")

@@ -1,0 +1,160 @@
+"""``water`` of a scenario: coefficients of members, marine growth, what is flooded."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated
+
+from pydantic import Field
+
+from jackettwin.errors import InputError, located
+from jackettwin.files import Schema
+from jackettwin.loads.coefficients import (
+    GROWTH_KG_M3,
+    SEA_WATER_KG_M3,
+    Coefficients,
+    GrowthBand,
+    Strip,
+    StripTable,
+    require_members,
+)
+from jackettwin.loads.water import Water
+from jackettwin.structure import Structure
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+
+
+class GrowthSchema(Schema):
+    """Marine growth: a band of one thickness, or one height of a table; heights from still water."""
+
+    top_z_m: float | None = None
+    bottom_z_m: float | None = None
+    z_m: float | None = None
+    thickness_m: NotNegative
+    density: Positive | None = None
+
+
+class StripSchema(Schema):
+    """C_D, C_a and C_p where they differ from the others."""
+
+    drag: NotNegative | None = None
+    added_mass: NotNegative | None = None
+    pressure: NotNegative | None = None
+
+
+class HeightSchema(StripSchema):
+    """Coefficients at one height from still water, ``with_growth`` those of a covered member."""
+
+    z_m: float
+    with_growth: StripSchema | None = None
+
+
+class TableSchema(Schema):
+    """Coefficients over the height, of some members or parts or of all."""
+
+    members: list[str] = []
+    at: list[HeightSchema] = Field(min_length=1)
+
+
+class EndsSchema(Schema):
+    """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
+
+    pressure: NotNegative = 0.0
+    added_mass: NotNegative = 0.0
+    drag: NotNegative = 0.0
+
+
+class WaterSchema(Schema):
+    """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
+
+    depth_m: Positive | None = None
+    density: Positive = SEA_WATER_KG_M3
+    drag: NotNegative = 1.0
+    added_mass: NotNegative = 1.0
+    pressure: NotNegative = 1.0
+    with_growth: StripSchema = StripSchema()
+    coefficients: list[TableSchema] = []
+    marine_growth: list[GrowthSchema] = []
+    growth_density: Positive = GROWTH_KG_M3
+    flooded: bool | list[str] = []
+    ends: EndsSchema = EndsSchema()
+    adds_mass: bool | None = None
+
+
+def water_coefficients(w: WaterSchema) -> Coefficients:
+    """Return the coefficients of members and the growth on them."""
+    bare = Strip(w.drag, w.added_mass, w.pressure)
+    grown = _strip(w.with_growth, bare)
+    with located(field="water.marine_growth"):
+        growth = _growth(w)
+    with located(field="water.coefficients"):
+        tables = tuple(_table(table, bare, grown) for table in w.coefficients)
+    return Coefficients(w.drag, w.added_mass, w.pressure, growth, grown, tables, w.density)
+
+
+def carried_water(w: WaterSchema, structure: Structure) -> Water | None:
+    """Return what moves with the structure, None if its mass holds it already."""
+    names = [(m.name, m.part) for m in structure.members]
+    if isinstance(w.flooded, bool):
+        below = {m.name for m in structure.members if m.part not in ("tower", "piles")}
+        flooded = tuple(sorted(below)) if w.flooded else ()
+    else:
+        flooded = tuple(w.flooded)
+    require_members(flooded, names, "water.flooded")
+    require_members((m for t in w.coefficients for m in t.members), names, "water.coefficients.members")
+    adds = bool(w.marine_growth or flooded) if w.adds_mass is None else w.adds_mass
+    return Water(flooded) if adds else None
+
+
+def _strip(given: StripSchema | None, default: Strip) -> Strip:
+    def one(name: str) -> float:
+        value = None if given is None else getattr(given, name)
+        return getattr(default, name) if value is None else float(value)
+
+    return Strip(one("drag"), one("added_mass"), one("pressure"))
+
+
+def _table(table: TableSchema, bare: Strip, grown: Strip) -> StripTable:
+    """Return a table; what a height does not say is as without growth there, or as elsewhere."""
+    at = [_strip(row, bare) for row in table.at]
+    covered = [_strip(row.with_growth, _strip(row, grown)) for row in table.at]
+    return StripTable(tuple(row.z_m for row in table.at), tuple(at), tuple(covered), tuple(table.members))
+
+
+def _growth(w: WaterSchema) -> tuple[GrowthBand, ...]:
+    """Return bands, from bands or from a table of heights."""
+    tabulated = [g for g in w.marine_growth if g.z_m is not None]
+    if not tabulated:
+        return tuple(_band(g, g.density or w.growth_density) for g in w.marine_growth)
+    if len(tabulated) < max(len(w.marine_growth), 2) or any(
+        g.top_z_m is not None or g.bottom_z_m is not None for g in tabulated
+    ):
+        raise InputError(
+            "a table of growth needs z_m at every height, two at least",
+            field="z_m",
+            value=[g.z_m for g in w.marine_growth],
+            remedy="give z_m and thickness_m everywhere, or top_z_m, bottom_z_m and thickness_m",
+        )
+    falling = sorted(tabulated, key=lambda g: -(g.z_m or 0.0))
+    return tuple(
+        GrowthBand(
+            upper.z_m or 0.0,
+            lower.z_m or 0.0,
+            upper.thickness_m,
+            lower.thickness_m,
+            upper.density or w.growth_density,
+            lower.density or w.growth_density,
+        )
+        for upper, lower in pairwise(falling)
+    )
+
+
+def _band(g: GrowthSchema, density: float) -> GrowthBand:
+    if g.top_z_m is None or g.bottom_z_m is None:
+        raise InputError(
+            "growth without its heights",
+            field="top_z_m" if g.top_z_m is None else "bottom_z_m",
+            remedy="give top_z_m and bottom_z_m, or z_m at every height of a table",
+        )
+    return GrowthBand(g.top_z_m, g.bottom_z_m, g.thickness_m, density_kg_m3=density)
