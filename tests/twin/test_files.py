@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.identification.picks import Pick
 from jackettwin.twin import read_twin, shipped_twins
 
 GOOD = """\
@@ -57,6 +58,36 @@ def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) ->
 def test_files_that_are_no_twin(tmp_path: Path, content: str) -> None:
     (tmp_path / "t.yaml").write_text(content)
     with pytest.raises(InputError):
+        read_twin(tmp_path / "t.yaml")
+
+
+WITH_RECORDS = "structure: jacket15\nrecords: [a.parquet]\nidentification: "
+
+
+def test_picks_are_a_list_or_a_file(tmp_path: Path) -> None:
+    listed = '[{"frequency_hz": 0.18, "order": 20}]'
+    (tmp_path / "picks.json").write_text('{"picks": ' + listed + "}")
+    read = []
+    for i, given in enumerate((listed, "picks.json")):
+        path = tmp_path / f"t{i}.yaml"
+        path.write_text(WITH_RECORDS + f"{{picks: {given}, max_order: 30}}")
+        read.append(read_twin(path))
+    assert read[0].picks == read[1].picks == (Pick(0.18, 20),)
+    assert read[0].identification.max_order == 30
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("{picks: [{frequency_hz: -1}]}", r"t\.yaml: identification\.picks\[0\]\.frequency_hz.*-1"),
+        ("{picks: gone.json}", r"gone\.json: no such file of picks"),
+        ("{picks: 3}", r"t\.yaml: identification\.picks: holds no picks.*3"),
+        ("{max_ordr: 3}", r"t\.yaml: identification\.max_ordr: unknown key.*max_order"),
+    ],
+)
+def test_mistakes_in_identification_are_named(tmp_path: Path, given: str, message: str) -> None:
+    (tmp_path / "t.yaml").write_text(WITH_RECORDS + given)
+    with pytest.raises(InputError, match=message):
         read_twin(tmp_path / "t.yaml")
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.picks import Pick
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.updating import DEFAULT_LAWS, Target
@@ -93,4 +94,6 @@ class TwinConfig:
     records: tuple[Path, ...]
     targets: tuple[Target, ...]
     identification: IdentificationSettings
+    picks: tuple[Pick, ...]
+    """Poles to take instead of the automatic selection, for the records they name."""
     update: UpdateSettings

@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.files import Schema, find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.picks import Pick, parse_picks
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure, read_structure
 from jackettwin.structure.files import BodySchema
@@ -198,9 +199,26 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
         targets=tuple(Target(**target.model_dump()) for target in schema.targets),
-        identification=IdentificationSettings.from_mapping(schema.identification),
+        identification=_identification(schema.identification),
+        picks=_picks(schema.identification, path.parent),
         update=_update_settings(schema, path.parent),
     )
+
+
+def _identification(given: dict[str, Any]) -> IdentificationSettings:
+    with located(field="identification"):
+        return IdentificationSettings.from_mapping({k: v for k, v in given.items() if k != "picks"})
+
+
+def _picks(given: dict[str, Any], folder: Path) -> tuple[Pick, ...]:
+    """Return the picks of ``identification.picks``: a list, or the name of a file of them."""
+    picks = given.get("picks")
+    if isinstance(picks, str):
+        path = folder / picks
+        with located(file=path):
+            return parse_picks(read_mapping(path, what="file of picks"))
+    with located(field="identification"):
+        return () if picks is None else parse_picks(picks)
 
 
 def _check_update(update: UpdateSchema) -> None:

@@ -64,7 +64,7 @@ def measure(
     observations = []
     for path in config.records:
         step(f"identify {path.name}")
-        observations.append(observe(path, config.identification, sensors=config.sensors))
+        observations.append(observe(path, config.identification, sensors=config.sensors, picks=config.picks))
     sightings: dict[int, list[Sighting]] = {}
     numbers = []
     for seen in observations:

@@ -12,6 +12,7 @@ from jackettwin.identification import Identification, IdentificationSettings, id
 from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
+from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import ChannelQuality, Quality
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
 from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
@@ -63,7 +64,7 @@ def observe(
     InputError
         If the record cannot be read, a channel carries nothing, or the record cannot be identified.
     """
-    record = read_record(path)
+    record = with_conditions(read_record(path))
     with located(file=path):
         chosen = _placed(record, sensors) if sensors else moving_channels(record)
         quality = assess(chosen)

@@ -1,0 +1,41 @@
+"""Wind, yaw and state of a record: what its description says, else what its channels say."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.records.rotor_orders import rotor_speed
+from jackettwin.records.yaw import knows_yaw, yaw_of
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Record
+
+WIND_KEYS = ("mean_wind_speed_m_s", "wind_speed_m_s")
+
+
+def with_conditions(record: Record) -> Record:
+    """Return the record with the conditions its description leaves out, from its channels where they tell.
+
+    ``mean_wind_speed_m_s`` of the first channel of quantity wind speed, ``yaw_deg`` of the yaw,
+    ``state`` (``rotor turning`` or ``rotor standing``) of the rotor speed. What is stated stays.
+    """
+    known: dict[str, Any] = dict(record.conditions)
+    wind = _mean(record, "wind speed")
+    if wind is not None and not any(known.get(key) is not None for key in WIND_KEYS):
+        known["mean_wind_speed_m_s"] = wind
+    if known.get("yaw_deg") is None and knows_yaw(record):
+        known["yaw_deg"] = float(np.degrees(np.mean(yaw_of(record))))
+    if known.get("state") is None and _mean(record, "rotor speed") is not None:
+        known["state"] = "rotor standing" if rotor_speed(record) is None else "rotor turning"
+    return replace(record, conditions=known)
+
+
+def _mean(record: Record, quantity: str) -> float | None:
+    """Return the mean of the first channel of a quantity; None if there is none, or it is empty."""
+    rows = [i for i, channel in enumerate(record.channels) if channel.quantity == quantity]
+    if not rows or not np.isfinite(record.data[rows[0]]).any():
+        return None
+    return float(np.nanmean(record.data[rows[0]]))
