@@ -7,6 +7,7 @@ import click
 from jackettwin.cli.check import check_command
 from jackettwin.cli.console import Commands
 from jackettwin.cli.export import export_command
+from jackettwin.cli.follow import follow_command
 from jackettwin.cli.identify import identify_command
 from jackettwin.cli.loads import loads_command
 from jackettwin.cli.modes import modes_command
@@ -38,6 +39,7 @@ for command in (
     modes_command,
     identify_command,
     update_command,
+    follow_command,
     refine_command,
     superelement_command,
     export_command,

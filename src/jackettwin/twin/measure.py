@@ -46,6 +46,11 @@ class Measured:
     sightings: dict[int, tuple[Sighting, ...]]
     numbers: tuple[tuple[int | None, ...], ...]
 
+    def of_record(self, i: int) -> dict[int, Sighting]:
+        """Return the modes seen in one record, {mode number: sighting}."""
+        own = {id(mode) for mode in self.observations[i].identification.modes}
+        return {m: s for m, seen in self.sightings.items() for s in seen if id(s.estimate) in own}
+
 
 def measure(
     config: TwinConfig,

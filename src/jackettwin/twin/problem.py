@@ -45,12 +45,25 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
     InputError
         If bounds, priors, ties or pile heads do not fit the law.
     """
+    model = law_model(config, evidence, law)
+    with located(file=config.path):
+        return joint(model, evidence.states, shapes=_shapes(config, model, evidence))
+
+
+def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
+    """Return the structure on supports of one law, its parameters bounded and informed as the twin says.
+
+    Raises
+    ------
+    InputError
+        If bounds, priors, ties or pile heads do not fit the law.
+    """
     chosen, given, states = family(law), config.update, evidence.states
     extras = Extras(given.dashpots, given.steel_damping == "free", evidence.rotor.patterns)
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())
     try:
-        model = support_model(
+        return support_model(
             evidence.assembly,
             family=chosen,
             rayleigh=config.rayleigh,
@@ -62,7 +75,6 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
             heads=_heads(config),
             head_priors=not relative,
         )
-        return joint(model, states, shapes=_shapes(config, model, evidence))
     except InputError as error:
         raise error.at(file=config.path, field="update" if given.bounds or given.priors else None) from None
 

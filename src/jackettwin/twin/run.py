@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.structure import assemble
+from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import fitted_modes, residuals
 from jackettwin.twin.measure import Measured, measure
@@ -44,13 +44,7 @@ def run_twin(
         If no solution can be found.
     """
     step("assemble the structure")
-    assembly = assemble(
-        config.structure,
-        beam_theory=config.beam,
-        rotary_inertia=config.rotary_inertia,
-        subdivide=config.subdivide,
-        gravity=config.gravity,
-    )
+    assembly = assembled(config)
     number = max([_PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
     numbered = numbered_modes(assembly, number)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))

@@ -1,0 +1,76 @@
+"""``jackettwin follow``: the supports of a twin day after day, and whether they drift."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import output, print_json, progress
+from jackettwin.files import atomic_folder, write_json
+from jackettwin.report.follow_page import build_follow_page
+from jackettwin.twin import read_twin
+from jackettwin.twin.follow import Each, Followed, follow_twin
+from jackettwin.twin.follow_document import follow_document, read_followed
+
+
+@click.command("follow")
+@click.argument("twin")
+@click.option("--law", help="Only this law; default: the first of the twin file, or the prior's.")
+@click.option(
+    "--each",
+    type=click.Choice(["day", "record"]),
+    default="day",
+    show_default=True,
+    help="What updates the twin: the records of a UTC day together, or each record.",
+)
+@click.option(
+    "--prior",
+    "prior_file",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="followed.json of an earlier run to go on from; records that are in it are left out.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder for followed.json (the next run's prior) and report.html.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print what followed.json holds.")
+def follow_command(
+    twin: str, law: str | None, each: Each, prior_file: Path | None, out: Path | None, as_json: bool
+) -> None:
+    """Update the supports of TWIN day after day; say whether their stiffness drifts.
+
+    What is known after one day is where the next one starts. Tomorrow, name the new records in TWIN and go on
+    with --prior.
+    """
+    config = read_twin(twin)
+    prior = None if prior_file is None else read_followed(prior_file)
+    with progress(2 * len(config.records), config.name) as step:
+        followed = follow_twin(config, law=law, each=each, prior=prior, step=step)
+    document = follow_document(followed)
+    if out is not None:
+        with atomic_folder(out) as temporary:
+            write_json(document, temporary / "followed.json")
+            build_follow_page(followed, temporary / "report.html")
+    if as_json:
+        print_json(document)
+        return
+    output.print(_table(followed))
+    output.print(followed.statement)
+    for warning in followed.warnings:
+        output.print(f"warning: {warning}")
+    if out is not None:
+        output.print(f"report: {out / 'report.html'}; next prior: {out / 'followed.json'}")
+
+
+def _table(followed: Followed) -> Table:
+    names = followed.stiffness
+    table = Table("time (UTC)", "records", *(f"{name} [{followed.units[name]}]" for name in names))
+    for day in followed.days:
+        spans = [
+            f"{day.median[n]:.3g} ({day.interval_90[n][0]:.2g} … {day.interval_90[n][1]:.2g})" for n in names
+        ]
+        table.add_row(f"{day.time_utc:%Y-%m-%d %H:%M}", str(len(day.records)), *spans)
+    return table

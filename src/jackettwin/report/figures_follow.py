@@ -1,0 +1,80 @@
+"""Parameters through time: what was known after each day, and the slope through all days."""
+
+from __future__ import annotations
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from jackettwin.report import style
+from jackettwin.report.numbers import words
+from jackettwin.twin.follow import Followed
+
+
+def parameters_through_time(followed: Followed) -> go.Figure:
+    """Draw every parameter of the model after each day with its 90 % interval, and the fitted slope."""
+    names = list(followed.units)
+    figure = make_subplots(rows=len(names), cols=1, shared_xaxes=True, vertical_spacing=0.06)
+    for row, name in enumerate(names, start=1):
+        _points(figure, followed, name, row)
+        if followed.drift is not None and name in followed.stiffness:
+            _line(figure, followed, name, row)
+        unit = followed.units[name]
+        figure.update_yaxes(
+            title=words(name) if unit == "-" else style.title(words(name), unit),
+            type="log",
+            exponentformat="power",
+            row=row,
+            col=1,
+        )
+    figure.update_xaxes(title="time (UTC)", row=len(names), col=1)
+    return style.finish(figure, height=max(360, 240 * len(names)))
+
+
+def _points(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
+    median = np.array([day.median[name] for day in followed.days])
+    low, high = np.array([day.interval_90[name] for day in followed.days]).T
+    figure.add_scatter(
+        x=[day.time_utc for day in followed.days],
+        y=median,
+        error_y={"type": "data", "symmetric": False, "array": high - median, "arrayminus": median - low},
+        mode="markers",
+        marker={"size": 8, "color": style.law_look(followed.law).colour},
+        name="known after the day, 90 %",
+        legendgroup="points",
+        showlegend=row == 1,
+        row=row,
+        col=1,
+    )
+
+
+def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
+    if followed.drift is None:
+        return
+    times = [day.time_utc for day in followed.days]
+    median, low, high = followed.drift.line(name, followed.days_since_first).T
+    colour = style.VERMILLION if followed.drift.detected else style.GREY
+    figure.add_scatter(
+        x=[*times, *times[::-1]],
+        y=[*high, *low[::-1]],
+        fill="toself",
+        fillcolor=style.rgba(colour, 0.2),
+        line={"width": 0},
+        hoverinfo="skip",
+        name="slope through all days, 90 %",
+        legendgroup="line",
+        showlegend=row == 1,
+        row=row,
+        col=1,
+    )
+    figure.add_scatter(
+        x=times,
+        y=median,
+        mode="lines",
+        line={"color": colour, "width": 2},
+        showlegend=False,
+        legendgroup="line",
+        name="slope through all days",
+        row=row,
+        col=1,
+    )

@@ -1,0 +1,61 @@
+"""The page on a twin followed through time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jackettwin.report.figures_follow import parameters_through_time
+from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
+from jackettwin.twin.follow import Followed
+from jackettwin.version import __version__
+
+
+def build_follow_page(followed: Followed, path: Path) -> Path:
+    """Write one self-contained HTML file on a twin followed through time; return its path.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    caption = (
+        "What is known of each parameter from all records up to each day. Band: one "
+        "slope of all stiffness fitted to the data of all days at once; red if it is no chance."
+    )
+    sections = [
+        Section(
+            "Drift",
+            (
+                Text((followed.statement,)),
+                Plot("parameters_through_time", caption, parameters_through_time(followed)),
+            ),
+        ),
+        Section("Days", (_table(followed),)),
+        *([Section("Warnings", (Text(followed.warnings, "warnings"),))] if followed.warnings else []),
+    ]
+    return write_page(
+        sections,
+        path,
+        title=f"{followed.name} through time",
+        subtitle=f"{followed.law}, {len(followed.days)} days · jackettwin {__version__}",
+    )
+
+
+def _table(followed: Followed) -> Block:
+    names = list(followed.units)
+    units = [f"{name} [{followed.units[name]}]" for name in names]
+    rows = []
+    for day in followed.days:
+        cells = []
+        for name in names:
+            low, high = day.interval_90[name]
+            cells.append(f"{day.median[name]:.3g} ({low:.3g} to {high:.3g})")
+        rows.append(
+            (f"{day.time_utc:%Y-%m-%d %H:%M}", ", ".join(record.name for record in day.records), *cells)
+        )
+    return Table(
+        "Median and 90 % interval of every parameter after each day.",
+        ("time (UTC)", "records", *units),
+        tuple(rows),
+        text_columns=2,
+    )

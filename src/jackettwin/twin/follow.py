@@ -1,0 +1,341 @@
+"""Day after day: what the records so far say of the supports, and whether their stiffness drifts.
+
+Records are fused in the data, where they are independent of each other; errors of the model are not, and
+enter once. The posterior after a day is that of the prior and of all records so far: what taking each day's
+posterior as the next day's prior comes to, without the loss of handing draws on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from itertools import groupby
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.structure import Assembly
+from jackettwin.twin.assembled import assembled
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.fitted import fitted_modes, residuals
+from jackettwin.twin.measure import Measured, Sighting, measure
+from jackettwin.twin.problem import Evidence, law_model
+from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
+from jackettwin.updating import SupportModel, joint, numbered_modes
+from jackettwin.updating.drift import Drift, find_drift
+from jackettwin.updating.joint import Growth
+from jackettwin.updating.posterior import Posterior, sample_posterior
+
+FloatArray = npt.NDArray[np.float64]
+
+Each = Literal["day", "record"]
+
+FEWEST_DAYS = 3
+"""Days with data before a drift is looked for."""
+_STIFFNESS = "N/m"
+_WHOLE_SPAN = 2.0
+"""Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
+_PAIRED_MODES = 12
+
+
+@dataclass(frozen=True)
+class RecordModes:
+    """The model's modes seen in one record."""
+
+    name: str
+    time_utc: datetime
+    sightings: Mapping[int, Sighting]
+
+
+@dataclass(frozen=True)
+class Day:
+    """Records of one day, and what all records up to then say.
+
+    Attributes
+    ----------
+    median : {parameter: value}
+    interval_90 : {parameter: (low, high)}
+    """
+
+    records: tuple[RecordModes, ...]
+    median: Mapping[str, float]
+    interval_90: Mapping[str, tuple[float, float]]
+
+    @property
+    def time_utc(self) -> datetime:
+        """The middle of its records."""
+        times = [record.time_utc for record in self.records]
+        return min(times) + 0.5 * (max(times) - min(times))
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A twin followed through time: what the next day starts from.
+
+    Attributes
+    ----------
+    reference_hz : float
+        The first frequency on pinned feet: it tells a changed structure.
+    wind_m_s : float or None
+        That nacelle dashpots are stated at.
+    units : {parameter: unit}
+    days : in the order of time
+    drift : Drift or None
+        Of all stiffness together, from the first day on; None before the third day.
+    warnings : sentences
+    """
+
+    name: str
+    law: str
+    reference_hz: float
+    wind_m_s: float | None
+    units: Mapping[str, str]
+    days: tuple[Day, ...]
+    drift: Drift | None
+    warnings: tuple[str, ...]
+
+    @property
+    def stiffness(self) -> tuple[str, ...]:
+        """Names of the stiffness parameters: those that may drift."""
+        return tuple(name for name, unit in self.units.items() if unit == _STIFFNESS)
+
+    @property
+    def days_since_first(self) -> FloatArray:
+        """Times of the days [d], (n_days,)."""
+        return _since_first(self.days)
+
+    @property
+    def statement(self) -> str:
+        """What is known of a drift, in a sentence."""
+        if self.drift is None:
+            return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
+        slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
+        found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
+        return (
+            f"{found}: {' and '.join(self.stiffness)} change by {slope:+.2g} % a day, 90 % interval "
+            f"{low:+.2g} to {high:+.2g} %, over {self.days_since_first[-1]:.3g} days."
+        )
+
+
+def follow_twin(
+    config: TwinConfig,
+    *,
+    law: str | None = None,
+    each: Each = "day",
+    prior: Followed | None = None,
+    step: Callable[[str], None] = lambda _: None,
+) -> Followed:
+    """Return what is known after each day of a twin's records.
+
+    Parameters
+    ----------
+    law : str, optional
+        Instead of the twin file's first, or the prior's.
+    each : {"day", "record"}
+        Whether the records of a UTC day count together, or each on its own.
+    prior : Followed, optional
+        To go on from; records that are in it already are left out.
+    step : callable
+        Told what is being done: once a record, then once a day.
+
+    Raises
+    ------
+    InputError
+        If there is no new record, a record has no start time or precedes the prior, or the twin has changed.
+    NumericalError
+        If a posterior does not converge.
+    """
+    known = {record.name for day in prior.days for record in day.records} if prior is not None else set()
+    new = replace(config, records=tuple(path for path in config.records if path.stem not in known))
+    if not new.records:
+        raise InputError("no new records to follow", file=config.path, field="records", value=[])
+    assembly = assembled(config)
+    found = measure(new, assembly, numbered_modes(assembly, _PAIRED_MODES), step=step)
+    warnings = [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
+    followed = follow_modes(
+        config, assembly, _record_modes(new, found), law=law, each=each, prior=prior, step=step
+    )
+    return replace(followed, warnings=tuple(warnings))
+
+
+def follow_modes(
+    config: TwinConfig,
+    assembly: Assembly,
+    records: Sequence[RecordModes],
+    *,
+    law: str | None = None,
+    each: Each = "day",
+    prior: Followed | None = None,
+    step: Callable[[str], None] = lambda _: None,
+) -> Followed:
+    """Return what is known after each day, from the modes that records show; see :func:`follow_twin`."""
+    past = () if prior is None else prior.days
+    batches = _batches(config, sorted(records, key=lambda r: r.time_utc), each, past)
+    known = [record for day in past for record in day.records]
+    everything = [*known, *(record for batch in batches for record in batch)]
+    numbered = numbered_modes(assembly, _PAIRED_MODES)
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    wind = mean_wind(config, _measured(everything)) if prior is None else prior.wind_m_s
+    law = law or (config.update.laws[0] if prior is None else prior.law)
+    data = _states(config, everything, labels, wind)
+    rotor = rotor_damping(config, assembly, numbered, wind)
+    model = law_model(config, Evidence(assembly, None, data, rotor), law)
+    if prior is not None:
+        _agree(config, prior, law, model)
+    days = past
+    for batch in batches:
+        step(f"update after {batch[-1].name}")
+        known = [*known, *batch]
+        posterior = _posterior(config, model, _states(config, known, labels, wind))
+        days = (*days, _known_after(batch, posterior, model))
+    return Followed(
+        name=config.name,
+        law=law,
+        reference_hz=model.reference_hz,
+        wind_m_s=wind,
+        units={p.name: p.unit for p in model.parameters},
+        days=days,
+        drift=_drift(config, model, days, labels, wind),
+        warnings=(),
+    )
+
+
+def _record_modes(config: TwinConfig, found: Measured) -> list[RecordModes]:
+    """Return the modes of every record."""
+    records = []
+    for i, seen in enumerate(found.observations):
+        start = seen.record.start_utc
+        if start is None:
+            raise InputError(
+                "a record without a start cannot be followed in time",
+                file=config.path,
+                field="records",
+                value=seen.record.name,
+                remedy="give start_utc in the record's description",
+            )
+        records.append(RecordModes(config.records[i].stem, start, found.of_record(i)))
+    return records
+
+
+def _batches(
+    config: TwinConfig, records: list[RecordModes], each: Each, past: tuple[Day, ...]
+) -> list[tuple[RecordModes, ...]]:
+    """Return the new records of each day."""
+    if past and records[0].time_utc < past[-1].time_utc:
+        raise InputError(
+            "a record precedes the last day of the prior",
+            file=config.path,
+            field="records",
+            value=records[0].name,
+            allowed=f"starts from {past[-1].time_utc.isoformat()} on",
+            remedy="follow all records anew, without the prior",
+        )
+    if each == "record":
+        return [(record,) for record in records]
+    return [tuple(day) for _, day in groupby(records, key=lambda r: r.time_utc.astimezone(UTC).date())]
+
+
+def _states(
+    config: TwinConfig, records: Sequence[RecordModes], labels: tuple[str, ...], wind: float | None
+) -> States:
+    """Return the data of some records by operating state."""
+    found = _measured(records)
+    measured = fitted_modes(config, found, labels)
+    fitted = residuals(config, measured)
+    if fitted.relative:
+        raise InputError(
+            "following needs a standard deviation of every measured value",
+            file=config.path,
+            field="update.weighting",
+            value=config.update.weighting,
+            allowed="auto or covariance",
+        )
+    return operating_states(config, measured, found, fitted, wind)
+
+
+def _measured(records: Sequence[RecordModes]) -> Measured:
+    modes = sorted({mode for record in records for mode in record.sightings})
+    sightings = {m: tuple(r.sightings[m] for r in records if m in r.sightings) for m in modes}
+    return Measured((), (), sightings, ())
+
+
+def _posterior(config: TwinConfig, model: SupportModel, states: States) -> Posterior:
+    problem = joint(model.reaching(max(m for r, _ in states.values() for m in r.modes)), states)
+    return sample_posterior(problem, particles=config.update.particles, seed=config.update.seed)
+
+
+def _known_after(batch: tuple[RecordModes, ...], posterior: Posterior, model: SupportModel) -> Day:
+    names = [p.name for p in model.parameters]
+    median = np.exp(np.median(posterior.log_theta, axis=0))
+    interval = {n: (float(a), float(b)) for n, (a, b) in zip(names, posterior.interval(), strict=True)}
+    return Day(batch, dict(zip(names, median.tolist(), strict=True)), interval)
+
+
+def _drift(
+    config: TwinConfig,
+    model: SupportModel,
+    days: tuple[Day, ...],
+    labels: tuple[str, ...],
+    wind: float | None,
+) -> Drift | None:
+    """Return the slope of all stiffness through the days, each day's data by themselves."""
+    if len(days) < FEWEST_DAYS:
+        return None
+    exact = replace(config, update=replace(config.update, model_errors=()))
+    at = _since_first(days)
+    states: States = {}
+    times: dict[str, float] = {}
+    for i, (day, t) in enumerate(zip(days, at, strict=True)):
+        for name, (data, factors) in _states(exact, day.records, labels, wind).items():
+            states[f"{i}: {name}"] = (data, factors or _usual(config, day, wind))
+            times[f"{i}: {name}"] = float(t)
+    growing = tuple(p.name for p in model.parameters if p.unit == _STIFFNESS)
+    growth = Growth(growing, times, _WHOLE_SPAN / float(at[-1]))
+    errors = _model_errors(config, labels)
+    problem = joint(model, states, errors=errors, growth=growth)
+    start = [*(days[-1].median[p.name] for p in model.parameters), *(1.0 for _ in errors)]
+    return find_drift(problem, np.log(start))
+
+
+def _usual(config: TwinConfig, day: Day, wind: float | None) -> dict[str, float]:
+    """Return the dashpots' factors in a day's mean wind."""
+    winds = [s.wind_m_s for record in day.records for s in record.sightings.values()]
+    known = [v for v in winds if v is not None]
+    if wind is None or not known or len(known) < len(winds):
+        return {}
+    return {name: float(np.mean(known)) / wind for name in config.update.dashpots}
+
+
+def _model_errors(config: TwinConfig, labels: tuple[str, ...]) -> dict[str, float]:
+    """Return what the model may miss of each datum, every day alike."""
+    errors = {}
+    for mode in config.update.modes:
+        error = config.update.model_error(mode)
+        if error.frequency > 0.0:
+            errors[f"f{mode}"] = error.frequency
+        if error.damping > 0.0 and config.update.fits_damping(labels[mode - 1]):
+            errors[f"ζ{mode}"] = error.damping
+    return errors
+
+
+def _since_first(days: Sequence[Day]) -> FloatArray:
+    return np.array([(day.time_utc - days[0].time_utc).total_seconds() / 86400.0 for day in days])
+
+
+def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel) -> None:
+    """Refuse a prior of another structure, law or set of parameters."""
+    same = abs(prior.reference_hz / model.reference_hz - 1.0) < 1e-6
+    names = [p.name for p in model.parameters]
+    if not same or prior.law != law or list(prior.units) != names:
+        raise InputError(
+            "the prior is of another law, structure or set of parameters",
+            file=config.path,
+            field="prior",
+            value=f"{prior.law}: {', '.join(prior.units)}; {prior.reference_hz:.6g} Hz on pinned feet",
+            allowed=f"{law}: {', '.join(names)}; {model.reference_hz:.6g} Hz",
+            remedy="follow all records anew, without the prior",
+        )

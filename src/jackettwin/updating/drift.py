@@ -1,0 +1,99 @@
+r"""Whether parameters drift from day to day: one slope through the data of all days, with its interval.
+
+.. math:: \ln θ(t) = \ln θ_0 + t \ln g
+
+The slope ln g is fitted with everything else to all days at once (:class:`jackettwin.updating.joint.Growth`);
+errors of the model that all days share are unknowns of their own, so that more days do not average them out
+and a steady error is no drift. Days that scatter more than their uncertainty says widen the interval by the
+root of χ² per degree of freedom (Birge 1932).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.updating.descent import descend
+from jackettwin.updating.joint import GROWTH
+from jackettwin.updating.laplace import log_covariance
+from jackettwin.updating.problem import Problem
+
+FloatArray = npt.NDArray[np.float64]
+
+_Q90, _Q95 = 1.645, 1.960
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A common slope of some parameters over days.
+
+    Attributes
+    ----------
+    names : of all parameters; the slope's is the last
+    z : (d,) ln θ at day zero, and the slope ln g a day
+    covariance : (d, d) of z
+    scatter : float
+        Root of χ² per degree of freedom, at least 1; in the covariance.
+    """
+
+    names: tuple[str, ...]
+    z: FloatArray
+    covariance: FloatArray
+    scatter: float
+
+    @property
+    def slope_per_day(self) -> float:
+        """Change of ln θ a day."""
+        return float(self.z[-1])
+
+    @property
+    def std_per_day(self) -> float:
+        """Standard deviation of the slope."""
+        return float(np.sqrt(self.covariance[-1, -1]))
+
+    @property
+    def interval_90(self) -> tuple[float, float]:
+        """Central 90 % interval of the slope."""
+        half = _Q90 * self.std_per_day
+        return self.slope_per_day - half, self.slope_per_day + half
+
+    @property
+    def detected(self) -> bool:
+        """Whether the 95 % interval of the slope leaves out zero: one false alarm in twenty."""
+        return abs(self.slope_per_day) > _Q95 * self.std_per_day
+
+    def line(self, name: str, days: FloatArray) -> FloatArray:
+        """Return a growing parameter at some days, (n_days, 3): median, low and high of 90 %."""
+        i = self.names.index(name)
+        along = np.zeros((days.size, self.z.size))
+        along[:, i], along[:, -1] = 1.0, days
+        half = _Q90 * np.sqrt(np.einsum("ti,ij,tj->t", along, self.covariance, along))
+        middle = along @ self.z
+        return np.asarray(np.exp(np.stack([middle, middle - half, middle + half], axis=1)))
+
+
+def find_drift(problem: Problem, start: FloatArray) -> Drift:
+    """Return the slope that fits the data of all days.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of all days, with a :class:`~jackettwin.updating.joint.Growth`.
+    start : (d − 1,) ln θ of the other parameters
+
+    Raises
+    ------
+    InputError
+        If nothing grows in this problem, or its data carry no standard deviations.
+    """
+    names = tuple(p.name for p in problem.parameters)
+    if names[-1] != GROWTH or not problem.weighted:
+        raise InputError("no slope to fit, or no standard deviations", field="parameters", value=list(names))
+    end = descend(problem, np.append(start, 0.0))
+    r = problem.evaluate(end.z, None)[0][: problem.n_data]
+    freedom = problem.n_data - len(names)
+    scatter = float(np.sqrt(max(1.0, float(r @ r) / freedom))) if freedom > 0 else 1.0
+    return Drift(names, end.z, scatter**2 * log_covariance(problem, np.exp(end.z)), scatter)
