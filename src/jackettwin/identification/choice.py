@@ -37,6 +37,9 @@ records that are what the model says have 0.8 to 1.1."""
 MOST_LOCAL_LACK_OF_FIT = 2.0
 """The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
 
+TAKEN_LINES = 0.75
+"""A line as far from a tone as this went with it."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -88,8 +91,13 @@ def _start(modes: list[ModalEstimate], sure: BoolArray, ready: Prepared, tones: 
         shapes=np.array([m.mode_shape.real for m in modes]) / ready.scale,
         sure=sure,
         derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
-        avoid_hz=tones.swept_hz,
+        avoid_hz=(*tones.swept_hz, *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz)),
     )
+
+
+def _taken_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
+    """Return the range of the lines that went with a tone: one on either side of it, or that it is on."""
+    return tone_hz - TAKEN_LINES / duration_s, tone_hz + TAKEN_LINES / duration_s
 
 
 def _fits(

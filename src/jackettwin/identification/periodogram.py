@@ -23,7 +23,10 @@ LINES_IN_HALF_BANDWIDTH = 5
 FAR_LINES = 12.0
 """… and may widen to this fraction of the distance to it."""
 DITHER_SHARE = 0.3
-"""Share of the local median spectrum added to model and data."""
+"""Share of the local median spectrum added to model and data …"""
+DITHER_LINES = 90.0
+"""… where the median is of this many lines; of more lines it is less in proportion. The ratios between
+channels are known from the lines of a peak, and with few lines a fit believes them more than it should."""
 MEDIAN_SHARE_OF_BAND = 0.25
 """Width of the running median, as a share of the frequency it is taken at."""
 
@@ -69,7 +72,7 @@ def periodogram(
     modes: tuple[FloatArray, FloatArray],
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
-    dither_share: float = DITHER_SHARE,
+    dither_share: float | None = None,
 ) -> Periodogram:
     """Return the grouped periodogram of the band, without a taper.
 
@@ -82,9 +85,9 @@ def periodogram(
     derivatives : (n_channels,) int
     avoid_hz : sequence of (low, high)
         Groups of lines that touch one of these ranges are left out.
-    dither_share : float
-        Of the local median. A small one keeps spectral matrices regular where a record has little noise; a
-        large one hides what is not a peak.
+    dither_share : float, optional
+        Of the local median; by default one that falls with frequency. A small one keeps spectral matrices
+        regular where a record has little noise; a large one hides what is not a peak.
     """
     n_channels, n_samples = y.shape
     duration = n_samples / sample_rate_hz
@@ -95,7 +98,7 @@ def periodogram(
     line = np.arange(max(first, 1), min(last, x.shape[1] - 1) + 1)
     f = line / duration
     x = x[:, line] * (2j * np.pi * f) ** np.asarray(derivatives)[:, None]
-    start = _group_starts(f, duration, *modes)
+    start = group_starts(f, duration, *modes)
     count = np.diff(np.append(start, len(f))).astype(float)
     density = np.empty((len(start), n_channels, n_channels), dtype=complex)
     for b in range(n_channels):
@@ -109,12 +112,18 @@ def periodogram(
     for low, high in avoid_hz:
         kept &= (end < low) | (f[start] > high)
     omega, count, density, floor = omega[kept], count[kept], density[kept], floor[kept]
-    return Periodogram(omega, count, density, floor, dither_share * floor, duration)
+    if dither_share is None:
+        lines = MEDIAN_SHARE_OF_BAND * omega * duration / (2.0 * np.pi)
+        floor_share = (DITHER_SHARE * np.minimum(DITHER_LINES / lines, 1.0))[:, None]
+    else:
+        floor_share = np.full((1, 1), dither_share)
+    return Periodogram(omega, count, density, floor, floor_share * floor, duration)
 
 
-def _group_starts(
+def group_starts(
     f: FloatArray, duration: float, frequency_hz: FloatArray, damping_ratio: FloatArray
 ) -> npt.NDArray[np.intp]:
+    """Return the first line of each group: narrow where the spectrum of the modes bends."""
     half_bandwidth = frequency_hz * damping_ratio
     distance = np.abs(f[:, None] - frequency_hz)
     width = np.min(half_bandwidth / LINES_IN_HALF_BANDWIDTH + distance / FAR_LINES, axis=1)

@@ -12,7 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.identification.gaps import fill
 from jackettwin.identification.resolve import EDGE_BELOW_PEAK, resolve, usable_channels
 from jackettwin.identification.spectra import lowest_peak_hz, welch
-from jackettwin.identification.steady_tones import steady_tones, without_tones
+from jackettwin.identification.steady_tones import steady_tones
 from jackettwin.records import detrend
 
 if TYPE_CHECKING:
@@ -71,9 +71,9 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     """
     usable, warnings = usable_channels(record)
     level = detrend(usable)
-    tones = steady_tones(level.data, level.sample_rate_hz)
+    tones, without = steady_tones(level.data, level.sample_rate_hz)
     if tones:
-        level = replace(level, data=without_tones(level.data, level.sample_rate_hz, tones))
+        level = replace(level, data=without)
         settings = _above_tones(level, settings, min(tones))
     resolved, reduced = resolve(level, settings)
     y = fill(reduced.data)

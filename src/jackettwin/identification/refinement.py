@@ -9,7 +9,9 @@ enough of what the others leave, by the gain of log-likelihood
 of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
 criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). The maximum of a likelihood
 overestimates the damping of a short record, as the logarithm of ζ is the quantity that is nearly Gaussian:
-its mean is brought back by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ.
+its mean is brought back by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ. The information is
+that of many lines, and of few the scatter is larger: :math:`\sigma^2(1+\sigma^2)` is reported (of one mode
+alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 to 95 %).
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from scipy.optimize import minimize_scalar
 from jackettwin.identification import likelihood
 from jackettwin.identification.background import with_background
 from jackettwin.identification.modal_spectrum import kernel, poles
-from jackettwin.identification.periodogram import DITHER_SHARE, periodogram
+from jackettwin.identification.periodogram import periodogram
 from jackettwin.identification.spectral_model import expected
 
 if TYPE_CHECKING:
@@ -125,7 +127,7 @@ def refine(
         modes=(frequency_hz, damping_ratio),
         derivatives=derivatives,
         avoid_hz=avoid_hz,
-        dither_share=LOCAL_DITHER_SHARE if local else DITHER_SHARE,
+        dither_share=LOCAL_DITHER_SHARE if local else None,
     )
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
@@ -224,13 +226,14 @@ def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: 
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
     # a background takes its share of the peaks, and with it the bias of the small sample
-    excess = 0.0 if p.background else log_covariance[:, 1, 1]
+    excess = np.zeros(len(mode)) if p.background else log_covariance[:, 1, 1]
+    wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
         candidate=chosen[mode - p.background],
         frequency_hz=np.exp(p.log_f[mode]),
         damping_ratio=np.exp(p.log_zeta[mode]) / (1.0 + excess),
         shapes=p.shapes[mode],
-        covariance=log_covariance,
+        covariance=log_covariance * wider[:, :, None] * wider[:, None, :],
         shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],
         cramer_rao=bound[both],
         gain=gain,

@@ -2,16 +2,17 @@ r"""Find steady tones in a record and take them out, so that what is left is wha
 
 A sinusoid at k + δ lines of a record's Fourier transform gives the lines around it
 
-.. math:: X_{k+m} = A\,\frac{e^{2\pi i\delta} - 1}{2\pi i(\delta - m)}
+.. math:: X_{k+m} = a\,\frac{e^{2\pi i\delta} - 1}{2\pi i(\delta - m)}
 
-and no more: less the best such A and δ, the lines are those of the background. A lightly damped mode has
+and no more: less the best such a and δ, the lines are those of the background. A lightly damped mode has
 a sharp peak as well, but one of random shape, of which a large part stays. The ratio
 
-.. math:: D = |A|^2 / \max_{1\le|m|\le 4} |X_{k+m} - \hat X_{k+m}|^2
+.. math:: D = a^H R^{-1} a / \max_{1\le|m|\le 4} r_m^H R^{-1} r_m, \qquad r_m = X_{k+m} - \hat X_{k+m},
 
-tells them apart: in a thousand records it stays below 22 for a mode whose half bandwidth is a line or more
-(ζfT ≥ 0.9: 0.5 % at 0.3 Hz in ten minutes), and a tone as strong as a mode, six half bandwidths away from
-it, has 20 to 10⁴.
+R the covariance between channels of the lines around, tells them apart: in a thousand records it stays
+below 22 for a mode whose half bandwidth is a line or more (ζfT ≥ 0.9: 0.5 % at 0.3 Hz in ten minutes). With
+several channels a tone need not outweigh a mode to be seen beside it, or within its peak: it moves them
+otherwise.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy import fft, ndimage
+from scipy import fft
 from scipy.optimize import minimize_scalar
 
 if TYPE_CHECKING:
@@ -33,11 +34,23 @@ ComplexArray = npt.NDArray[np.complex128]
 LEAST_RATIO = 25.0
 """D of a tone."""
 LINES = 4
-"""Lines on either side that show the background."""
+"""Lines on either side that a mode fills as well …"""
+FEWEST_LINES = 12
+"""… and that make the covariance of the background, at least, …"""
+LINES_A_CHANNEL = 1.5
+"""… and for each channel."""
+REACH = 2
+"""Lines on either side on which a tone leaks most: no background where none is subtracted."""
+LIFT = 1e-3
+"""Share of each channel's power added to the covariance of the background, which may be singular."""
+ROUNDS = 3
+"""Times a sinusoid is fitted, each with the background of the one before."""
 NEAREST_LINE = 8
 """Tones below this line of the record are not looked for."""
-WORTH_A_LOOK = 12.0
-"""Power of a line over that of the lines three to five away from which a sinusoid is fitted to it."""
+WORTH_A_LOOK = 4.0
+"""Power of a line over that of the background, whitened, from which a sinusoid is fitted to it."""
+CHUNK = 4096
+"""Lines whose backgrounds are held in memory together."""
 MOST = 30
 """Tones taken out at most."""
 
@@ -58,8 +71,8 @@ class Sinusoid:
     ratio: float
 
 
-def steady_tones(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
-    """Return the frequencies of the steady tones of a record [Hz], the clearest first.
+def steady_tones(y: FloatArray, sample_rate_hz: float) -> tuple[tuple[float, ...], FloatArray]:
+    """Return the frequencies of the steady tones of a record [Hz], and the samples less the tones.
 
     Parameters
     ----------
@@ -70,21 +83,23 @@ def steady_tones(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
     --------
     >>> t = np.arange(6000) / 10.0
     >>> noise = np.random.default_rng(1).standard_normal((2, 6000))
-    >>> [round(f, 4) for f in steady_tones(noise + np.sin(2 * np.pi * 0.5003 * t), 10.0)]
+    >>> tones, left = steady_tones(noise + np.sin(2 * np.pi * 0.5003 * t), 10.0)
+    >>> [round(f, 4) for f in tones]
     [0.5003]
     """
     line = sample_rate_hz / y.shape[1]
-    left = np.where(np.isfinite(y), y, 0.0)
     found: list[float] = []
-    tested: set[int] = set()
+    left = y
+    if y.shape[1] // 2 <= 2 * (NEAREST_LINE + _lines(len(y))):
+        return (), left
     while len(found) < MOST:
-        spectrum = np.asarray(fft.rfft(left, axis=1))
-        tone = _first_tone(spectrum, tested)
-        if tone is None:
+        tones = [t for t in _clear_tones(_transform(left)) if _apart(t.position, [f / line for f in found])]
+        if not tones:
             break
-        found.append(tone.position * line)
-        left = _less(left, tone.position)
-    return tuple(found)
+        for tone in tones:
+            left = _less(left, tone.position)
+            found.append(tone.position * line)
+    return tuple(found), left
 
 
 def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float]) -> FloatArray:
@@ -106,9 +121,10 @@ def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float
     """
     out = y
     for tone in tones_hz:
-        spectrum = np.asarray(fft.rfft(np.where(np.isfinite(out), out, 0.0), axis=1))
+        spectrum = _transform(out)
         near = round(tone * y.shape[1] / sample_rate_hz) + np.arange(-3, 4)
-        near = near[(near > LINES) & (near < spectrum.shape[1] - LINES)]
+        edge = _lines(len(y))
+        near = near[(near > edge) & (near < spectrum.shape[1] - edge)]
         if len(near):
             top = near[np.argmax(np.sum(np.abs(spectrum[:, near]) ** 2, axis=0))]
             out = _less(out, sinusoid(spectrum, int(top)).position)
@@ -117,42 +133,103 @@ def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float
 
 def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:
     """Fit one sinusoid of all channels to the lines around line k of their transforms."""
-    m = np.arange(-LINES, LINES + 1)
+    reach = _lines(len(spectrum))
+    m = np.arange(-reach, reach + 1)
     lines = spectrum[:, k + m]
+    root = _root(lines[:, np.abs(m) > REACH])
 
-    def kernel(delta: float) -> ComplexArray:
-        return np.asarray(np.exp(1j * np.pi * (delta - m)) * np.sinc(delta - m))
+    for _ in range(ROUNDS):
+        white = np.asarray(np.linalg.solve(root, lines), dtype=complex)
+
+        delta = _offset(white, m)
+        shape = _leakage(delta, m)
+        amplitude = lines @ shape.conj() / np.sum(np.abs(shape) ** 2)
+        rest = lines - amplitude[:, None] * shape
+        root = _root(rest[:, m != 0])
+    power = np.sum(np.abs(np.linalg.solve(root, amplitude)) ** 2)
+    near = rest[:, (m != 0) & (np.abs(m) <= LINES)]
+    around = np.sum(np.abs(np.linalg.solve(root, near)) ** 2, axis=0)
+    return Sinusoid(k + delta, float(power / max(around.max(), 1e-300)))
+
+
+def _leakage(delta: float, m: npt.NDArray[np.int64]) -> ComplexArray:
+    """Return what a unit sinusoid δ lines off gives the lines m."""
+    return np.asarray(np.exp(1j * np.pi * (delta - m)) * np.sinc(delta - m))
+
+
+def _offset(white: ComplexArray, m: npt.NDArray[np.int64]) -> float:
+    """Return the δ of the sinusoid that explains most of whitened lines (n_channels, n_lines)."""
 
     def left_over(delta: float) -> float:
-        return -float(np.sum(np.abs(lines @ kernel(delta).conj()) ** 2 / np.sum(np.abs(kernel(delta)) ** 2)))
+        shape = _leakage(delta, m)
+        return -float(np.sum(np.abs(white @ shape.conj()) ** 2) / np.sum(np.abs(shape) ** 2))
 
-    delta = float(minimize_scalar(left_over, bounds=(-0.7, 0.7), method="bounded", options={"xatol": 1e-5}).x)
-    shape = kernel(delta)
-    amplitude = lines @ shape.conj() / np.sum(np.abs(shape) ** 2)
-    rest = np.abs(lines - amplitude[:, None] * shape) ** 2
-    background = np.maximum(rest[:, m != 0].max(axis=1), 1e-300)
-    return Sinusoid(k + delta, float(np.max(np.abs(amplitude) ** 2 / background)))
+    best = minimize_scalar(left_over, bounds=(-0.7, 0.7), method="bounded", options={"xatol": 1e-5})
+    return float(best.x)
 
 
-def _first_tone(spectrum: ComplexArray, tested: set[int]) -> Sinusoid | None:
-    """Return the clearest line that is a tone; ``tested`` gathers those that are not, and the tone's."""
-    power = np.abs(spectrum) ** 2
-    ring = np.ones(11, dtype=bool)
-    ring[3:8] = False
-    around = ndimage.maximum_filter(power, footprint=ring[None], mode="nearest")
-    ratio = np.max(power / np.maximum(around, 1e-300), axis=0)
-    ratio[:NEAREST_LINE] = 0.0
-    ratio[-LINES - 1 :] = 0.0
+def _clear_tones(spectrum: ComplexArray) -> list[Sinusoid]:
+    """Return the lines that are tones, the clearest first, none within reach of a clearer one."""
+    ratio = _over_background(spectrum)
     clear = np.flatnonzero(ratio > WORTH_A_LOOK)
-    for k in clear[np.argsort(-ratio[clear])]:
-        if int(k) in tested:
-            continue
-        tested.add(int(k))
-        tone = sinusoid(spectrum, int(k))
-        if tone.ratio > LEAST_RATIO:
-            tested |= set(range(int(k) - 2, int(k) + 3))
-            return tone
-    return None
+    clear = clear[(ratio[clear] >= ratio[clear - 1]) & (ratio[clear] >= ratio[clear + 1])]
+    tones = [sinusoid(spectrum, int(k)) for k in clear]
+    apart: list[Sinusoid] = []
+    for tone in sorted((t for t in tones if t.ratio > LEAST_RATIO), key=lambda t: -t.ratio):
+        if _apart(tone.position, [other.position for other in apart]):
+            apart.append(tone)
+    return apart
+
+
+def _apart(position: float, others: Iterable[float]) -> bool:
+    """Tell whether a tone is none of the others, nor what one that is not quite steady leaves."""
+    return all(abs(position - other) > LINES for other in others)
+
+
+def _over_background(spectrum: ComplexArray) -> FloatArray:
+    """Return the power of every line over that of the lines around, in units of their covariance, (n_lines,).
+
+    Expected to be 1 where channels and lines are alike; 0 at the ends, where there are none around.
+    """
+    n_channels, n_lines = spectrum.shape
+    reach = _lines(n_channels)
+    n = 2 * (reach - REACH)
+    out = np.zeros(n_lines)
+    for first in range(max(NEAREST_LINE, reach + 1), n_lines - reach, CHUNK):
+        k = np.arange(first, min(first + CHUNK, n_lines - reach))
+        wide = spectrum[:, k[0] - reach : k[-1] + reach + 1]
+        products = np.cumsum(wide.T[:, :, None] * wide.T[:, None, :].conj(), axis=0)
+        products = np.concatenate([np.zeros((1, n_channels, n_channels)), products])
+        at = k - k[0] + reach
+        all_, inner = (products[at + half + 1] - products[at - half] for half in (reach, REACH))
+        around = _lifted(np.asarray((all_ - inner) / n))
+        x = spectrum[:, k].T
+        solved = np.linalg.solve(around, x[:, :, None])[:, :, 0]
+        out[k] = np.einsum("ka,ka->k", x.conj(), solved).real
+    return np.asarray(out * (max(n - n_channels, 1) / (n * n_channels)))
+
+
+def _lines(n_channels: int) -> int:
+    """Return how many lines on either side make the background."""
+    return max(FEWEST_LINES, int(np.ceil(LINES_A_CHANNEL * n_channels)))
+
+
+def _root(lines: ComplexArray) -> ComplexArray:
+    """Return the Cholesky factor of the covariance of lines (n_channels, n_lines)."""
+    return np.asarray(np.linalg.cholesky(_lifted(lines @ lines.conj().T / lines.shape[1])))
+
+
+def _lifted(covariance: ComplexArray) -> ComplexArray:
+    """Return regular covariances (…, n_channels, n_channels)."""
+    channel = np.arange(covariance.shape[-1])
+    power = covariance[..., channel, channel].real
+    out = covariance.copy()
+    out[..., channel, channel] += LIFT * power + 1e-12 * power.mean(axis=-1, keepdims=True) + 1e-300
+    return out
+
+
+def _transform(y: FloatArray) -> ComplexArray:
+    return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))
 
 
 def _less(y: FloatArray, position: float) -> FloatArray:

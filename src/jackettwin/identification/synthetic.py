@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.identification import likelihood
+from jackettwin.identification.periodogram import Periodogram, group_starts
+from jackettwin.identification.spectral_model import Parameters, coherent_pairs, expected
 from jackettwin.records import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 REPEAT = 4
 """The periodic signal is this many times longer than what is cut from it: its wrap-around is lost."""
+
+FREQUENCIES = 20_001
+"""Of the sum that makes the variance of a channel."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +30,7 @@ class ModalSystem:
     ----------
     frequency_hz, damping_ratio : (n_modes,)
     mode_shapes : (n_modes, n_channels)
-        Real.
+        Real; entries of a complex one lag.
     force : (n_modes, n_modes)
         Spectral density of the modal forces per unit modal mass [1/Hz], symmetric positive definite.
     noise_ratio : float
@@ -34,7 +41,7 @@ class ModalSystem:
 
     frequency_hz: FloatArray
     damping_ratio: FloatArray
-    mode_shapes: FloatArray
+    mode_shapes: FloatArray | ComplexArray
     force: FloatArray
     noise_ratio: float = 0.02
     force_slope: float = 0.0
@@ -66,3 +73,58 @@ def simulate(
     y += system.noise_ratio * y.std(axis=1, keepdims=True) * rng.standard_normal(y.shape)
     channels = tuple(Channel(f"a{j}") for j in range(n_channels))
     return Record(y, sample_rate_hz, channels, name="simulated")
+
+
+def cramer_rao(
+    system: ModalSystem,
+    *,
+    duration_s: float,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+) -> tuple[FloatArray, FloatArray]:
+    """Return the least standard deviations of ln f and ln ζ of an unbiased method, (n_modes,) each.
+
+    Shapes (taken as real), forces, their coherences and exponents, and the noise of every channel are
+    unknown as well, as they are to the refinement. Records are as of ``simulate``, seen in a band.
+
+    Parameters
+    ----------
+    sample_rate_hz : float
+        Of ``simulate``: it says how the noise is spread.
+    """
+    f, zeta = system.frequency_hz, system.damping_ratio
+    lines = np.arange(int(np.ceil(band_hz[0] * duration_s)), int(band_hz[1] * duration_s) + 1) / duration_s
+    start = group_starts(lines, duration_s, f, zeta)
+    count = np.diff(np.append(start, len(lines))).astype(float)
+    omega = 2.0 * np.pi * np.add.reduceat(lines, start) / count
+    root = np.sqrt(0.5 * np.diag(system.force) * f**-system.force_slope)
+    pairs = coherent_pairs(np.log(f))
+    coherence = system.force / np.sqrt(np.outer(np.diag(system.force), np.diag(system.force)))
+    shapes = system.mode_shapes.real * root[:, None]
+    noise = np.stack([np.log(_noise_density(system, sample_rate_hz)), np.zeros(shapes.shape[1])])
+    p = Parameters(
+        log_f=np.log(f),
+        log_zeta=np.log(zeta),
+        colour=np.full(len(f), system.force_slope),
+        shapes=shapes,
+        coherence=coherence[pairs[:, 0], pairs[:, 1]].astype(complex),
+        noise=noise,
+        pairs=pairs,
+    )
+    n = shapes.shape[1]
+    none = np.zeros((len(omega), n))
+    data = Periodogram(omega, count, np.zeros((len(omega), n, n), complex), none, none, duration_s)
+    matrix = expected(data, p).matrix
+    power = np.einsum("kaa->ka", matrix).real
+    bound = likelihood.covariance(replace(data, density=matrix, floor=power, dither=power), p)[1]
+    return bound[: len(f)], bound[len(f) : 2 * len(f)]
+
+
+def _noise_density(system: ModalSystem, sample_rate_hz: float) -> FloatArray:
+    """Return the two-sided density of the noise of each channel [1/Hz]."""
+    f = np.linspace(0.0, 0.5 * sample_rate_hz, FREQUENCIES)[1:, None]
+    f_n, zeta = system.frequency_hz, system.damping_ratio
+    response = -(f**2) / (f_n**2 - f**2 + 2j * zeta * f_n * f) * f ** (-0.5 * system.force_slope)
+    moved = response * system.mode_shapes.T[:, None, :]
+    density = np.sum(moved @ system.force * moved.conj(), axis=2).real
+    return np.asarray(0.5 * system.noise_ratio**2 * np.mean(density, axis=1))
