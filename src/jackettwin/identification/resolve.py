@@ -12,6 +12,7 @@ from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, wel
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
 from jackettwin.records.record import SMALLEST
+from jackettwin.records.repair import without_stuck
 
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
@@ -37,9 +38,16 @@ DEAD = 1e-9
 
 
 def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
-    """Return the vibration channels that are alive, and a sentence on each that is not."""
+    """Return the vibration channels that are alive, and a sentence on each that is not.
+
+    A frozen reading is no reading: such stretches become missing samples.
+    """
     vibration = [c.name for c in record.channels if c.quantity in VIBRATIONS]
-    alive, warnings = [], []
+    alive: list[str] = []
+    warnings: list[str] = []
+    record, frozen = without_stuck(record)
+    for name, share in frozen.items():
+        warnings.append(f"channel {name}: reading frozen for {share:.1%} of the time; taken as missing")
     for channel, y in zip(record.channels, record.data, strict=True):
         if channel.name not in vibration:
             continue

@@ -10,12 +10,14 @@ import numpy.typing as npt
 
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, signs
+from jackettwin.records.changes import Change, changes, described
+from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
 from jackettwin.records.record import LARGEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from jackettwin.records.record import Channel, Record
+    from jackettwin.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -30,49 +32,12 @@ DRIFT_CYCLES = 5.0
 """Drift is what is slower than this many cycles a record."""
 MOST_DRIFT = 1e9
 """A channel that drifts over more rms than this holds a drift and its rounding, no vibration."""
-DRIFT_RATIO = 3.0
-"""Range of the slow part over the rms of the rest, beyond which it is drift."""
 PARTS = 10
 """Parts of a record whose rms are compared."""
-UNSTEADY_RATIO = 10.0
-"""Rms of the loudest part over the median of all, beyond which a record is not stationary."""
 WEAK_RATIO = 1e-4
 """Rms over the median of the channels of one quantity, below which a sensor is hardly alive."""
 JITTER = 0.05
 """Clock jitter as a share of the step that deserves a word."""
-
-
-@dataclass(frozen=True)
-class Finding:
-    """One fault: where, which, in a sentence, and whether ``repair`` removes it.
-
-    ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
-    ``stuck``, ``held``, ``drift``, ``unsteady``, ``sign``, ``unreadable``, ``clock``; ``channel`` is None
-    if it concerns the record.
-    """
-
-    fault: str
-    text: str
-    channel: str | None = None
-    repaired: bool = False
-
-
-@dataclass(frozen=True)
-class ChannelQuality:
-    """What was measured about one channel; shares are of all samples."""
-
-    name: str
-    score: float
-    dead: bool
-    gap_share: float
-    longest_gap_s: float
-    spike_share: float
-    clipped_share: float
-    stuck_share: float
-    hold_length: int
-    drift_ratio: float
-    unsteadiness: float
-    swapped_sign: bool
 
 
 @dataclass(frozen=True)
@@ -87,7 +52,8 @@ class Quality:
         In the record's order.
     findings : tuple of Finding
     suspect : (n_channels, n_samples) bool array
-        Samples that ``repair`` declares missing: spikes, frozen and unreadable ones.
+        Samples that ``repair`` declares missing: spikes, frozen and unreadable ones, the shorter side of a
+        change.
     """
 
     score: float
@@ -115,8 +81,9 @@ def assess(record: Record) -> Quality:
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
     swapped = _swapped(record, slow_free)
+    changed = _changed(record, slow_free)
     judged = [
-        _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name))
+        _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))
         for i, channel in enumerate(record.channels)
     ]
     channels = tuple(quality for quality, _, _ in judged)
@@ -128,6 +95,11 @@ def assess(record: Record) -> Quality:
     return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect | unreadable)
 
 
+def shortest_stuck(sample_rate_hz: float) -> int:
+    """Return the samples of the shortest frozen reading."""
+    return max(int(STUCK_S * sample_rate_hz), 20)
+
+
 def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
     """Return the data without mean and drift, spikes taken out lest they hide it."""
     data = record.data.copy()
@@ -136,8 +108,20 @@ def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
     return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
 
 
+def _changed(record: Record, slow_free: FloatArray) -> dict[int, Change]:
+    """Return by row the vibration channels that change while the record runs."""
+    rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
+    return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(slow_free[rows])}
+
+
 def _judge(
-    record: Record, i: int, hold: int, spikes: BoolArray, slow_free: FloatArray, sign: bool | None
+    record: Record,
+    i: int,
+    hold: int,
+    spikes: BoolArray,
+    slow_free: FloatArray,
+    sign: bool | None,
+    change: Change | None,
 ) -> tuple[ChannelQuality, BoolArray, list[Finding]]:
     """Return the quality of one channel, its suspect samples and its findings."""
     channel, y = record.channels[i], record.data[i]
@@ -151,8 +135,13 @@ def _judge(
     held = hold if look else 1
     spikes = spikes if look else none
     clipped = faults.clipped(y) if look else none
-    stuck = faults.stuck(y, max(int(STUCK_S * record.sample_rate_hz), 20)) if look else none
+    stuck = faults.stuck(y, shortest_stuck(record.sample_rate_hz)) if look else none
     outliers = bool(spikes.mean() > MOST_SPIKES) if look else False
+    # a frozen reading is told already
+    change = None if stuck.any() or not look else change
+    changed = none.copy()
+    if change is not None and change.certain:
+        changed[change.start : change.stop] = True
     kept = np.isfinite(slow_free)
     drift = faults.drift_ratio(np.where(kept, y - slow_free, np.nan), slow_free) if look else 0.0
     quality = ChannelQuality(
@@ -164,81 +153,27 @@ def _judge(
         spike_share=float(spikes.sum()) / n,
         clipped_share=float(clipped.sum()) / n,
         stuck_share=float(stuck.sum()) / n,
+        changed_share=float(changed.sum()) / n,
         hold_length=held,
         drift_ratio=drift,
         unsteadiness=faults.unsteadiness(np.where(spikes, np.nan, slow_free), PARTS) if look else 1.0,
         swapped_sign=bool(sign),
     )
-    findings = list(_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
-    suspect = (none if outliers else spikes) | stuck
+    findings = list(channel_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
+    if change is not None and not quality.dead:
+        text = described(change, 1.0 / record.sample_rate_hz)
+        findings.append(Finding("changed", text, channel.name, change.certain))
+    suspect = (none if outliers else spikes) | stuck | changed
     return replace(quality, score=_score(quality, sign)), suspect, findings
-
-
-def _findings(
-    channel: Channel, q: ChannelQuality, *, empty: bool, outliers: bool, sign: bool | None
-) -> Iterator[Finding]:
-    """Yield what is worth saying about one channel."""
-    name = q.name
-    if empty:
-        yield Finding("empty", f"{q.gap_share:.0%} of the samples are missing; left out", name, True)
-        return
-    if q.dead:
-        yield Finding("dead", "does not vary at all; left out", name, True)
-        return
-    if q.gap_share > 0.0:
-        text = f"{q.gap_share:.2%} of the samples are missing, at most {q.longest_gap_s:.3g} s in a row"
-        yield Finding("gaps", text, name)
-    if outliers:
-        text = f"{q.spike_share:.1%} of the samples stand out, too many to be spikes; kept"
-        yield Finding("outliers", text, name)
-    elif q.spike_share > 0.0:
-        yield Finding(
-            "spikes", f"{q.spike_share:.3%} of the samples are spikes; declared missing", name, True
-        )
-    yield from _signal_findings(channel, q)
-    yield from _sign_findings(name, sign)
-
-
-def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
-    """Yield what the sensor's range, its reading and its zero did."""
-    name = q.name
-    if q.clipped_share > 0.0:
-        # Kept: the covariances of a clipped Gaussian signal keep their shape (Bussgang 1952), those of
-        # one with gaps at its peaks do not.
-        text = f"{q.clipped_share:.2%} of the samples are at the range's end; kept, amplitudes are too small"
-        yield Finding("clipped", text, name)
-    if q.stuck_share > 0.0:
-        text = f"reading is frozen for {q.stuck_share:.2%} of the time; declared missing"
-        yield Finding("stuck", text, name, True)
-    if q.hold_length > 1:
-        text = f"every value is repeated {q.hold_length} times: the sensor is read at a lower rate and lags"
-        yield Finding("held", text, name)
-    if _drifts(channel, q):
-        text = f"drifts over {q.drift_ratio:.1f} times the rms of its vibration; slow part removed"
-        yield Finding("drift", text, name, True)
-    if q.unsteadiness > UNSTEADY_RATIO:
-        text = f"is {q.unsteadiness:.3g} times stronger in one tenth of the record than usual: not stationary"
-        yield Finding("unsteady", text, name)
-
-
-def _sign_findings(name: str, sign: bool | None) -> Iterator[Finding]:
-    if sign is True:
-        yield Finding("sign", "moves against all parallel channels; sign turned", name, True)
-    elif sign is False:
-        text = "moves against a parallel channel, and nothing says which of them is wrong; kept"
-        yield Finding("sign", text, name)
-
-
-def _drifts(channel: Channel, q: ChannelQuality) -> bool:
-    """Tell drift from the quasi-static response, which displacement, strain and tilt really have."""
-    return channel.quantity in ("acceleration", "velocity") and q.drift_ratio > DRIFT_RATIO
 
 
 def _score(q: ChannelQuality, sign: bool | None) -> float:
     """Return 1 for a faultless channel, less for every fault, 0 for a dead one."""
     if q.dead:
         return 0.0
-    lost = 1.0 - min(1.0, q.gap_share + 10.0 * (q.spike_share + q.clipped_share + q.stuck_share))
+    lost = 1.0 - min(
+        1.0, q.gap_share + q.changed_share + 10.0 * (q.spike_share + q.clipped_share + q.stuck_share)
+    )
     doubt = (0.5 if sign is False else 1.0) * (0.9 if sign else 1.0) * (0.7 if q.hold_length > 1 else 1.0)
     return lost * doubt
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.errors import InputError
-from jackettwin.records import filters
-from jackettwin.records.quality import DRIFT_CYCLES
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records import faults, filters
+from jackettwin.records.quality import DRIFT_CYCLES, shortest_stuck
 
 if TYPE_CHECKING:
     from jackettwin.records.quality import Quality
@@ -57,3 +58,20 @@ def repair(record: Record, quality: Quality) -> Record:
         channels=tuple(record.channels[i] for i in alive),
         metadata={**record.metadata, "repair": done} if done else record.metadata,
     )
+
+
+def without_stuck(record: Record) -> tuple[Record, dict[str, float]]:
+    """Return the record with frozen readings of its vibrations missing, and their shares by channel."""
+    shortest = shortest_stuck(record.sample_rate_hz)
+    masks = {
+        i: mask
+        for i, channel in enumerate(record.channels)
+        if channel.quantity in VIBRATIONS and (mask := faults.stuck(record.data[i], shortest)).any()
+    }
+    if not masks:
+        return record, {}
+    data = record.data.copy()
+    for i, mask in masks.items():
+        data[i, mask] = np.nan
+    shares = {record.channels[i].name: float(mask.mean()) for i, mask in masks.items()}
+    return replace(record, data=data), shares

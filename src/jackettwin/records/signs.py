@@ -41,17 +41,29 @@ def band_coherency(y: FloatArray) -> FloatArray:
         return np.eye(n_channels)
     x = np.apply_along_axis(bridge, 1, y)
     window = np.hanning(n)
-    spectra = np.fft.rfft((x - x.mean(axis=1, keepdims=True)) * window, axis=1)[:, LEAST_CYCLES:]
-    k = np.arange(LEAST_CYCLES, LEAST_CYCLES + spectra.shape[1])
-    displacement = np.abs(spectra / k**2) ** 2
-    total = displacement.sum(axis=1, keepdims=True)
-    common = np.sum(displacement / np.where(total > 0.0, total, 1.0), axis=0)
-    peak = k[np.argmax(np.convolve(common, np.ones(5), mode="same"))]
+    spectra = np.fft.rfft((x - x.mean(axis=1, keepdims=True)) * window, axis=1)
+    peak = strongest_line(spectra)
+    k = np.arange(spectra.shape[1])
     inside = spectra[:, np.abs(k - peak) <= np.maximum(BAND * peak, 3)]
     cross = np.real(inside @ inside.conj().T)
     power = np.sqrt(np.outer(np.diag(cross), np.diag(cross)))
     coherency: FloatArray = np.where(power > 0.0, cross / np.where(power > 0.0, power, 1.0), 0.0)
     return coherency
+
+
+def strongest_line(spectra: npt.NDArray[np.complex128]) -> int:
+    """Return the line around which the channels' displacements, each of unit power, are strongest.
+
+    Parameters
+    ----------
+    spectra : (n_channels, n_lines) complex
+        Transforms of accelerations, more than ``LEAST_CYCLES`` lines.
+    """
+    k = np.arange(LEAST_CYCLES, spectra.shape[1])
+    displacement = np.abs(spectra[:, LEAST_CYCLES:] / k**2) ** 2
+    total = displacement.sum(axis=1, keepdims=True)
+    common = np.sum(displacement / np.where(total > 0.0, total, 1.0), axis=0)
+    return int(k[np.argmax(np.convolve(common, np.ones(5), mode="same"))])
 
 
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:

@@ -13,7 +13,8 @@ from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
-from jackettwin.records.quality import ChannelQuality, Quality
+from jackettwin.records.findings import ChannelQuality
+from jackettwin.records.quality import Quality
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
 from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
