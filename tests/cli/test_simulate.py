@@ -1,6 +1,7 @@
 """``jackettwin simulate`` and ``loads``: the contract's keys and refusals."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -73,3 +74,37 @@ def test_bad_scenarios_end_with_two(case: Path) -> None:
         assert "Traceback" not in result.stderr
     result = CliRunner().invoke(main, ["simulate", "--out", str(case.parent)])
     assert result.exit_code == 2 and "folder" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("period_s: 10.0", "period_s: 0.01", "waves.period_s: .*greater than or equal to 0.5"),
+        ("period_s: 10.0", "period_s: 10.0, hs_m: 2", "waves.hs_m: does not belong"),
+        ("height_m: 6.0", "height_m: 90.0", "waves.height_m: out of range .got 90.0.; allowed: 0 to"),
+        ("speed_m_s: 9.0", "speed_m_s: .nan", "wind.speed_m_s: not a finite number"),
+        ("step_s: 0.05", "step_s: 1.0e-9", "time.step_s: .*greater than or equal to 0.0001"),
+        ("30, step_s: 0.05", "86400, step_s: 0.0001", "time.step_s: too many samples.*longer steps"),
+        ("structure:", "water: {depth_m: 900}\nstructure:", "water.depth_m: the structure does not reach"),
+        ("structure:", "water: {flooded: [nobody]}\nstructure:", "water.flooded: no such member or part"),
+        (
+            "structure:",
+            "water: {marine_growth: [{top_z_m: -9, bottom_z_m: 0, thickness_m: 0.1}]}\nstructure:",
+            "marine_growth.top_z_m: the top of growth must lie above its bottom",
+        ),
+        (
+            "structure:",
+            "sensors: [{channel: a, height_m: 500, direction: [1, 0, 0]}]\nstructure:",
+            "sensors.a.height_m: height is not on the tower axis",
+        ),
+    ],
+)
+def test_bad_numbers_are_named(case: Path, old: str, new: str, said: str) -> None:
+    """File, key, value and what to do: also for what shows only while it is simulated."""
+    case.write_text(CASE.replace(old, new, 1), encoding="utf-8")
+    result = CliRunner().invoke(main, ["simulate", str(case), "--out", str(case.with_name("r.parquet"))])
+    assert result.exit_code == 2
+    message = " ".join(result.stderr.split())
+    assert "case.yaml" in message and "Traceback" not in message
+    assert re.search(said, message), message
+    assert not case.with_name("r.parquet").exists()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
@@ -89,10 +90,11 @@ def run_set(
 
 
 def _in_parallel(todo: tuple[Case, ...], folder: Path, workers: int) -> Iterator[str]:
-    """Yield the names of cases as they are done; the first error stops the rest."""
+    """Yield the names of cases as they are done; the first error, or Ctrl-C, stops the rest."""
+    spawn = multiprocessing.get_context("spawn")
     with (
         _one_thread_each(),
-        ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool,
+        ProcessPoolExecutor(workers, mp_context=spawn, initializer=_ignore_interrupt) as pool,
     ):
         running: dict[Future[None], Case] = {pool.submit(run_case, case, folder): case for case in todo}
         try:
@@ -105,6 +107,11 @@ def _in_parallel(todo: tuple[Case, ...], folder: Path, workers: int) -> Iterator
         finally:
             for future in running:
                 future.cancel()
+
+
+def _ignore_interrupt() -> None:
+    """Leave Ctrl-C to the parent: a child that dies with the queue's lock in hand hangs its brothers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager

@@ -30,6 +30,9 @@ from jackettwin.simulate.water_files import WaterSchema, carried_water, water_co
 from jackettwin.structure import Structure
 
 REGULAR = ("airy", "stokes5", "stream")
+_GAP_M = 5.0
+"""How far above the bed feet may end, as those of piles that stick out do."""
+_MOST_SAMPLES = 1e7
 _LONGEST_LOAD_STEP_S = 0.05
 
 
@@ -142,7 +145,7 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
         return None
     given = schema.water or WaterSchema()
     coefficients, water = water_coefficients(given), carried_water(given, structure)
-    depth = given.depth_m or _depth(structure)
+    depth = _depth(given, structure)
     current = (
         None if c is None else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg))
     )
@@ -169,15 +172,25 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
         )
 
 
-def _depth(structure: Structure) -> float:
-    """Return the depth down to the lowest foot."""
+def _depth(w: WaterSchema, structure: Structure) -> float:
+    """Return the depth as stated; else down to the lowest foot."""
     feet = structure.reaction_nodes or tuple(structure.nodes)
-    depth = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
-    if not depth > 0.0:
+    reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
+    if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
+        return w.depth_m
+    if not reach > 0.0:
         raise InputError(
-            "water depth is not known", field="water.depth_m", value=depth, remedy="state it in metres"
+            "water depth is not known", field="water.depth_m", value=reach, remedy="state it in metres"
         )
-    return depth
+    if w.depth_m is not None:
+        raise InputError(
+            "the structure does not reach the bed",
+            field="water.depth_m",
+            value=w.depth_m,
+            allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
+            remedy="state the depth of this structure, or leave it out",
+        )
+    return reach
 
 
 def _size(w: WavesSchema) -> tuple[float, float]:
@@ -225,6 +238,15 @@ def _clock(t: TimeSchema) -> Clock:
                 allowed=f"multiples of {unit:g} s",
                 remedy="change it, or step_s and load_step_s",
             )
+    samples = (t.duration_s + t.discard_s) / h
+    if samples > _MOST_SAMPLES:
+        raise InputError(
+            "too many samples",
+            field="time.step_s",
+            value=h,
+            allowed=f"{_MOST_SAMPLES:.0e} steps: ≥ {h * samples / _MOST_SAMPLES:.3g} s for this duration",
+            remedy="take longer steps or a shorter record",
+        )
     return Clock(t.duration_s, h, t.discard_s, load)
 
 

@@ -21,6 +21,7 @@ from jackettwin.response.time import (
 from jackettwin.simulate.driving import Loads, loads_on
 from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.model import Model, TrueMode, true_modes
+from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,6 +66,11 @@ def simulate_motion(scenario: Scenario) -> Motion:
     NumericalError
         If the motion grows without bound.
     """
+    with in_words_of(scenario):
+        return _motion(scenario)
+
+
+def _motion(scenario: Scenario) -> Motion:
     clock = scenario.clock
     n_steps = round(clock.total_s / clock.load_step_s)
     loads = loads_on(scenario, n_steps)

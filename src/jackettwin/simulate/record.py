@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.motion import Motion, simulate_motion
+from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
@@ -61,7 +62,8 @@ def simulate(scenario: Scenario) -> Simulation:
     """
     start = perf_counter()
     motion = simulate_motion(scenario)
-    clean = readings(motion, scenario)
+    with in_words_of(scenario):
+        clean = readings(motion, scenario)
     step = scenario.clock.step_s
     data = flawed(clean, scenario.instruments, step_s=step, seed=scenario.sensor_seed)
     signals = _signals(motion, scenario, clean.shape[1])

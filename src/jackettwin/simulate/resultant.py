@@ -10,6 +10,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
+from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
 from jackettwin.simulate.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
@@ -35,6 +36,11 @@ def resultants(scenario: Scenario) -> dict[str, FloatArray]:
     InputError
         If there is neither wave, current nor wind.
     """
+    with in_words_of(scenario):
+        return _resultants(scenario)
+
+
+def _resultants(scenario: Scenario) -> dict[str, FloatArray]:
     assembly = assemble(scenario.asset.structure, subdivide=scenario.asset.subdivide)
     parts: dict[str, FloatArray] = {}
     total_s = scenario.clock.total_s

@@ -24,6 +24,8 @@ from jackettwin.structure.files import BodySchema
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
+Period = Annotated[float, Field(ge=0.5, le=100.0)]
+"""Of a wave: shorter ones are ripples, longer ones tides [s]."""
 Seed = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]
 
@@ -67,9 +69,9 @@ class WavesSchema(Schema):
 
     type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz"]
     height_m: Positive | None = None
-    period_s: Positive | None = None
+    period_s: Period | None = None
     hs_m: Positive | None = None
-    tp_s: Positive | None = None
+    tp_s: Period | None = None
     gamma: Annotated[float, Field(ge=1.0, le=10.0)] | None = None
     spreading: Positive | None = None
     direction_deg: float = 0.0
@@ -113,7 +115,7 @@ class TimeSchema(Schema):
     """``time``."""
 
     duration_s: Annotated[float, Field(gt=0.0, le=86400.0)] = 600.0
-    step_s: Annotated[float, Field(gt=0.0, le=1.0)] = 0.01
+    step_s: Annotated[float, Field(ge=1e-4, le=1.0)] = 0.01
     discard_s: Annotated[float, Field(ge=0.0, le=86400.0)] = 0.0
     load_step_s: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
 
@@ -121,7 +123,7 @@ class TimeSchema(Schema):
 class SensorSchema(Schema):
     """A sensor of the record, with its flaws in SI units."""
 
-    channel: str
+    channel: Annotated[str, Field(min_length=1)]
     node: str | None = None
     height_m: float | None = None
     direction: Vector
