@@ -53,8 +53,57 @@ def test_velocity_is_raschiis_and_acceleration_its_total_derivative(theory: str)
     np.testing.assert_allclose(a, follow, atol=1e-5)
 
 
-def test_breaking_waves_and_unknown_theories_are_refused() -> None:
+@pytest.mark.parametrize(
+    ("height", "period", "depth"),
+    [(5.0, 20.0, 10.0), (7.5, 20.0, 12.0), (2.0, 12.0, 5.0), (20.0, 14.0, 50.0)],
+)
+def test_long_waves_have_harmonics_enough(height: float, period: float, depth: float) -> None:
+    """H within 0.1 %, and water that neither vanishes nor spins."""
+    wave = regular_wave("stream-function", height=height, period=period, depth=depth, direction=0.7)
+    eta = wave.elevation(np.zeros((1, 3)), np.linspace(0.0, period, 801))
+    assert eta.max() - eta.min() == pytest.approx(height, rel=1e-3)
+    at, h = np.array([1.0, 2.0, -0.4 * depth]), 1e-3
+    u = [
+        (wave.motion(np.array([at + h * e]), 1.0)[0] - wave.motion(np.array([at - h * e]), 1.0)[0])[0, 0]
+        for e in np.eye(3)
+    ]
+    gradient = np.array(u) / (2.0 * h)
+    # central differences at 1 mm of fields of order 1
+    assert abs(np.trace(gradient)) < 1e-6 * np.abs(gradient).max() + 1e-9
+    np.testing.assert_allclose(gradient, gradient.T, atol=1e-6 * np.abs(gradient).max())
+
+
+def test_stokes_is_the_stream_function_where_it_holds() -> None:
+    """Two thirds of the breaking height at an Ursell number of 15: crest and velocity below it within 1 %."""
+    waves = [regular_wave(theory, height=8.0, period=11.0, depth=25.0) for theory in THEORIES]
+    below = np.array([[0.0, 0.0, -12.0]])
+    crest, speed = (
+        [float(w.elevation(below, np.zeros(1))[0, 0]) for w in waves],
+        [w.motion(below, np.zeros(1))[0][0, 0, 0] for w in waves],
+    )
+    assert crest[0] == pytest.approx(crest[1], rel=0.01)
+    assert speed[0] == pytest.approx(speed[1], rel=0.01)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize(
+    ("height", "period", "depth"),
+    [(40.0, 12.0, 40.0), (12.0, 6.0, 40.0), (3.0, 3.0, 50.0), (8.5, 10.0, 10.0)],
+)
+def test_breaking_waves_are_refused(theory: str, height: float, period: float, depth: float) -> None:
     with pytest.raises(InputError, match="breaks"):
-        regular_wave("stokes-5", height=40.0, period=12.0, depth=40.0)
+        regular_wave(theory, height=height, period=period, depth=depth)
+
+
+@pytest.mark.parametrize(
+    ("height", "period", "depth"), [(6.0, 15.0, 12.0), (2.0, 12.0, 5.0), (5.0, 20.0, 10.0)]
+)
+def test_stokes_is_refused_where_it_does_not_hold(height: float, period: float, depth: float) -> None:
+    """There its own crests and troughs lie up to twice the asked height apart."""
+    with pytest.raises(InputError, match="Ursell.*take the stream function"):
+        regular_wave("stokes-5", height=height, period=period, depth=depth)
+
+
+def test_unknown_theories_are_refused() -> None:
     with pytest.raises(InputError, match="stokes-5, stream-function"):
         regular_wave("cnoidal", height=4.0, period=12.0, depth=40.0)

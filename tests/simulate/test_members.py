@@ -2,12 +2,13 @@
 
 import pytest
 
-from jackettwin.response.static import self_weight, static_displacement
+from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
-from jackettwin.simulate import read_scenario
+from jackettwin.simulate import loads_document, read_scenario
 from jackettwin.simulate.members import scenario_uses
-from jackettwin.soil import pinned
+from jackettwin.soil import clamped, pinned
 from jackettwin.structure import assemble, read_structure
+from jackettwin.structure.forces import element_weight
 from jackettwin.structure.member_check import member_uses
 
 SEA = {"type": "airy", "height_m": 8.0, "period_s": 9.0, "direction_deg": 20.0}
@@ -17,7 +18,7 @@ def test_calm_is_statics_and_waves_add_to_it(scenario_file) -> None:
     structure = read_structure("jacket15")
     assembly = assemble(structure)
     rest = static_displacement(build_system(assembly, pinned(structure)), self_weight(assembly))
-    still = {use.member: use for use in member_uses(assembly, rest)}
+    still = {use.member: use for use in member_uses(assembly, rest, along=element_weight(assembly))}
     calm = scenario_uses(read_scenario(scenario_file(support="pinned")))
     for use in calm:
         assert use.by_check == pytest.approx(still[use.member].by_check, rel=1e-6, abs=1e-12)
@@ -36,3 +37,30 @@ def test_buoyancy_lifts_and_flooding_takes_it_back(scenario_file) -> None:
         compression.append(sum(u.by_check["compression"] for u in uses if u.member.startswith("leg")))
     dry, afloat, flooded = compression
     assert afloat < flooded < dry
+
+
+MONOPILE = """
+sea_level_z_m: 20.0
+sections: {pile: {outer_diameter_m: 6.0, thickness_m: 0.1}}
+nodes: {foot: [0.0, 0.0, 0.0], top: [0.0, 0.0, 30.0]}
+members: [{nodes: [foot, top], section: pile, name: pile}]
+reaction_nodes: [foot]
+"""
+
+
+def test_the_foot_of_a_monopile_feels_the_overturning_moment(scenario_file, tmp_path) -> None:
+    """One element, f1 of 7 Hz under a wave of 12 s: what bends its foot is the moment of the waves there."""
+    file = tmp_path / "monopile.yaml"
+    file.write_text(MONOPILE, encoding="utf-8")
+    structure = read_structure(file)
+    assembly = assemble(structure)
+    pushed = static_displacement(
+        build_system(assembly, clamped(structure)), nodal_load(assembly, {"top": (1e6, 0.0, 0.0)})
+    )
+    per_moment = member_uses(assembly, pushed)[0].by_check["bending"] / 30e6
+    waves = {"type": "airy", "height_m": 3.0, "period_s": 12.0, "direction_deg": 30.0}
+    scenario = read_scenario(scenario_file(structure=str(file), support="clamped", waves=waves))
+    moment = loads_document(scenario)["mudline"]["overturning_moment_n_m"]
+    use = scenario_uses(scenario)[0].by_check["bending"]
+    # static to (f/f1)² = 1e-4; 2 m pieces and a load step of 0.05 s
+    assert use / per_moment == pytest.approx(moment, rel=3e-3)

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse.linalg as spla
 
 from jackettwin.structure import Section, Structure, assemble, read_structure
-from jackettwin.structure.forces import section_forces, utilisation, von_mises_stress
+from jackettwin.structure.forces import element_weight, section_forces, utilisation, von_mises_stress
 from jackettwin.structure.model import STEEL, Member, Reaction
 
 L, D, T = 10.0, 1.0, 0.03
@@ -71,3 +71,40 @@ def test_many_displacements_at_once() -> None:
     u = np.random.default_rng(0).standard_normal((2, 3, assembly.n_dof))
     many, one = section_forces(assembly, u), section_forces(assembly, u[1, 2])
     np.testing.assert_allclose(many.bending_y[1, 2], one.bending_y, rtol=1e-9)
+
+
+def beam_of(direction: tuple[float, float, float], *, pieces: int, both_ends: bool):
+    """A tube under its own weight, held at one end or both: assembly, weight per metre, section forces."""
+    tube = Section(D, T)
+    tip = tuple(float(L * c) for c in direction)
+    structure = Structure(
+        "beam", {"a": (0.0, 0.0, 0.0), "b": tip}, (Member("m", "a", "b", tube, tube, STEEL),)
+    )
+    assembly = assemble(structure, subdivide=pieces)
+    load = np.asarray(assembly.mass @ np.tile([0, 0, -9.80665, 0, 0, 0], assembly.n_dof // 6))
+    held = np.concatenate([assembly.dofs(node) for node in (("a", "b") if both_ends else ("a",))])
+    w = 9.80665 * 7850.0 * np.pi / 4 * (D**2 - (D - 2 * T) ** 2)
+    return w, section_forces(assembly, static(assembly, load, held), along=element_weight(assembly))
+
+
+@pytest.mark.parametrize("pieces", [1, 2, 5])
+def test_a_beam_under_its_own_weight_however_few_its_elements(pieces: int) -> None:
+    """Cantilever: V = wL, M = wL²/2 at the root, none at the tip; clamped: wL²/12, wL²/24 in the middle."""
+    w, cantilever = beam_of((1.0, 0.0, 0.0), pieces=pieces, both_ends=False)
+    x = np.array([[i, i + 1] for i in range(pieces)]) * L / pieces
+    np.testing.assert_allclose(cantilever.shear, w * (L - x), atol=1e-6 * w * L)
+    np.testing.assert_allclose(cantilever.bending, 0.5 * w * (L - x) ** 2, atol=1e-6 * w * L**2)
+    if pieces < 5:  # a clamped beam of one element has no DOF left: its ends carry everything
+        w, clamped = beam_of((0.0, 1.0, 0.0), pieces=pieces, both_ends=True)
+        moment = w * np.array([[L**2 / 12, L**2 / 12]] if pieces == 1 else [[L**2 / 12, L**2 / 24]] * 2)
+        moment[1:] = moment[1:, ::-1]
+        np.testing.assert_allclose(clamped.bending, moment, rtol=1e-6)
+
+
+def test_the_foot_of_a_column_carries_all_of_it() -> None:
+    """N = −wL at the foot of one element, nothing at its top; inclined, the weight splits as it must."""
+    w, column = beam_of((0.0, 0.0, 1.0), pieces=1, both_ends=False)
+    np.testing.assert_allclose(column.axial[0], [-w * L, 0.0], atol=1e-6 * w * L)
+    w, leaning = beam_of((0.6, 0.0, 0.8), pieces=1, both_ends=False)
+    np.testing.assert_allclose(leaning.axial[0], [-0.8 * w * L, 0.0], atol=1e-6 * w * L)
+    np.testing.assert_allclose(leaning.bending[0], [0.3 * w * L**2, 0.0], atol=1e-6 * w * L**2)

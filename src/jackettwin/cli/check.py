@@ -15,7 +15,7 @@ from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses
 from jackettwin.structure import assemble, read_structure
-from jackettwin.structure.forces import section_forces, von_mises_stress
+from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.iso19902 import CHECKS, EDITIONS
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
 
@@ -68,11 +68,12 @@ def check_command(
     assembly = assemble(chosen, subdivide=subdivide)
     held = support_option(support, assembly)
     load = nodal_load(assembly, dict(nodal_force(text) for text in forces))
+    along = None
     if not no_weight:
-        load = load + self_weight(assembly)
+        load, along = load + self_weight(assembly), element_weight(assembly)
     u = static_displacement(build_system(assembly, held), load)
-    stress = von_mises_stress(assembly, section_forces(assembly, u))
-    _report(chosen.name, member_uses(assembly, u, basis), float(stress.max()), as_json)
+    stress = von_mises_stress(assembly, section_forces(assembly, u, along=along))
+    _report(chosen.name, member_uses(assembly, u, basis, along=along), float(stress.max()), as_json)
 
 
 def _report(name: str, uses: tuple[MemberUse, ...], stress_pa: float | None, as_json: bool) -> None:

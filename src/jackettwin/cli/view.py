@@ -24,7 +24,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import System, build_system
 from jackettwin.structure import Assembly, assemble, check, read_structure
-from jackettwin.structure.forces import section_forces, von_mises_stress
+from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.member_check import member_uses
 
 _OVERDAMPED = 0.3
@@ -174,8 +174,9 @@ def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
 def _uses(assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]) -> tuple[Quantity, ...]:
     """Return utilisation and stress at rest under the weight and the forces given."""
     u = static_displacement(system, self_weight(assembly) + nodal_load(assembly, forces))
-    uses = np.array([use.utilisation for use in member_uses(assembly, u)])[assembly.mesh.member]
-    sections = section_forces(assembly, u)
+    along = element_weight(assembly)
+    uses = np.array([use.utilisation for use in member_uses(assembly, u, along=along)])[assembly.mesh.member]
+    sections = section_forces(assembly, u, along=along)
     return (
         Quantity("utilisation, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
         Quantity(

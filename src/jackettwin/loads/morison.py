@@ -23,6 +23,7 @@ from jackettwin.loads.current import Current
 from jackettwin.loads.kernels import morison
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, beam
+from jackettwin.structure.mesh import Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -41,6 +42,7 @@ class MorisonPoints:
     tube_diameter, bore : (n,) outer and inner diameter of the steel [m]
     growth_density : (n,) of what lies between both diameters [kg/m³]
     drag, added_mass, pressure : (n,) C_D, C_a and C_p
+    element, xi : (n,) index into the mesh's elements, and place x/L along them
     member : (n,) index into the structure's members
     normal : (n, 3, 3) projector onto the plane normal to the member
     N : (assembly.n_dof, 3n) sparse; nodal loads from point forces, and its transpose point motion from DOFs
@@ -57,6 +59,8 @@ class MorisonPoints:
     drag: FloatArray
     added_mass: FloatArray
     pressure: FloatArray
+    element: IntArray
+    xi: FloatArray
     member: IntArray
     normal: FloatArray
     N: sp.csr_array
@@ -118,6 +122,8 @@ def morison_points(
         drag=drag,
         added_mass=added,
         pressure=pressure,
+        element=element.astype(np.intp),
+        xi=at,
         member=member,
         normal=np.eye(3) - axis[:, :, None] * axis[:, None, :],
         N=_distribution(assembly, element, at),
@@ -147,15 +153,29 @@ def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.c
     """Return N: forces at ``xi`` along elements to loads on the assembly's DOFs."""
     mesh = assembly.mesh
     dofs = mesh.element_dofs()[element]
-    L, R = mesh.properties.L[element], mesh.axes[element]
-    local = np.array(
-        [beam.translation_shape(float(x), float(length)) for x, length in zip(xi, L, strict=True)]
-    )
+    R, local = mesh.axes[element], _shapes(mesh, element, xi)
     ends = np.stack([local[:, :, 3 * k : 3 * k + 3] @ R for k in range(4)], axis=2)
     shapes = np.einsum("nji,njkl->nikl", R, ends).reshape(-1, 12)
     rows, columns = np.repeat(dofs, 3, axis=0), np.broadcast_to(np.arange(3 * xi.size)[:, None], shapes.shape)
     full = sp.coo_array((shapes.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.n_dof, 3 * xi.size))
     return sp.csr_array(assembly.expand.T @ full.tocsr())
+
+
+def _shapes(mesh: Mesh, element: IntArray, xi: FloatArray) -> FloatArray:
+    """Return the local translation at points on elements from their end displacements, (n, 3, 12)."""
+    L = mesh.properties.L[element]
+    return np.array([beam.translation_shape(float(x), float(l_e)) for x, l_e in zip(xi, L, strict=True)])
+
+
+def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
+    """Return what makes loads on elements' ends, local axes, of forces at the points: (12 n_elements, 3n)."""
+    mesh, n = assembly.mesh, grid.weight.size
+    blocks = np.einsum("nji,njk->nik", _shapes(mesh, grid.element, grid.xi), mesh.axes[grid.element])
+    rows = 12 * grid.element[:, None] + np.arange(12)
+    columns = 3 * np.arange(n)[:, None] + np.arange(3)
+    at = np.broadcast_arrays(rows[:, :, None], columns[:, None, :])
+    shape = (12 * mesh.start.size, 3 * n)
+    return sp.coo_array((blocks.ravel(), (at[0].ravel(), at[1].ravel())), shape=shape).tocsr()
 
 
 def _gauss(L: float, spacing: float) -> tuple[FloatArray, FloatArray, FloatArray]:

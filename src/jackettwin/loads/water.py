@@ -44,7 +44,12 @@ def water_mass(assembly: Assembly, grid: MorisonPoints, water: Water) -> sp.csr_
 
 
 def water_weight(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
-    """Return the static load of weight of growth and water inside, less buoyancy, (n_dof,) [N, N·m].
+    """Return the static load of weight of growth and water inside, less buoyancy, (n_dof,) [N, N·m]."""
+    return nodal_loads(grid, weight_forces(assembly, grid, water))
+
+
+def weight_forces(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
+    """Return the weight of growth and water inside less buoyancy at the points, (n, 3) [N].
 
     Buoyancy is the weight of the water displaced by member and growth, as for closed ends.
     """
@@ -55,7 +60,7 @@ def water_weight(assembly: Assembly, grid: MorisonPoints, water: Water) -> Float
     displaced = 0.25 * np.pi * grid.diameter**2 * rho * wet
     forces = np.zeros_like(grid.points)
     forces[:, 2] = GRAVITY_M_S2 * (displaced - inside - growth) * grid.weight
-    return nodal_loads(grid, forces)
+    return forces
 
 
 def _growth_area(grid: MorisonPoints) -> FloatArray:

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.loads.water import water_weight
+from jackettwin.loads.morison import loads_along, nodal_loads
+from jackettwin.loads.water import weight_forces
 from jackettwin.response.static import self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_points
+from jackettwin.simulate.water import water_loads, water_points
 from jackettwin.structure import Assembly, assemble
-from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
+from jackettwin.structure.forces import element_weight
+from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses, worst_uses
 
 FloatArray = npt.NDArray[np.float64]
+
+_BLOCK = 2000
+"""Instants at a time: records are long, and every element has twelve loads."""
+_SPACING_M = 2.0
+"""Longest piece of a member: what it carries itself is the matter."""
 
 
 def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> tuple[MemberUse, ...]:
     """Return the worst use of every member over a scenario, its weight in air and water included.
 
-    Forces follow from the motion, whose coordinates hold modes up to the simulation's band: the bending of a
-    single brace between its joints under the wave on it alone is not among them.
+    Joints move with the modes up to the simulation's band; between them members also bend under their weight
+    and under the waves along them. What the members' own acceleration adds in between is left out.
 
     Raises
     ------
@@ -31,20 +41,59 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> tuple
         If the motion grows without bound.
     """
     motion = simulate_motion(scenario)
-    assembly = motion.model.assembly
-    kept = round(scenario.clock.discard_s / motion.step_s)
-    q = motion.states[kept:, : motion.space.n]
-    return member_uses(assembly, at_rest(scenario, motion) + q @ motion.model.reduced.basis.T, basis)
+    assembly, modes = motion.model.assembly, motion.model.reduced.basis.T
+    q = motion.states[:, : motion.space.n]
+    t = np.arange(len(q), dtype=np.float64) * motion.step_s
+    rest = at_rest(scenario, motion)
+    waves = _waves_along(scenario, assembly)
+    uses: tuple[MemberUse, ...] = ()
+    for first in range(round(scenario.clock.discard_s / motion.step_s), len(q), _BLOCK):
+        here = slice(first, first + _BLOCK)
+        along = rest.along if waves is None else np.add(rest.along, waves(t[here]))
+        u = rest.displacement + q[here] @ modes
+        found = member_uses(assembly, u, basis, along=along)
+        uses = worst_uses(uses, found) if uses else found
+    return uses
 
 
-def at_rest(scenario: Scenario, motion: Motion) -> FloatArray:
-    """Return displacements under the weight in air, and under that of water and growth less buoyancy."""
+class Rest(NamedTuple):
+    """Displacements (n_dof,) at rest, and the loads along the elements (n_elements, 12) that make them."""
+
+    displacement: FloatArray
+    along: FloatArray
+
+
+def at_rest(scenario: Scenario, motion: Motion) -> Rest:
+    """Return the asset under the weight in air, and under that of water and growth less buoyancy."""
     asset, sea = scenario.asset, scenario.sea
     assembly = motion.model.assembly
-    load = self_weight(_dry(scenario, assembly))
+    load, along = self_weight(_dry(scenario, assembly)), element_weight(assembly)
     if sea is not None and sea.water is not None:
-        load = load + water_weight(assembly, water_points(assembly, sea), sea.water)
-    return static_displacement(build_system(assembly, asset.support), load)
+        grid = water_points(assembly, sea, spacing=_SPACING_M)
+        forces = weight_forces(assembly, grid, sea.water)
+        load = load + nodal_loads(grid, forces)
+        along = along + (loads_along(assembly, grid) @ forces.ravel()).reshape(along.shape)
+    return Rest(static_displacement(build_system(assembly, asset.support), load), along)
+
+
+def _waves_along(scenario: Scenario, assembly: Assembly) -> Callable[[FloatArray], FloatArray] | None:
+    """Return what gives the loads of waves and current along the elements, (n_times, n_elements, 12)."""
+    sea = scenario.sea
+    if sea is None or (sea.waves is None and sea.current is None):
+        return None
+    grid = water_points(assembly, sea, spacing=_SPACING_M)
+    to_elements = loads_along(assembly, grid)
+    wet = np.unique(grid.element)
+    rows = (12 * wet[:, None] + np.arange(12)).ravel()
+    loads = water_loads(sea, grid, to_elements[rows].toarray().T, duration=scenario.clock.total_s)
+    assert loads is not None
+
+    def along(t: FloatArray) -> FloatArray:
+        spread = np.zeros((t.size, assembly.mesh.start.size, 12))
+        spread[:, wet] = loads.at(t).reshape(t.size, wet.size, 12)
+        return spread
+
+    return along
 
 
 def _dry(scenario: Scenario, assembly: Assembly) -> Assembly:

@@ -12,7 +12,7 @@ from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_ends, water_loads, water_points, wave_field
+from jackettwin.simulate.water import is_regular, water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import assemble
 
@@ -20,7 +20,6 @@ FloatArray = npt.NDArray[np.float64]
 
 _FINE_M = 0.5
 """Longest piece of a member: the loads themselves are the result."""
-RANDOM = ("jonswap", "pierson-moskowitz")
 PHASES = 16
 """Phases of a regular wave that are tabulated."""
 
@@ -124,7 +123,7 @@ def about_mudline(loads: FloatArray, depth_m: float) -> FloatArray:
 def _phases(scenario: Scenario, parts: dict[str, FloatArray]) -> list[dict[str, Any]] | None:
     """Return a regular wave's loads over one period; None without one."""
     sea = scenario.sea
-    if sea is None or sea.waves is None or sea.waves in RANDOM:
+    if sea is None or not is_regular(sea):
         return None
     water = parts["water"]
     steps = np.arange(0, water.shape[0], water.shape[0] // PHASES)
@@ -149,8 +148,7 @@ def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
     wind, water = parts["wind"], parts["water"]
     clock, sea = scenario.clock, scenario.sea
     assert sea is not None
-    random = sea.waves in RANDOM
-    period = clock.total_s if random else sea.period_s or clock.total_s
+    period = sea.period_s if is_regular(sea) else clock.total_s
     t = np.arange(wind.shape[0]) * clock.load_step_s
     at = np.arange(water.shape[0]) * (period / water.shape[0])
     carried = np.stack([np.interp(t, at, column, period=period) for column in water.T], axis=1)

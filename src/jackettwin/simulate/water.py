@@ -21,6 +21,8 @@ FloatArray = npt.NDArray[np.float64]
 
 SPACING_M = 8.0
 """Longest piece of a member under a random sea: 0.2 % of the force's spread on the reference jacket."""
+REGULAR_SPACING_M = 2.0
+"""Longest piece under a regular wave, which is sampled over one period alone."""
 THEORIES = {"stokes5": "stokes-5", "stream": "stream-function"}
 
 
@@ -48,6 +50,11 @@ class WaterLoads:
         knots = np.arange(samples.shape[0] + 1) * self.series.step_s
         spline = CubicSpline(knots, np.vstack([samples, samples[:1]]), bc_type="periodic")
         return np.asarray(spline(np.mod(t, self.series.period_s)))
+
+
+def is_regular(sea: Sea) -> bool:
+    """Whether the waves repeat after their own period."""
+    return sea.waves in ("airy", *THEORIES)
 
 
 def wave_field(sea: Sea, *, duration: float) -> Waves | None:
@@ -96,8 +103,10 @@ def wave_field(sea: Sea, *, duration: float) -> Waves | None:
     )
 
 
-def water_points(assembly: Assembly, sea: Sea, *, spacing: float = SPACING_M) -> MorisonPoints:
-    """Return the points of the members that waves can reach."""
+def water_points(assembly: Assembly, sea: Sea, *, spacing: float | None = None) -> MorisonPoints:
+    """Return the points of the members that waves can reach, pieces no longer than ``spacing`` [m]."""
+    if spacing is None:
+        spacing = REGULAR_SPACING_M if is_regular(sea) else SPACING_M
     crest = 0.0 if sea.waves is None else 1.2 * sea.height_m
     return morison_points(
         assembly,
@@ -133,7 +142,7 @@ def water_loads(
     waves = wave_field(sea, duration=duration)
     if waves is None and sea.current is None:
         return None
-    regular = sea.waves in ("airy", *THEORIES)
+    regular = is_regular(sea)
     calm = airy_wave(height=0.0, period=10.0, depth=sea.depth_m)
     series = wave_series(
         grid,

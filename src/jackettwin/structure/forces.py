@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.structure import beam
 from jackettwin.structure.assemble import Assembly
 
@@ -37,11 +38,18 @@ class SectionForces(NamedTuple):
         return np.hypot(self.shear_y, self.shear_z)
 
 
-def section_forces(assembly: Assembly, displacement: FloatArray) -> SectionForces:
-    """Return section forces from displacements of the assembly's DOFs (..., n_dof) [m, rad].
+def section_forces(
+    assembly: Assembly, displacement: FloatArray, *, along: FloatArray | None = None
+) -> SectionForces:
+    """Return section forces k u − f from displacements of the assembly's DOFs (..., n_dof) [m, rad].
 
-    The forces are those of the elements' stiffness: loads spread along an element (its weight, waves) act at
-    its nodes, so shorter elements sharpen the picture. Geometric stiffness is not included.
+    Parameters
+    ----------
+    along : (..., n_elements, 12), optional
+        Loads spread along the elements (weight, water) as loads on their ends in local axes, f: the end
+        forces of the held element. Without them such loads act at the nodes alone.
+
+    Geometric stiffness is not included.
     """
     mesh = assembly.mesh
     leading = displacement.shape[:-1]
@@ -49,8 +57,19 @@ def section_forces(assembly: Assembly, displacement: FloatArray) -> SectionForce
     ends = np.asarray(nodal)[:, mesh.element_dofs()].reshape(-1, mesh.start.size, 4, 3)
     local = np.einsum("eij,tekj->teki", mesh.axes, ends).reshape(-1, mesh.start.size, 12)
     force = np.einsum("eij,tej->tei", beam.stiffness(mesh.properties), local)
+    if along is not None:
+        force = force - along.reshape(-1, mesh.start.size, 12)
     force = force.reshape(*leading, mesh.start.size, 2, 6) * np.array([[-1.0], [1.0]])
     return SectionForces(*np.moveaxis(force, -1, 0))
+
+
+def element_weight(assembly: Assembly) -> FloatArray:
+    """Return the elements' own weight as loads on their ends, (n_elements, 12) [N, N·m], local axes."""
+    mesh = assembly.mesh
+    down = -GRAVITY_M_S2 * mesh.axes[:, :, 2]
+    nothing = np.zeros_like(down)
+    lifted = np.hstack([down, nothing, down, nothing])
+    return np.asarray(np.einsum("eij,ej->ei", beam.mass(mesh.properties), lifted))
 
 
 def von_mises_stress(assembly: Assembly, forces: SectionForces) -> FloatArray:

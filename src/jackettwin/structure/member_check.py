@@ -64,13 +64,19 @@ class MemberUse:
 
 
 def member_uses(
-    assembly: Assembly, displacement: FloatArray, basis: DesignBasis | None = None
+    assembly: Assembly,
+    displacement: FloatArray,
+    basis: DesignBasis | None = None,
+    *,
+    along: FloatArray | None = None,
 ) -> tuple[MemberUse, ...]:
     """Return the use of every member.
 
     Parameters
     ----------
     displacement : (..., assembly.n_dof) of one load case, many, or every instant of a record [m, rad]
+    along : (n_elements, 12) or one for every case, optional
+        Loads spread along the elements, as for ``section_forces``.
 
     Raises
     ------
@@ -81,8 +87,11 @@ def member_uses(
     tube = _tubes(assembly, basis)
     cases = displacement.reshape(-1, assembly.n_dof)
     worst = np.zeros((len(CHECKS), tube.D.size))
+    spread = None if along is None else along.reshape(-1, *along.shape[-2:])
     for first in range(0, len(cases), _BLOCK):  # records are long
-        stress = section_stress(assembly, cases[first : first + _BLOCK])
+        here = slice(first, first + _BLOCK)
+        held = spread if spread is None or len(spread) == 1 else spread[here]
+        stress = section_stress(assembly, cases[here], along=held)
         U = utilisation(strength(tube), stress, C_m=basis.C_m, edition=basis.edition)
         worst = np.maximum(worst, np.stack([u.max(axis=(0, 2)) for u in U]))
     slender = (tube.D / tube.t)[:, 0]
@@ -90,15 +99,29 @@ def member_uses(
     for index, member in enumerate(assembly.structure.members):
         mine = assembly.mesh.member == index
         by_check = dict(zip(CHECKS, map(float, worst[:, mine].max(axis=1)), strict=True))
-        governing = max(by_check, key=lambda name: by_check[name])
         covered = bool((slender[mine] <= MOST_SLENDER_WALL).all())
-        uses.append(MemberUse(member.name, member.part, by_check[governing], governing, by_check, covered))
+        uses.append(_use(member.name, member.part, by_check, covered))
     return tuple(uses)
 
 
-def section_stress(assembly: Assembly, displacement: FloatArray) -> Stress:
+def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
+    """Return the use of every member over two sets of cases."""
+    return tuple(
+        _use(a.member, a.part, {name: max(a.by_check[name], b.by_check[name]) for name in CHECKS}, a.covered)
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+def _use(member: str, part: str, by_check: dict[str, float], covered: bool) -> MemberUse:
+    governing = max(by_check, key=lambda name: by_check[name])
+    return MemberUse(member, part, by_check[governing], governing, by_check, covered)
+
+
+def section_stress(
+    assembly: Assembly, displacement: FloatArray, *, along: FloatArray | None = None
+) -> Stress:
     """Return nominal stresses at both ends of every element, each (..., n_elements, 2) [Pa]."""
-    forces = section_forces(assembly, displacement)
+    forces = section_forces(assembly, displacement, along=along)
     p = assembly.mesh.properties
     D, _ = _dimensions(assembly)
     Z_e = (2.0 * p.I / D)[:, None]
