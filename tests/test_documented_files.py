@@ -1,10 +1,12 @@
 """The files that the reference pages show can be read as they stand."""
 
 import re
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
+from jackettwin.identification import IdentificationSettings
 from jackettwin.response.labels import mode_kinds
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
@@ -35,3 +37,11 @@ def test_the_parametric_one_is_the_example(tmp_path: Path) -> None:
     path = tmp_path / "three_leg_jacket.yaml"
     path.write_text(FILES[0])
     assert read_structure(path) == read_structure(EXAMPLE)
+
+
+def test_every_setting_of_an_identification_is_documented() -> None:
+    section = (PAGE.parent / "identify.md").read_text().split("## Settings")[1]
+    documented = set(
+        re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in section.splitlines() if "|" in row))
+    )
+    assert documented - {"picks"} == {field.name for field in fields(IdentificationSettings)}

@@ -54,6 +54,16 @@ def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) ->
     assert str(path) in str(caught.value)
 
 
+def test_a_rotor_frees_both_dashpots_unless_one_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(GOOD + "update: {rotor: iea15, wind_speed_m_s: 10.0}\n")
+    assert read_twin(path).update.dashpots == ("c_fore_aft", "c_side_side")
+    path.write_text(GOOD + "update: {rotor: iea15, wind_speed_m_s: 10.0, dashpots: [c_side_side]}\n")
+    assert read_twin(path).update.dashpots == ("c_side_side",)
+    path.write_text(GOOD)
+    assert not read_twin(path).update.dashpots
+
+
 @pytest.mark.parametrize("content", ["", "- a\n- b\n", "just text", "{", "a: [1, 2", "\x00"])
 def test_files_that_are_no_twin(tmp_path: Path, content: str) -> None:
     (tmp_path / "t.yaml").write_text(content)

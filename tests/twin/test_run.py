@@ -6,13 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.selection import with_covariance
 from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.fitted import residuals
-from jackettwin.twin.measure import Sighting, fuse
+from jackettwin.twin.measure import Measured, Sighting, fuse
+from jackettwin.twin.narrative import cautions
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.truth import true_modes
 from jackettwin.updating import Target
@@ -194,3 +196,21 @@ def test_nacelle_dashpots_explain_what_feet_cannot() -> None:
     assert {"c_fore_aft", "c_side_side"} < set(document["parameters"])
     share = document["damping_budget"][1]["share"]
     assert share["rotor"] > 0.5 and share["water"] is None
+
+
+def test_a_target_in_another_unit_is_refused_at_once() -> None:
+    """mHz, say: no support lifts the first mode to three times the model's twelfth."""
+    config = read_twin("thesis_table_6_1")
+    first = replace(config.targets[0], frequency_hz=181.9)
+    with pytest.raises(InputError, match=r"targets\.0\.frequency_hz: is far above .*181\.9.*give Hz"):
+        run_twin(replace(config, targets=(first, *config.targets[1:])))
+
+
+def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None:
+    config = read_twin("openfast_pile")
+    windy = replace(sighting(0.178, 0.0108), wind_m_s=12.0)
+    found = Measured((), pile.sensors, {2: (windy,)}, ())
+    fitted = tuple(m for m in pile.measured if m.label == "fore_aft_1")
+    bare = replace(config, update=replace(config.update, dashpots=(), rotor=None))
+    assert any("upper value" in line for line in cautions(bare, found, fitted, ()))
+    assert not any("upper value" in line for line in cautions(config, found, fitted, ()))

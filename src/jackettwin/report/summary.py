@@ -17,8 +17,8 @@ def shown_update(result: TwinResult) -> Update:
 
 
 def headline(result: TwinResult) -> tuple[str, ...]:
-    """Return three to five plain sentences."""
-    sentences = [_what(result), _found(result), *_fit(result), *_excess(result)]
+    """Return a few plain sentences; what the data say of the supports comes before how well it fits."""
+    sentences = [_what(result), _found(result), *_answer(result), *_fit(result), *_excess(result)]
     return tuple(sentences)
 
 
@@ -54,6 +54,29 @@ def _found(result: TwinResult) -> str:
 
 def _with_damping(m: MeasuredMode) -> str:
     return f" (ζ {percent(m.damping_ratio)} %)" if known(m.damping_ratio) else ""
+
+
+def _answer(result: TwinResult) -> list[str]:
+    """Return the parameters of the shown law that the data determine, with intervals, and name the others."""
+    update = shown_update(result) if result.updates else None
+    if update is None or update.uncertainty is None:
+        return []
+    known_of = update.uncertainty
+    by_name = zip(
+        known_of.verdicts, update.model.parameters, known_of.median, known_of.interval_90, strict=True
+    )
+    said, open_ = [], []
+    for verdict, parameter, median, (low, high) in by_name:
+        if verdict.verdict == "unidentified":
+            open_.append(parameter.name)
+        else:
+            unit = f" {parameter.unit}" if parameter.unit else ""
+            said.append(
+                f"{parameter.name} {median:.3g}{unit}, 90 % {low:.3g} to {high:.3g} ({verdict.verdict})"
+            )
+    answer = "; ".join(said) if said else "no parameter is determined by these data"
+    rest = f" The data do not determine {listed(open_)}." if said and open_ else ""
+    return [f"{update.law} says: {answer}.{rest}"]
 
 
 def _fit(result: TwinResult) -> list[str]:

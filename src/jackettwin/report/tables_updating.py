@@ -20,14 +20,13 @@ def key_table(result: TwinResult) -> Table:
     columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
     rows = []
     for i, m in enumerate(result.measured):
-        row = [words(m.label), str(m.mode), frequency(m.frequency_hz, m.frequency_std_hz)]
-        row += [_mark(frequency(float(u.modes.frequency_hz[i])), m.fits_frequency) for u in result.updates]
-        row += [percent(m.damping_ratio, m.damping_ratio_std)]
-        row += [_mark(percent(float(u.modes.damping_ratio[i])), m.fits_damping) for u in result.updates]
+        measured_hz = frequency(m.frequency_hz, m.frequency_std_hz)
+        row = [words(m.label), str(m.mode), _mark(measured_hz, m.fits_frequency)]
+        row += [frequency(float(u.modes.frequency_hz[i])) for u in result.updates]
+        row += [_mark(percent(m.damping_ratio, m.damping_ratio_std), m.fits_damping)]
+        row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
         rows.append(tuple(row))
-    caption = (
-        "Measured and updated modes. ± is one standard deviation; values in brackets took no part in the fit."
-    )
+    caption = "Measured and updated modes. ± is one standard deviation; in brackets: took no part in the fit."
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 

@@ -16,7 +16,7 @@ from jackettwin.structure import Rayleigh, Structure, read_structure
 from jackettwin.structure.files import BodySchema
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.extras import DASHPOTS, Extras
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -225,7 +225,7 @@ def _check_update(update: UpdateSchema) -> None:
     """Refuse unknown laws, bounds and priors now, not after the records have been identified."""
     with located(field="laws"):
         known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
-    known |= {p.name for p in Extras(tuple(update.dashpots), rayleigh=True).parameters}
+    known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters}
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
             if not any(name == k or name.startswith(f"{k}_") for k in known):
@@ -238,6 +238,11 @@ def _check_update(update: UpdateSchema) -> None:
                 )
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
+
+
+def _dashpots(update: UpdateSchema) -> tuple[str, ...]:
+    """Return the dashpots of the rotor: those asked for, all where a rotor is given without."""
+    return tuple(dict.fromkeys(update.dashpots or (DASHPOTS if update.rotor else ())))
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
@@ -277,7 +282,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
         mac_std=u.mac_std,
-        dashpots=tuple(dict.fromkeys(u.dashpots)),
+        dashpots=_dashpots(u),
         rotor=None if u.rotor is None else _beside(u.rotor, folder),
         shaft=u.shaft,
         wind_speed_m_s=u.wind_speed_m_s,

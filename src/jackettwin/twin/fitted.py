@@ -10,21 +10,35 @@ from jackettwin.twin.measure import Measured, Sighting, fuse
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Residuals, Target
 
+_FAR_ABOVE = 3.0
+"""A target this many times above the model's highest numbered mode is in another unit."""
 
-def fitted_modes(
-    config: TwinConfig, found: Measured | None, labels: tuple[str, ...]
+
+def target_modes(
+    config: TwinConfig, labels: tuple[str, ...], *, highest_hz: float
 ) -> tuple[MeasuredMode, ...]:
-    """Return the modes of the records; without records, the twin file's targets.
+    """Return the modes that the twin file gives.
+
+    Parameters
+    ----------
+    labels : of the model's numbered modes
+    highest_hz : of the model's numbered modes
 
     Raises
     ------
     InputError
-        If no mode of the records is one of the model.
+        If a target is far above all of them.
     """
-    return _from_targets(config, labels) if found is None else _from_records(config, found, labels)
-
-
-def _from_targets(config: TwinConfig, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+    for place, target in enumerate(config.targets):
+        if (target.frequency_hz or 0.0) > _FAR_ABOVE * highest_hz:
+            raise InputError(
+                "is far above the modes of the model",
+                file=config.path,
+                field=f"targets.{place}.frequency_hz",
+                value=target.frequency_hz,
+                allowed=f"up to {_FAR_ABOVE * highest_hz:.3g} Hz here",
+                remedy="give Hz, not mHz, rad/s or cycles a minute",
+            )
     return tuple(
         MeasuredMode(
             mode=t.mode,
@@ -43,7 +57,14 @@ def _from_targets(config: TwinConfig, labels: tuple[str, ...]) -> tuple[Measured
     )
 
 
-def _from_records(config: TwinConfig, found: Measured, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+    """Return the modes of the records, fused.
+
+    Raises
+    ------
+    InputError
+        If none of the records' modes is one of the model.
+    """
     if not found.sightings:
         raise InputError(
             "no identified mode resembles a mode of the model",

@@ -21,7 +21,7 @@ from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.fitted import fitted_modes, residuals
+from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.measure import Measured, Sighting, measure
 from jackettwin.twin.problem import Evidence, law_model
 from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
@@ -244,7 +244,7 @@ def _states(
 ) -> States:
     """Return the data of some records by operating state."""
     found = _measured(records)
-    measured = fitted_modes(config, found, labels)
+    measured = recorded_modes(config, found, labels)
     fitted = residuals(config, measured)
     if fitted.relative:
         raise InputError(

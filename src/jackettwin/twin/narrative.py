@@ -63,7 +63,7 @@ def cautions(
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        lines += _strangers(found)
+        lines += [*_strangers(found), *_wind_without_rotor(config, found, measured)]
     for u in updates:
         if u.best.locked_damper:
             lines.append(
@@ -78,6 +78,18 @@ def cautions(
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)
+
+
+def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[MeasuredMode, ...]) -> list[str]:
+    winds = [s.wind_m_s for seen in found.sightings.values() for s in seen if s.wind_m_s]
+    fitted = [m.label for m in measured if m.fits_damping]
+    if config.update.dashpots or not winds or not fitted:
+        return []
+    return [
+        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: what it "
+        f"damps in {', '.join(fitted)} is booked on the supports, whose damping is then an upper value. "
+        "Give update.rotor or update.dashpots."
+    ]
 
 
 def _strangers(found: Measured) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.fitted import fitted_modes, residuals
+from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
 from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.problem import Evidence, law_problem
@@ -49,7 +49,11 @@ def run_twin(
     numbered = numbered_modes(assembly, number)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
     found = measure(config, assembly, numbered, step=step) if config.records else None
-    measured = fitted_modes(config, found, labels)
+    measured = (
+        target_modes(config, labels, highest_hz=float(numbered.frequency_hz.max()))
+        if found is None
+        else recorded_modes(config, found, labels)
+    )
     wind = mean_wind(config, found)
     states = operating_states(config, measured, found, residuals(config, measured), wind)
     evidence = Evidence(assembly, found, states, rotor_damping(config, assembly, numbered, wind))
