@@ -129,3 +129,5 @@ def test_current_profile() -> None:
     current = Current(depth=70.0, subsurface_m_s=0.8, wind_driven_m_s=0.2, direction=np.pi / 2)
     u = current.velocity(np.array([0.0, -10.0, -70.0]))
     np.testing.assert_allclose(u[:, 1], [1.0, 0.8 * (6 / 7) ** (1 / 7) + 0.1, 0.0], atol=1e-12)
+    everywhere = Current(depth=70.0, uniform_m_s=0.4).velocity(np.array([3.0, -69.0]))
+    np.testing.assert_array_equal(everywhere, [[0.4, 0.0, 0.0]] * 2)

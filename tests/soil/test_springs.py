@@ -9,6 +9,8 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.soil import shaft, springs
 from jackettwin.soil.curves import CubeRoot, Table, Tanh, secant_stiffness, tangent_stiffness
+from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile, ground_at
+from jackettwin.soil.scour import Scour
 
 CASES = {
     case["id"]: case
@@ -145,6 +147,54 @@ def test_stiff_clay_is_continuous_brittle_and_never_pulls(cyclic: bool) -> None:
         assert float(curve.force(A * e50 * D)) == pytest.approx(0.5 * np.sqrt(A) * pc, rel=1e-3)
         assert p[-1] / pc == pytest.approx(0.5 * np.sqrt(6 * A) - 0.411 - 0.75 * A, rel=1e-6)
     assert p[-1] < 0.7 * p.max()
+
+
+def test_stiff_clay_takes_its_mean_strength_near_the_bed_and_its_own_deep_down() -> None:
+    """Reese 1975: (2 s_a + σ'_v) D + 2.83 s_a z against 11 s_u D; strength grows from 50 to 250 kPa."""
+    D, e50 = 2.0, 0.005
+    for z, su, mean, deep in ((3.0, 80e3, 65e3, False), (60.0, 250e3, 150e3, True)):
+        curve = springs.stiff_clay_py(
+            strength_pa=su, stress_pa=9e3 * z, z=z, D=D, strain_50=e50, mean_strength_pa=mean
+        )
+        pc = min((2 * mean + 9e3 * z) * D + 2.83 * mean * z, 11 * su * D)
+        A = 0.2 + 0.4 * np.tanh(0.62 * z / D)
+        assert (pc == 11 * su * D) == deep
+        assert float(curve.force(A * e50 * D)) == pytest.approx(0.5 * np.sqrt(A) * pc, rel=1e-3)
+
+
+def test_stiff_clay_without_free_water() -> None:
+    """Welch & Reese 1972: half pu at y50, pu at 16 y50 and beyond; 100 cycles add 19.2 (p/pu)⁴ y50."""
+    D, z, su, e50 = 1.2, 5.0, 100e3, 0.005
+    clay = {"strength_pa": su, "stress_pa": 18e3 * z, "z": z, "D": D, "strain_50": e50}
+    pu, y50 = (3 * su + 18e3 * z) * D + 0.5 * su * z, 2.5 * e50 * D
+    still = springs.dry_stiff_clay_py(**clay)
+    # straight lines between points 4 % apart
+    np.testing.assert_allclose(still.force(np.array([1.0, 16.0, 40.0]) * y50), [pu / 2, pu, pu], rtol=1e-4)
+    assert still.initial_stiffness == pytest.approx(0.5 * 0.1**0.25 * pu / (0.1 * y50))
+    cycled = springs.dry_stiff_clay_py(**clay, cycles=100.0)
+    assert float(cycled.force((1.0 + 9.6 * 2.0 / 16.0) * y50)) == pytest.approx(pu / 2, rel=1e-3)
+    deep = springs.dry_stiff_clay_py(**{**clay, "z": 40.0, "stress_pa": 720e3})
+    assert float(deep.force(1.0)) == pytest.approx(9.0 * su * D)
+
+
+def test_mean_strength_counts_the_clay_above_without_what_is_scoured() -> None:
+    """5 m of 20 to 40 kPa, 5 m of sand, then 60 kPa growing to 100 kPa in 10 m and staying."""
+    layers = (
+        Layer(5.0, 8e3, Clay(20e3, 40e3)),
+        Layer(5.0, 10e3, Sand(35.0)),
+        Layer(10.0, 9e3, Clay(60e3, 100e3, stiff=True)),
+    )
+    point = ground_at(SoilProfile(layers), 15.0, 2, diameter=2.0)
+    assert point is not None
+    assert (point.strength_pa, point.mean_strength_pa) == pytest.approx((80e3, (30e3 * 5 + 70e3 * 5) / 10))
+    below = ground_at(SoilProfile(layers), 25.0, 2, diameter=2.0)
+    assert below is not None
+    assert (below.strength_pa, below.mean_strength_pa) == pytest.approx(
+        (100e3, (30e3 * 5 + 80e3 * 10 + 100e3 * 5) / 20)
+    )
+    scoured = ground_at(SoilProfile(layers, Scour(general_m=2.5)), 4.5, 0, diameter=2.0)
+    assert scoured is not None
+    assert scoured.mean_strength_pa == pytest.approx(0.5 * (30e3 + 38e3))
 
 
 def test_linearisation_of_a_curve() -> None:

@@ -39,6 +39,8 @@ def _print(document: dict[str, Any]) -> None:
         )
     if document["phases"] is not None:
         _print_phases(document["phases"])
+    for warning in document["warnings"]:
+        output.print(f"warning: {warning}")
 
 
 def _print_phases(phases: list[dict[str, Any]]) -> None:

@@ -14,19 +14,20 @@ FloatArray = npt.NDArray[np.float64]
 class Current:
     """Wind-driven and sub-surface current, IEC 61400-3-1 (2019) section 6.4.4.
 
-    The sub-surface part follows (1 + z/d)^(1/7), the wind-driven one falls linearly to zero at 20 m depth.
-    Speeds [m/s] at still water, heading from +x [rad].
+    The sub-surface part follows (1 + z/d)^(1/7), the wind-driven one falls linearly to zero at 20 m depth,
+    the uniform one is the same at every depth. Speeds [m/s] at still water, heading from +x [rad].
     """
 
     depth: float
     subsurface_m_s: float = 0.0
     wind_driven_m_s: float = 0.0
     direction: float = 0.0
+    uniform_m_s: float = 0.0
 
     def velocity(self, z: FloatArray) -> FloatArray:
         """Return (n, 3) [m/s] at heights ``z`` above still water; above it the surface value holds."""
         z = np.minimum(z, 0.0)
-        speed = self.subsurface_m_s * np.maximum(1.0 + z / self.depth, 0.0) ** (1.0 / 7.0)
+        speed = self.uniform_m_s + self.subsurface_m_s * np.maximum(1.0 + z / self.depth, 0.0) ** (1.0 / 7.0)
         speed = speed + self.wind_driven_m_s * np.maximum(1.0 + z / 20.0, 0.0)
         heading = np.array([np.cos(self.direction), np.sin(self.direction), 0.0])
         return np.asarray(speed[:, None] * heading)

@@ -147,7 +147,9 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
     coefficients, water = water_coefficients(given), carried_water(given, structure)
     depth = _depth(given, structure)
     current = (
-        None if c is None else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg))
+        None
+        if c is None
+        else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg), c.uniform_m_s)
     )
     ends = EndCoefficients(given.ends.pressure, given.ends.added_mass, given.ends.drag)
     if w is None:

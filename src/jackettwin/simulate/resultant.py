@@ -12,6 +12,7 @@ from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
+from jackettwin.simulate.sea_limits import sea_warnings
 from jackettwin.simulate.water import is_regular, water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import assemble
@@ -90,6 +91,7 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
         "reference_point_m": [0.0, 0.0, sea_level],
         "phases": _phases(scenario, parts),
+        "warnings": [] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure),
     }
 
 

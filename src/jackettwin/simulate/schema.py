@@ -85,6 +85,7 @@ class CurrentSchema(Schema):
 
     subsurface_m_s: NotNegative = 0.0
     wind_driven_m_s: NotNegative = 0.0
+    uniform_m_s: NotNegative = 0.0
     direction_deg: float = 0.0
 
 

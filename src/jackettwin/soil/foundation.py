@@ -133,6 +133,7 @@ class ClaySchema(Schema):
     J: float = 0.5
     residual: float = 0.9
     stiff: bool = False
+    free_water: bool = True
 
 
 class LayerSchema(Schema):
@@ -185,6 +186,7 @@ class CurvesSchema(Schema):
     cyclic: bool = False
     sand_tz: str = "rp2geo"
     clay_py: str = "table"
+    cycles: Annotated[float, Field(ge=1.0)] = 100.0
 
 
 class DampingSchema(Schema):

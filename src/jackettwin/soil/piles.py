@@ -25,7 +25,7 @@ from jackettwin.soil.shaft import (
     sand_tz,
     tip_qz,
 )
-from jackettwin.soil.springs import sand_py, soft_clay_py, stiff_clay_py
+from jackettwin.soil.springs import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.soil.viscoelastic import Law, Prony, kelvin_voigt
 from jackettwin.structure.model import STEEL, Material, Member, Reaction, Section, Structure, Vector
@@ -144,6 +144,8 @@ class CurveOptions:
     cyclic: bool = False
     sand_tz: str = "rp2geo"
     clay_py: str = "table"
+    cycles: float = 100.0
+    """How many, for the one curve that asks: stiff clay without free water, if ``cyclic``."""
 
 
 @dataclass(frozen=True)
@@ -213,18 +215,13 @@ def _lateral(point: Point | None, D: float, options: CurveOptions) -> Curve:
             modulus_n_m3=soil.modulus_n_m3,
         )
     su, e50 = point.strength_pa, soil.strain_50
-    if soil.stiff:
-        return stiff_clay_py(strength_pa=su, stress_pa=stress, z=z, D=D, strain_50=e50, cyclic=options.cyclic)
-    return soft_clay_py(
-        strength_pa=su,
-        stress_pa=stress,
-        z=z,
-        D=D,
-        strain_50=e50,
-        J=soil.J,
-        cyclic=options.cyclic,
-        form=options.clay_py,
-    )
+    clay = {"strength_pa": su, "stress_pa": stress, "z": z, "D": D, "strain_50": e50}
+    if not soil.stiff:
+        return soft_clay_py(**clay, J=soil.J, cyclic=options.cyclic, form=options.clay_py)
+    clay["mean_strength_pa"] = point.mean_strength_pa
+    if soil.free_water:
+        return stiff_clay_py(**clay, cyclic=options.cyclic)
+    return dry_stiff_clay_py(**clay, J=soil.J, cycles=options.cycles if options.cyclic else 0.0)
 
 
 def _axial(point: Point | None, D: float, options: CurveOptions) -> Curve:

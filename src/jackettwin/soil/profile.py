@@ -39,7 +39,8 @@ class Sand:
 class Clay:
     """Clay; the undrained shear strength goes linearly from the layer's top to its bottom.
 
-    ``stiff`` chooses the p-y curve of Reese et al. (1975) in place of Matlock's (1970).
+    ``stiff`` chooses the p-y curve of Reese et al. (1975) in place of Matlock's (1970), or without
+    ``free_water`` that of Welch & Reese (1972).
     """
 
     strength_top_pa: float
@@ -48,6 +49,7 @@ class Clay:
     J: float = 0.5
     residual: float = 0.9
     stiff: bool = False
+    free_water: bool = True
 
     def __post_init__(self) -> None:
         _check("strength_top_pa", self.strength_top_pa, 0.0, np.inf)
@@ -104,13 +106,14 @@ class SoilProfile:
 class Point:
     """The ground at one depth, scour allowed for.
 
-    ``depth_m`` counts from the bottom of the scour hole, ``stress_pa`` is σ'_v, ``strength_pa`` is s_u (zero
-    in sand).
+    ``depth_m`` counts from the bottom of the scour hole, ``stress_pa`` is σ'_v, ``strength_pa`` is s_u and
+    ``mean_strength_pa`` its mean over the clay from there down (zero in sand).
     """
 
     depth_m: float
     stress_pa: float
     strength_pa: float
+    mean_strength_pa: float
     soil: Sand | Clay
 
 
@@ -124,12 +127,34 @@ def ground_at(profile: SoilProfile, z: float, layer: int, *, diameter: float) ->
     overburden = profile.effective_stress(z) - profile.effective_stress(scour.general_m)
     stress = float(overburden * share)
     soil = profile.layers[layer].soil
-    strength = 0.0
-    if isinstance(soil, Clay):
-        top = float(np.sum([one.thickness_m for one in profile.layers[:layer]]))
-        at = min((z - top) / profile.layers[layer].thickness_m, 1.0)
-        strength = soil.strength_top_pa + (soil.strength_bottom_pa - soil.strength_top_pa) * at
-    return Point(depth, stress, strength, soil)
+    strength = _strength(profile, layer, z)
+    mean = _mean_strength(profile, layer, scour.total_m, z) if isinstance(soil, Clay) else 0.0
+    return Point(depth, stress, strength, mean, soil)
+
+
+def _strength(profile: SoilProfile, layer: int, z: float) -> float:
+    """Return s_u [Pa] of a layer at depth ``z``, zero in sand; below the layer's bottom it stays."""
+    one = profile.layers[layer]
+    if not isinstance(one.soil, Clay):
+        return 0.0
+    top = float(np.sum([above.thickness_m for above in profile.layers[:layer]]))
+    at = min((z - top) / one.thickness_m, 1.0)
+    return one.soil.strength_top_pa + (one.soil.strength_bottom_pa - one.soil.strength_top_pa) * at
+
+
+def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> float:
+    """Return the mean of s_u [Pa] over the clay between depths ``top`` and ``z``, which lies in ``layer``."""
+    edges = np.concatenate([[0.0], profile.boundaries_m])
+    total = length = 0.0
+    for k in range(layer + 1):
+        bottom = z if k == layer else float(edges[k + 1])
+        start = max(float(edges[k]), top)
+        if isinstance(profile.layers[k].soil, Clay) and bottom > start:
+            # three depths: below the lowest layer's bottom its strength stays
+            at = [start, min(max(float(edges[k]) + profile.layers[k].thickness_m, start), bottom), bottom]
+            total += float(np.trapezoid([_strength(profile, k, depth) for depth in at], at))
+            length += bottom - start
+    return total / length if length > 0.0 else _strength(profile, layer, z)
 
 
 def _check(field: str, value: float, low: float, high: float) -> None:

@@ -144,22 +144,50 @@ def stiff_clay_py(
     D: float,
     strain_50: float,
     cyclic: bool = False,
+    mean_strength_pa: float | None = None,
 ) -> Table:
     """Return the curve of stiff clay below water, Reese, Cox & Koop (1975, OTC 2312), as a fine table.
 
-    pc = min((2 s_u + σ'_v) D + 2.83 s_u z, 11 s_u D), y50 = ε50 D; the curve starts along k_s z y, with k_s
-    135, 270, 540 MN/m³ (cyclic 55, 110, 217) at s_u 75, 150, 300 kPa. A_s and A_c of the paper's figure are
-    taken as 0.2 + 0.4 tanh(0.62 z/D) and 0.2 + 0.1 tanh(1.5 z/D).
+    pc = min((2 s_a + σ'_v) D + 2.83 s_a z, 11 s_u D) with the mean strength s_a down to z (s_u by default);
+    y50 = ε50 D; the curve starts along k_s z y, with k_s 135, 270, 540 MN/m³ (cyclic 55, 110, 217) at s_a 75,
+    150, 300 kPa. A_s and A_c of the paper's figure are taken as 0.2 + 0.4 tanh(0.62 z/D) and
+    0.2 + 0.1 tanh(1.5 z/D).
     """
-    pc = min((2.0 * strength_pa + stress_pa) * D + 2.83 * strength_pa * z, 11.0 * strength_pa * D)
+    mean = strength_pa if mean_strength_pa is None else mean_strength_pa
+    pc = min((2.0 * mean + stress_pa) * D + 2.83 * mean * z, 11.0 * strength_pa * D)
     modulus = (55e6, 110e6, 217e6) if cyclic else (135e6, 270e6, 540e6)
-    k = float(np.interp(strength_pa, (75e3, 150e3, 300e3), modulus))
+    k = float(np.interp(mean, (75e3, 150e3, 300e3), modulus))
     A = 0.2 + (0.1 * np.tanh(1.5 * z / D) if cyclic else 0.4 * np.tanh(0.62 * z / D))
     end = (1.8 * 4.1 if cyclic else 18.0) * A
     r = end * np.linspace(0.0, 1.0, 401) ** 2
     p = pc * (_reese_cyclic(r, A) if cyclic else _reese_static(r, A))
     y = r * strain_50 * D
     return _table(y, np.minimum(k * max(z, 1e-3) * y, p))
+
+
+def dry_stiff_clay_py(
+    *,
+    strength_pa: float,
+    stress_pa: float,
+    z: float,
+    D: float,
+    strain_50: float,
+    J: float = 0.5,
+    cycles: float = 0.0,
+    mean_strength_pa: float | None = None,
+) -> Table:
+    """Return the curve of stiff clay without free water, Welch & Reese (1972), as a fine table.
+
+    p = ½ pu (y/y50)^¼ up to pu at 16 y50 with y50 = 2.5 ε50 D and
+    pu = min((3 s_a + σ'_v) D + J s_a z, 9 s_u D); ``cycles`` N of one size widen it to
+    y + 9.6 (p/pu)⁴ y50 log N. It starts along its chord to 0.1 y50.
+    """
+    mean = strength_pa if mean_strength_pa is None else mean_strength_pa
+    pu = min((3.0 * mean + stress_pa) * D + J * mean * z, 9.0 * strength_pa * D)
+    r = np.concatenate([[0.0], 0.1 * 160.0 ** np.linspace(0.0, 1.0, 120)])
+    p = 0.5 * r**0.25
+    widened = r + 9.6 * p**4 * np.log10(max(cycles, 1.0))
+    return _table(widened * 2.5 * strain_50 * D, p * pu)
 
 
 def _reese_static(r: FloatArray, A: float) -> FloatArray:
