@@ -22,8 +22,8 @@ def test_rows_hold_the_static_stiffness_of_every_law() -> None:
 
 
 def test_rows_are_as_long_as_the_longest_law() -> None:
-    assert law_rows(LAWS).shape == (4, 5 + 2 * 3)
-    assert law_rows([Prony(k0=1.0)]).shape == (1, 5)
+    assert law_rows(LAWS).shape == (4, 6 + 2 * 3)
+    assert law_rows([Prony(k0=1.0)]).shape == (1, 6)
 
 
 def test_other_laws_are_refused() -> None:

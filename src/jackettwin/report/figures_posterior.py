@@ -18,7 +18,12 @@ from jackettwin.updating.update import Uncertainty
 
 FloatArray = npt.NDArray[np.float64]
 
-_SOURCE_LOOKS = {"structure": (style.GREY, ""), "soil": (style.ORANGE, "/"), "rotor": (style.BLUE, "x")}
+_SOURCE_LOOKS = {
+    "structure": (style.GREY, ""),
+    "soil": (style.ORANGE, "/"),
+    "rotor": (style.BLUE, "x"),
+    "water": (style.SKY, "."),
+}
 _BINS = 24
 _POINTS = 500
 _DELTA_90 = 2.706
@@ -98,7 +103,7 @@ def damping_budget(measured: Sequence[MeasuredMode], budget: Budget) -> go.Figur
     figure = go.Figure()
     names = [words(m.label) for m in measured]
     interval = budget.damping_ratio_interval_90
-    for s, source in enumerate(SOURCES):
+    for s, source in enumerate(SOURCES[: budget.damping_ratio.shape[1]]):
         colour, pattern = _SOURCE_LOOKS[source]
         bars = None
         if interval is not None:

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.state import state_matrix
-from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C, law_stiffness
+from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, law_stiffness
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 from jackettwin.structure.damping import Rayleigh
 
@@ -161,7 +161,8 @@ def _starts(
     """Return the eigenvalues and vectors (n, n_values) of the coordinates alone, on nearly these laws."""
     laws = [_finite_law(row, model, exact=exact) for row in rows]
     steel = Rayleigh(float(rayleigh[0]), float(rayleigh[1]))
-    pencil = replace(model.pencil.with_laws(laws), rayleigh=steel)
+    mass = model.pencil.M + sum(row[MASS] * g.S for row, g in zip(rows, model.pencil.groups, strict=True))
+    pencil = replace(model.pencil.with_laws(laws), rayleigh=steel, M=mass)
     values, vectors = np.linalg.eig(state_matrix(pencil))
     return values.astype(np.complex128), vectors[: model.n].astype(np.complex128)
 

@@ -1,6 +1,7 @@
 """Compiled loops over many poles, contour points and points of the real axis.
 
-The arrays are those of :mod:`jackettwin.response.condensed_matrix`.
+The arrays are those of :mod:`jackettwin.response.condensed_matrix`. This file must change with that one: the
+compiled code on disk is renewed when its own file is newer, whatever it calls.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"

@@ -23,13 +23,13 @@ compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"
 @compiled
 def _law(row, s):
     """Return D(s) and dD/ds."""
-    d = row[0] + row[1] * s
-    dd = row[1] + 0.0j
+    d = row[0] + (row[1] + row[5] * s) * s
+    dd = row[1] + 2.0 * row[5] * s
     if row[2] > 0.0:
         p = row[2] * np.exp(row[3] * np.log(s / row[4]))
         d += p
         dd += row[3] * p / s
-    for j in range(5, row.size, 2):
+    for j in range(6, row.size, 2):
         if row[j] > 0.0 and row[j + 1] > 0.0:
             u = 1.0 / (1.0 + row[j + 1] * s)
             d += row[j] * row[j + 1] * s * u
@@ -43,13 +43,14 @@ def law_derivatives(row, s, out):
     out[:] = 0.0
     out[0] = 1.0
     out[1] = s
+    out[5] = s * s
     if row[2] > 0.0:
         log = np.log(s / row[4])
         p = np.exp(row[3] * log)
         out[2] = p
         out[3] = row[2] * p * log
         out[4] = -row[2] * p * row[3] / row[4]
-    for j in range(5, row.size, 2):
+    for j in range(6, row.size, 2):
         u = 1.0 / (1.0 + row[j + 1] * s)
         out[j] = row[j + 1] * s * u
         out[j + 1] = row[j] * s * u * u

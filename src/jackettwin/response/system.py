@@ -114,6 +114,7 @@ def build_system(
     *,
     rayleigh: Rayleigh | None = None,
     dashpots: tuple[Spring, ...] = (),
+    spread: tuple[tuple[Matrix, Law], ...] = (),
 ) -> System:
     """Return the structure on its support.
 
@@ -125,6 +126,8 @@ def build_system(
         Damping of the steel alone.
     dashpots : tuple of Spring
         Further springs and dashpots anywhere (a nacelle's aerodynamic damping).
+    spread : (pattern on the assembly's DOFs, law)
+        What acts all over the structure (drag in water).
 
     Raises
     ------
@@ -142,7 +145,10 @@ def build_system(
     M = sp.csc_array((assembly.mass + _ground_mass(assembly, support))[free][:, free])
     K = sp.csc_array(assembly.stiffness[free][:, free])
     groups = _groups(assembly, (*support.springs, *dashpots), number, free.size)
-    return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups), free)
+    everywhere = tuple(
+        Group(law, sp.csc_array(sp.csc_array(S)[free][:, free]), np.arange(free.size)) for S, law in spread
+    )
+    return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups + everywhere), free)
 
 
 def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:

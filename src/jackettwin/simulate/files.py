@@ -145,7 +145,7 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
         return None
     given = schema.water or WaterSchema()
     coefficients, water = water_coefficients(given), carried_water(given, structure)
-    depth = _depth(given, structure)
+    depth = depth_of(given, structure)
     current = (
         None
         if c is None
@@ -174,8 +174,8 @@ def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
         )
 
 
-def _depth(w: WaterSchema, structure: Structure) -> float:
-    """Return the depth as stated; else down to the lowest foot."""
+def depth_of(w: WaterSchema, structure: Structure) -> float:
+    """Return the depth [m] as stated; else down to the lowest foot."""
     feet = structure.reaction_nodes or tuple(structure.nodes)
     reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
     if w.depth_m is not None and w.depth_m <= reach + _GAP_M:

@@ -1,6 +1,10 @@
 """Support laws as rows of numbers, for code that evaluates many of them at once.
 
-A row is (k0, c, k_α, α, ω0, k_1, τ_1, k_2, τ_2, …): D(s) = k0 + c s + k_α (s/ω0)^α + Σ k_j τ_j s/(1 + τ_j s).
+A row is (k0, c, k_α, α, ω0, m, k_1, τ_1, k_2, τ_2, …):
+
+    D(s) = k0 + c s + m s² + k_α (s/ω0)^α + Σ k_j τ_j s/(1 + τ_j s).
+
+No law has a mass; water that moves with the structure has.
 """
 
 from __future__ import annotations
@@ -16,7 +20,7 @@ from jackettwin.soil.viscoelastic import Law, Prony, Springpot
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-K0, C, K_ALPHA, ALPHA, OMEGA0, BRANCHES = range(6)
+K0, C, K_ALPHA, ALPHA, OMEGA0, MASS, BRANCHES = range(7)
 """Places in a row; branches k_1, τ_1, k_2, … follow from BRANCHES on."""
 
 
@@ -32,7 +36,7 @@ def law_rows(laws: Sequence[Law]) -> FloatArray:
     --------
     >>> from jackettwin.soil.viscoelastic import kelvin_voigt, zener
     >>> law_rows([kelvin_voigt(2.0, 3.0), zener(2.0, 3.0, 6.0)]).tolist()
-    [[2.0, 3.0, 0.0, 0.0, 1.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 1.0, 6.0, 0.5]]
+    [[2.0, 3.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.5]]
     """
     width = BRANCHES + 2 * max([len(law.k) for law in laws if isinstance(law, Prony)], default=0)
     rows = np.zeros((len(laws), width))
@@ -51,7 +55,7 @@ def law_rows(laws: Sequence[Law]) -> FloatArray:
 
 
 def static_rows(rows: FloatArray) -> FloatArray:
-    """Return the rows of springs with the laws' static stiffness: the undamped structure.
+    """Return the rows of springs with the laws' static stiffness, masses kept: the undamped structure.
 
     Parameters
     ----------
@@ -59,6 +63,7 @@ def static_rows(rows: FloatArray) -> FloatArray:
     """
     springs = np.zeros_like(rows)
     springs[..., OMEGA0] = 1.0
+    springs[..., MASS] = rows[..., MASS]
     springs[..., K0] = rows[..., K0] + rows[..., K_ALPHA] * np.cos(0.5 * np.pi * rows[..., ALPHA])
     return springs
 
@@ -71,8 +76,8 @@ def law_stiffness(rows: FloatArray, s: ComplexArray) -> ComplexArray:
     rows : (n_laws, width)
     s : (n_laws, n_points)
     """
-    k0, c, k_alpha, alpha, omega0 = (rows[:, j, None] for j in range(BRANCHES))
-    D = k0 + c * s + k_alpha * (s / omega0) ** alpha
+    k0, c, k_alpha, alpha, omega0, m = (rows[:, j, None] for j in range(BRANCHES))
+    D = k0 + c * s + m * s**2 + k_alpha * (s / omega0) ** alpha
     for j in range(BRANCHES, rows.shape[1], 2):
         k, tau = rows[:, j, None], rows[:, j + 1, None]
         D = D + k * (tau * s / (1.0 + tau * s))

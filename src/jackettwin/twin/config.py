@@ -12,6 +12,7 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure
+from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Target
 
 
@@ -56,6 +57,8 @@ class UpdateSettings:
     """Whether the parked rotor turns with the nacelle."""
     wind_speed_m_s: float | None = None
     """Instead of the mean over the records' conditions."""
+    water: tuple[str, ...] = ()
+    """Factors on the water to update as well: ``water_mass``, ``water_damping``."""
     steel_damping: Literal["fixed", "free"] = "fixed"
     """Whether ratio and frequency of the steel's least damping are updated as well."""
 
@@ -87,6 +90,7 @@ class TwinConfig:
     gravity: bool
     rayleigh: Rayleigh
     rayleigh_ratio: float
+    water: WaterConfig | None
     tie: str
     heads: str | None
     """Pile heads whose 6×6 stiffness the laws scale: a SUPPORT, ``own`` for the structure's."""

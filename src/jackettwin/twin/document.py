@@ -192,13 +192,13 @@ def _quantiles(draws: FloatArray) -> dict[str, Any]:
 
 
 def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
-    """Return each mode's damping ratio by source; water is not modelled, so its part is not known."""
+    """Return each mode's damping ratio by source; where no drag is modelled, water's part is not known."""
     b = u.budget
 
     def by_source(values: FloatArray | None, i: int) -> dict[str, Any] | None:
-        return (
-            None if values is None else {**dict(zip(SOURCES, values[i].tolist(), strict=True)), "water": None}
-        )
+        if values is None:
+            return None
+        return dict.fromkeys(SOURCES) | dict(zip(SOURCES, values[i].tolist(), strict=False))
 
     return [
         {
@@ -206,7 +206,7 @@ def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any
             "damping_ratio": by_source(b.damping_ratio, i),
             "damping_ratio_interval_90": by_source(b.damping_ratio_interval_90, i),
             "beyond_literature": beyond_literature(
-                m.label, dict(zip(SOURCES, map(float, b.damping_ratio[i]), strict=True))
+                m.label, dict(zip(SOURCES, map(float, b.damping_ratio[i]), strict=False))
             ),
             "share": by_source(b.share, i),
             "share_interval_90": by_source(b.share_interval_90, i),

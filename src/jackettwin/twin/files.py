@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import radians
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,10 +12,15 @@ from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks
+from jackettwin.loads.conditions import SeaState
+from jackettwin.loads.water import Water
 from jackettwin.response.sensors import Sensor
+from jackettwin.simulate.files import depth_of
+from jackettwin.simulate.water_files import WaterSchema, carried_water, water_coefficients
 from jackettwin.structure import Rayleigh, Structure, read_structure
 from jackettwin.structure.files import BodySchema
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
 from jackettwin.updating.extras import DASHPOTS, Extras
 
@@ -127,7 +133,16 @@ class UpdateSchema(Schema):
     rotor: str | None = None
     shaft: Literal["locked", "free"] = "locked"
     wind_speed_m_s: Positive | None = None
+    water: list[Literal["water_mass", "water_damping"]] = []
     steel_damping: Literal["fixed", "free"] = "fixed"
+
+
+class SeaSchema(Schema):
+    """``sea``: the mean sea of the records, a JONSWAP spectrum."""
+
+    hs_m: Positive
+    tp_s: Positive
+    direction_deg: float = 0.0
 
 
 class TwinSchema(Schema):
@@ -140,6 +155,8 @@ class TwinSchema(Schema):
     subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
     gravity: bool = False
     damping: DampingSchema | None = None
+    water: WaterSchema | None = None
+    sea: SeaSchema | None = None
     support: SupportSchema = SupportSchema()
     sensors: list[SensorSchema] = []
     records: list[str] = []
@@ -184,16 +201,18 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     with located(field="update"):
         _check_update(schema.update)
     damping = schema.damping.rayleigh if schema.damping is not None else None
+    structure = _structure(schema, path.parent)
     return TwinConfig(
         name=path.stem,
         path=path,
-        structure=_structure(schema, path.parent),
+        structure=structure,
         beam=schema.beam,
         rotary_inertia=schema.rotary_inertia,
         subdivide=schema.subdivide,
         gravity=schema.gravity,
         rayleigh=Rayleigh() if damping is None else Rayleigh.minimum(damping.ratio, damping.frequency_hz),
         rayleigh_ratio=0.0 if damping is None else damping.ratio,
+        water=_water(schema, structure),
         tie=schema.support.tie,
         heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
@@ -225,7 +244,7 @@ def _check_update(update: UpdateSchema) -> None:
     """Refuse unknown laws, bounds and priors now, not after the records have been identified."""
     with located(field="laws"):
         known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
-    known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters}
+    known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters} | set(update.water)
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
             if not any(name == k or name.startswith(f"{k}_") for k in known):
@@ -260,6 +279,23 @@ def _structure(schema: TwinSchema, folder: Path) -> Structure:
     return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
 
 
+def _water(schema: TwinSchema, structure: Structure) -> WaterConfig | None:
+    """Return the water; a sea alone is water without growth."""
+    sea, given = schema.sea, schema.water
+    if sea is None and given is None:
+        return None
+    given = given or WaterSchema()
+    coefficients, carried = water_coefficients(given), carried_water(given, structure)
+    flooded = carried_water(given.model_copy(update={"adds_mass": True}), structure) or Water()
+    return WaterConfig(
+        depth_m=depth_of(given, structure),
+        coefficients=coefficients,
+        carried=flooded,
+        adds_mass=carried is not None,
+        sea=None if sea is None else SeaState(sea.hs_m, sea.tp_s, radians(sea.direction_deg)),
+    )
+
+
 def _beside(name: str, folder: Path) -> str:
     """Return a file beside the twin's, or the name of a shipped one."""
     return str(folder / name) if Path(name).suffix else name
@@ -286,5 +322,6 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         rotor=None if u.rotor is None else _beside(u.rotor, folder),
         shaft=u.shaft,
         wind_speed_m_s=u.wind_speed_m_s,
+        water=tuple(dict.fromkeys(u.water)),
         steel_damping=u.steel_damping,
     )

@@ -37,6 +37,11 @@ def assumptions(
         shape = "with the pattern of its blades" if config.update.rotor else "on the tower top"
         where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and proportional to it"
         lines.append(f"The rotor is parked: dashpots {', '.join(config.update.dashpots)} {shape}{where}.")
+    if config.update.water:
+        lines.append(
+            f"Factors on the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
+            "mean sea for all records; radiation damping is left out."
+        )
     if len(config.records) > 1:
         lines.append(
             f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "

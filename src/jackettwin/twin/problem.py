@@ -12,6 +12,7 @@ from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured
 from jackettwin.twin.rotor import RotorDamping, States
+from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import Problem, family, joint, support_model
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.model import SupportModel
@@ -59,7 +60,10 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
         If bounds, priors, ties or pile heads do not fit the law.
     """
     chosen, given, states = family(law), config.update, evidence.states
-    extras = Extras(given.dashpots, given.steel_damping == "free", evidence.rotor.patterns)
+    with located(file=config.path):
+        records = () if evidence.found is None else [seen.record for seen in evidence.found.observations]
+        water = water_effects(in_the_records_sea(config.water, records), evidence.assembly, given.water)
+    extras = Extras(given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water)
     own = {p.name for p in (*chosen.parameters, *extras.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())
     try:

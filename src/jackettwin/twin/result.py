@@ -53,7 +53,7 @@ class DampingExcess:
     Attributes
     ----------
     support : float
-        The steel's and the soil's part of the model's ratio.
+        The steel's, the soil's and the water's part of the model's ratio.
     rotor : float
         The part of the nacelle's dashpots; 0 without them.
     """

@@ -101,7 +101,9 @@ def _update(config: TwinConfig, evidence: Evidence, law: str, *, shown: tuple[in
 
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:
     return tuple(
-        DampingExcess(m.label, m.damping_ratio, m.damping_ratio_std, float(steel + soil), float(rotor))
-        for m, (steel, soil, rotor) in zip(measured, result.budget.damping_ratio, strict=True)
+        DampingExcess(
+            m.label, m.damping_ratio, m.damping_ratio_std, float(steel + soil + sum(water)), float(rotor)
+        )
+        for m, (steel, soil, rotor, *water) in zip(measured, result.budget.damping_ratio, strict=True)
         if m.damping_ratio is not None and not np.isnan(steel)
     )

@@ -24,7 +24,8 @@ from jackettwin.updating.model import SupportModel
 
 FloatArray = npt.NDArray[np.float64]
 
-SOURCES = ("structure", "soil", "rotor")
+SOURCES = ("structure", "soil", "rotor", "water")
+"""Water is the last, and left out where no drag is modelled: then its share is not known."""
 
 LITERATURE = {"structure": (0.01, 0.02), "soil": (0.005, 0.015), "water": (0.001, 0.004)}
 """Damping ratios of first bending modes that the literature reports by source, thesis section 2.1."""
@@ -37,7 +38,7 @@ class Budget:
     Attributes
     ----------
     modes : mode numbers
-    damping_ratio : (n_modes, n_sources) sums to ζ; sources as in ``SOURCES``
+    damping_ratio : (n_modes, n_sources) sums to ζ; the first of ``SOURCES``
     share : (n_modes, n_sources) of the whole
     damping_ratio_interval_90, share_interval_90 : (n_modes, n_sources, 2), or None without draws
     """
@@ -110,6 +111,7 @@ def _shares(ratio: FloatArray) -> FloatArray:
 def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:
     """Return (n_sets, n_modes, n_sources) damping ratios."""
     pencil, n_soil = model.condensed.pencil, len(model.feet.suffixes)
+    n_rotor = n_soil + len(model.extras.dashpots)
     known = ~np.isnan(found.poles)
     x, pole = np.where(known[..., None], found.shapes, 1.0), np.where(known, found.poles, 1j)
     m = np.einsum("kmi,kmi->km", x.conj() @ pencil.M, x).real
@@ -119,8 +121,11 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
     for g, group in enumerate(pencil.groups):
         D = law_stiffness(points.rows[:, g], pole)
         groups[..., g] = D.imag / pole.imag * np.einsum("kmi,kmi->km", x.conj() @ group.S, x).real
-    soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:].sum(axis=-1)
+    soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:n_rotor].sum(axis=-1)
     lost = np.stack([a * m + b * k, soil, rotor], axis=-1)
+    if "water_damping" in model.extras.water:
+        drag = n_rotor + list(model.extras.water).index("water_damping")
+        lost = np.concatenate([lost, groups[..., drag : drag + 1]], axis=-1)
     # M and K of the coordinates leave out what the truncated modes move (1e-4): close the sum on ζ itself
     zeta = -pole.real / np.abs(pole)
     ratio = lost * (zeta / lost.sum(axis=-1))[..., None]

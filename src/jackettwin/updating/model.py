@@ -168,11 +168,13 @@ class SupportModel:
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
         extra = self._split(theta)[1]
+        mass, damping = self.extras.water_effects(extra)
         return build_system(
-            self.assembly,
+            self.assembly if mass is None else replace(self.assembly, mass=self.assembly.mass + mass),
             self.feet.support(self.laws(theta)),
             rayleigh=self.extras.steel(self.rayleigh, extra),
             dashpots=self.extras.springs(self.assembly.structure.top_node, extra),
+            spread=() if damping is None else ((damping, Prony(c=1.0)),),
         )
 
     def exact_modes(self, theta: FloatArray, modes: tuple[int, ...]) -> ExactModes:
@@ -275,7 +277,7 @@ def support_model(
     suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
     derived = priors_of(groups, first_hz) if head_priors else {}
     parameters = tuple(
-        _informed(Parameter(p.name + suffix, p.low, p.high, p.unit), p.name, bounds, priors, derived)
+        _informed(replace(p, name=p.name + suffix), p.name, bounds, priors, derived)
         for suffix in suffixes
         for p in family.parameters
     ) + tuple(_informed(p, p.name, bounds, priors, {}) for p in extras.parameters)
@@ -283,13 +285,16 @@ def support_model(
     known |= {p.name for p in extras.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
+    condensed = _condensed(assembly, groups, rayleigh, extras, highest_mode)
+    low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
+    extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
     return SupportModel(
         assembly,
         rayleigh,
         family,
         parameters,
         groups,
-        _condensed(assembly, groups, rayleigh, extras, highest_mode),
+        condensed,
         first_hz,
         highest_mode,
         extras,
@@ -310,7 +315,7 @@ def _condensed(
         ),
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
-    return condense(system, below_hz=_ROOM * float(pinned_hz[-1]))
+    return condense(system, below_hz=_ROOM * float(pinned_hz[-1]), spread=tuple(extras.water.values()))
 
 
 def _informed(
@@ -321,7 +326,7 @@ def _informed(
     derived: Mapping[str, Lognormal],
 ) -> Parameter:
     low, high = bounds.get(p.name, bounds.get(family_name, (p.low, p.high)))
-    median, log_std = priors.get(p.name, priors.get(family_name, (None, None)))
+    median, log_std = priors.get(p.name, priors.get(family_name, (p.median, p.log_std)))
     if median is None and p.name in derived and low <= derived[p.name][0] <= high:
         median, log_std = derived[p.name]
     return Parameter(p.name, low, high, p.unit, median, log_std)

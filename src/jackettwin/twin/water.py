@@ -1,0 +1,94 @@
+"""The water about a twin: its mass on the members and what its drag takes, as factors that can be updated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.conditions import SeaState
+from jackettwin.loads.drag_damping import sea_drag_damping
+from jackettwin.loads.morison import MorisonPoints, morison_points
+from jackettwin.loads.water import Water, water_mass
+from jackettwin.records import Record
+from jackettwin.structure import Assembly
+
+_SPACING_M = 4.0
+"""Longest piece of a member."""
+
+
+@dataclass(frozen=True)
+class WaterConfig:
+    """``water`` and ``sea`` of a twin file.
+
+    Attributes
+    ----------
+    carried : Water
+        What is flooded.
+    adds_mass : bool
+        Whether the structure's own mass leaves water and growth out.
+    sea : SeaState or None
+        In which drag is linearised.
+    """
+
+    depth_m: float
+    coefficients: Coefficients
+    carried: Water
+    adds_mass: bool
+    sea: SeaState | None
+
+
+def moving_mass(water: WaterConfig, assembly: Assembly) -> sp.csr_array:
+    """Return the mass of growth, of water inside and of added water, (n_dof, n_dof)."""
+    return water_mass(assembly, _points(water, assembly), water.carried)
+
+
+def water_effects(
+    water: WaterConfig | None, assembly: Assembly, wanted: tuple[str, ...]
+) -> Mapping[str, sp.csr_array]:
+    """Return the patterns of the water's free factors, as the updating's ``Extras`` takes them.
+
+    Raises
+    ------
+    InputError
+        If a factor is wanted of water, or of a sea, that the twin does not state.
+    """
+    effects: dict[str, sp.csr_array] = {}
+    for name in wanted:
+        if water is None or (name == "water_damping" and water.sea is None):
+            missing = "water" if water is None else "sea"
+            raise InputError(
+                f"a factor of the water needs {missing}",
+                field="update.water",
+                value=name,
+                remedy=f"state {missing}: in the twin file",
+            )
+        if name == "water_mass":
+            effects[name] = moving_mass(water, assembly)
+        elif water.sea is not None:
+            effects[name] = sea_drag_damping(_points(water, assembly), water.sea, water.depth_m)
+    return effects
+
+
+def in_the_records_sea(water: WaterConfig | None, records: Sequence[Record]) -> WaterConfig | None:
+    """Return the water in the mean sea that all records state, unless the twin states one."""
+    seas = [(r.conditions.get("wave_height_m"), r.conditions.get("wave_period_s")) for r in records]
+    known = [(float(h), float(t)) for h, t in seas if h is not None and t is not None]
+    if water is None or water.sea is not None or not known or len(known) < len(seas):
+        return water
+    height, period = np.mean(known, axis=0)
+    return replace(water, sea=SeaState(float(height), float(period)))
+
+
+def _points(water: WaterConfig, assembly: Assembly) -> MorisonPoints:
+    return morison_points(
+        assembly,
+        highest_z=0.0,
+        lowest_z=-water.depth_m,
+        coefficients=water.coefficients,
+        spacing=_SPACING_M,
+    )
