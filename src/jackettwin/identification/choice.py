@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import Rejected
-from jackettwin.identification.local_refinement import groups, refine_group
+from jackettwin.identification.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.periodogram import DERIVATIVES
 from jackettwin.identification.refinement import Refined, refine
@@ -113,7 +113,11 @@ def _fits(
         return [(np.ones(len(start["sure"]), dtype=bool), whole)], ()
     fits, warnings = [], []
     for group in groups(start["frequency_hz"], start["sure"], band):
-        fit, obstacle = _tried(partial(refine_group, y, rate, group, **start), MOST_LOCAL_LACK_OF_FIT)
+        for share in DITHER_SHARES:
+            work = partial(refine_group, y, rate, group, dither_share=share, **start)
+            fit, obstacle = _tried(work, MOST_LOCAL_LACK_OF_FIT)
+            if fit is not None:
+                break
         if fit is None:
             f = ", ".join(f"{f:.3g}" for f in start["frequency_hz"][group.members & start["sure"]])
             warnings.append(f"modes at {f} Hz not refined: {obstacle}")

@@ -24,6 +24,11 @@ BoolArray = npt.NDArray[np.bool_]
 REACH = 1.35
 """Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
 
+DITHER_SHARES = (3.0, 10.0)
+"""Share of the local median spectrum added; the next one where a fit with the one before does not describe
+the lines. One force moves all channels, and between the peaks their ratios would fix the damping more sharply
+than the record allows, if the model were exact; the more is added, the less they count."""
+
 FEW_LINES = 1.5
 """The covariance is multiplied by this: a narrow band holds few lines for its many parameters."""
 
@@ -77,6 +82,7 @@ def refine_group(
     sure: BoolArray,
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
+    dither_share: float = DITHER_SHARES[0],
 ) -> Refined:
     """Fit one group; parameters as of ``refine``, candidates counted as there.
 
@@ -93,7 +99,7 @@ def refine_group(
         sure=sure[among],
         derivatives=derivatives,
         avoid_hz=avoid_hz,
-        local=True,
+        local_dither_share=dither_share,
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
     return replace(

@@ -43,9 +43,6 @@ SUSPECT = 2.5
 """A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
 APPROACH = 4
 """Steps before the doubtful modes are judged."""
-LOCAL_DITHER_SHARE = 3.0
-"""Share of the local median spectrum added in a narrow band. One force moves all channels, and between the
-peaks their ratios would fix the damping more sharply than the record allows, if the model were exact."""
 PARAMETERS_OF_A_MODE = 3
 """f, ζ and colour; its shape has one for each channel."""
 MOST_ADDED = 6
@@ -99,7 +96,7 @@ def refine(
     sure: BoolArray,
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
-    local: bool = False,
+    local_dither_share: float | None = None,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
 
@@ -116,9 +113,9 @@ def refine(
         Derivatives in time by which a channel lags acceleration.
     avoid_hz : sequence of (low, high)
         Ranges that are left out of the fit.
-    local : bool
-        Whether the band holds some of the modes only: a background stands for the others, and what lies
-        between the peaks counts little.
+    local_dither_share : float, optional
+        Given where the band holds some of the modes only: a background stands for the others, and so much
+        of the local median spectrum is added.
     """
     data = periodogram(
         y,
@@ -127,12 +124,12 @@ def refine(
         modes=(frequency_hz, damping_ratio),
         derivatives=derivatives,
         avoid_hz=avoid_hz,
-        dither_share=LOCAL_DITHER_SHARE if local else None,
+        dither_share=local_dither_share,
     )
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
     first = likelihood.start(data, frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
-    if local:
+    if local_dither_share is not None:
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
