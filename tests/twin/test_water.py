@@ -10,7 +10,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
 from jackettwin.twin import read_twin
 from jackettwin.twin.assembled import assembled
-from jackettwin.twin.fitted import fitted_modes, residuals
+from jackettwin.twin.fitted import residuals, target_modes
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.rotor import RotorDamping
 from jackettwin.twin.water import in_the_records_sea
@@ -30,7 +30,7 @@ def twin(folder: Path, *, adds: str = "false", sea: str = "sea: {hs_m: 2.0, tp_s
     path.write_text(TWIN.format(adds=adds, sea=sea))
     config = read_twin(path)
     assembly = assembled(config)
-    states = {"": (residuals(config, fitted_modes(config, None, ("side_side_1",) * 12)), {})}
+    states = {"": (residuals(config, target_modes(config, ("side_side_1",) * 12, highest_hz=1.0)), {})}
     return config, Evidence(assembly, None, states, RotorDamping({}, {}))
 
 
