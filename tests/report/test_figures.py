@@ -42,6 +42,8 @@ def test_laws_and_modes_differ_without_colour() -> None:
         mode_look(label) for label in ("fore_aft_1", "fore_aft_2", "side_side_1", "side_side_2", "torsion_1")
     ]
     assert len({look.symbol for look in modes}) == len(modes)
+    unnamed = [mode_look(f"mode_{n}") for n in range(1, 13)]
+    assert len({(look.colour, look.symbol) for look in unnamed}) == len(unnamed)
     assert (
         mode_look("fore_aft_1").colour == mode_look("fore_aft_3").colour == direction_colour((1.0, 0.0, 0.0))
     )

@@ -27,6 +27,7 @@ from jackettwin.twin.many_document import many_document
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 @click.command("identify")
@@ -278,11 +279,21 @@ def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
 
 def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
     """Print how many candidates were rejected for each reason; the JSON names them all."""
-    kinds: dict[str, tuple[int, float, float, str]] = {}
+    alike: dict[str, list[tuple[str, float]]] = {}
     for r in rejected:
-        f, kind = r["frequency_hz"], re.sub(r"\d[\d.]*", "…", r["reason"])
-        n, low, high, _ = kinds.get(kind, (0, f, f, ""))
-        kinds[kind] = n + 1, min(low, f), max(high, f), r["reason"]
-    for kind, (n, low, high, reason) in sorted(kinds.items(), key=lambda item: -item[1][0]):
-        where = f"{low:.4g} Hz" if n == 1 else f"{low:.3g} to {high:.3g} Hz"
-        output.print(f"rejected: {n} × {reason if n == 1 else kind} ({where})")
+        alike.setdefault(_NUMBER.sub("", r["reason"]), []).append((r["reason"], r["frequency_hz"]))
+    for group in sorted(alike.values(), key=len, reverse=True):
+        reasons, f = zip(*group, strict=True)
+        where = f"{f[0]:.4g} Hz" if len(f) == 1 else f"{min(f):.3g} to {max(f):.3g} Hz"
+        output.print(f"rejected: {len(f)} × {_spanned(reasons)} ({where})")
+
+
+def _spanned(texts: Sequence[str]) -> str:
+    """Return a text that stands for others like it: each number as the span of theirs."""
+    spans = iter(zip(*(_NUMBER.findall(text) for text in texts), strict=True))
+
+    def span(_: re.Match[str]) -> str:
+        numbers = sorted(set(next(spans)), key=float)
+        return numbers[0] if len(numbers) == 1 else f"{numbers[0]} to {numbers[-1]}"
+
+    return _NUMBER.sub(span, texts[0])

@@ -48,7 +48,7 @@ def mac_matrix(found: Identification, names: Sequence[str]) -> go.Figure:
 
 
 def complexity(found: Identification, names: Sequence[str]) -> go.Figure:
-    """Draw every mode's shape in the complex plane: a real shape lies on a line."""
+    """Draw every mode's shape as SSI found it in the complex plane: a real shape lies on a line."""
     n = len(found.modes)
     rows = -(-n // _COLUMNS)
     titles = [
@@ -60,7 +60,7 @@ def complexity(found: Identification, names: Sequence[str]) -> go.Figure:
     for k, (name, mode) in enumerate(zip(names, found.modes, strict=True)):
         at = {"row": k // _COLUMNS + 1, "col": k % _COLUMNS + 1}
         colour = style.mode_look(name).colour
-        for channel, value in zip(found.channels, mode.mode_shape, strict=True):
+        for channel, value in zip(found.channels, (mode.unrefined or mode).mode_shape, strict=True):
             figure.add_scatter(
                 x=[0.0, value.real],
                 y=[0.0, value.imag],
@@ -85,6 +85,7 @@ def interval_history(histories: Sequence[tuple[str, Sequence[Step]]]) -> go.Figu
     histories : sequence of (label, steps)
     """
     figure = go.Figure()
+    numbers = sorted({step.n_records for _, steps in histories for step in steps})
     for label, steps in histories:
         look = style.mode_look(label)
         n = [step.n_records for step in steps]
@@ -109,7 +110,12 @@ def interval_history(histories: Sequence[tuple[str, Sequence[Step]]]) -> go.Figu
     return style.finish(
         figure,
         height=460,
-        xaxis={"title": {"text": style.title("records fused", "-")}, "type": "log", "dtick": np.log10(2.0)},
+        xaxis={
+            "title": {"text": style.title("records fused", "-")},
+            "type": "log",
+            "tickvals": numbers,
+            "range": np.log10([0.93 * numbers[0], 1.07 * numbers[-1]]).tolist(),
+        },
         yaxis={"title": {"text": style.title("damping ratio", "%")}, "rangemode": "tozero"},
         margin={"l": 70, "r": 24, "t": 104, "b": 54},
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -98,8 +99,7 @@ def spectra(
     keep = (f > 0.0) & (f <= _upper(f, modes))
     units = {plain(channel.unit) for channel in channels}
     unit = f"({next(iter(units))})²/Hz" if len(units) == 1 else "unit²/Hz"
-    heights = sorted({channel.height_m or 0.0 for channel in channels}, reverse=True)
-    for channel, density in zip(channels, spectrum.density, strict=True):
+    for channel, density, dash in zip(channels, spectrum.density, _dashes(channels), strict=True):
         figure.add_scatter(
             x=f[keep],
             y=density[keep],
@@ -110,7 +110,7 @@ def spectra(
             line={
                 "width": 1.3,
                 "color": style.direction_colour(channel.direction),
-                "dash": ("solid", "dash", "dot", "dashdot")[heights.index(channel.height_m or 0.0) % 4],
+                "dash": dash,
             },
             hovertemplate=f"%{{x:.4f}} Hz<br>%{{y:.3g}} {unit}<extra>{channel.name}</extra>",
         )
@@ -143,6 +143,22 @@ def spectra(
         margin={"l": 86, "r": 24, "t": 110, "b": 110},
         legend=style.LEGEND_BELOW | {"y": -0.1},
     )
+
+
+def _dashes(channels: Sequence[Channel]) -> list[str]:
+    """Return a dash for each channel: by height where all are known, else by turn within a direction."""
+    dashes = ("solid", "dash", "dot", "dashdot")
+    heights = [channel.height_m for channel in channels if channel.height_m is not None]
+    if len(heights) == len(channels):
+        levels = sorted(set(heights), reverse=True)
+        return [dashes[levels.index(height) % 4] for height in heights]
+    turn: Counter[str] = Counter()
+    out = []
+    for channel in channels:
+        colour = style.direction_colour(channel.direction)
+        out.append(dashes[turn[colour] % 4])
+        turn[colour] += 1
+    return out
 
 
 def _fit(figure: go.Figure, fit: Spectrum) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from jackettwin.identification import Identification, fuse
+from jackettwin.identification import FusedMode, Identification, fuse
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.convergence import convergence
 from jackettwin.identification.spectral_fit import modal_fit
@@ -93,8 +93,9 @@ def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
         "tell apart, or a pair whose shapes one record leaves mixed."
     )
     needles = (
-        "Mode shapes in the complex plane, one needle a sensor. The needles of a real mode lie on a line; "
-        "a fan is mostly a close pair that one record does not separate."
+        "Mode shapes in the complex plane as the subspace method found them (the likelihood takes shapes "
+        "as real), one needle a sensor. The needles of a real mode lie on a line; a fan is mostly a close "
+        "pair that one record does not separate."
     )
     return [
         Plot("mac", caption, figures_likeness.mac_matrix(found, names)),
@@ -106,12 +107,11 @@ def _history(result: TwinResult) -> list[Block]:
     """Return how intervals shrink with records, for the modes the model knows."""
     if len(result.identifications) < 2:
         return []
-    histories = []
-    for mode in fuse(result.identifications).modes:
+    tracks: dict[str, FusedMode] = {}
+    for mode in sorted(fuse(result.identifications).modes, key=lambda mode: len(mode.sightings.record)):
         seen = [result.names[r][m] for r, m in zip(mode.sightings.record, mode.sightings.mode, strict=True)]
-        label = max(set(seen), key=seen.count)
-        if label:
-            histories.append((label, convergence(mode)))
+        tracks[max(set(seen), key=seen.count)] = mode  # the track with the most sightings is drawn
+    histories = [(m.label, convergence(tracks[m.label])) for m in result.measured if m.label in tracks]
     if not histories:
         return []
     caption = "Damping ratios with 95 % intervals as records are fused, in their order."

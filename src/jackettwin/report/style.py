@@ -37,6 +37,14 @@ _KINDS = {
     "torsion": (GREEN, "diamond"),
     "heave": (PURPLE, "triangle-up"),
 }
+_UNNAMED = tuple(
+    zip(
+        (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK),
+        ("circle", "square", "diamond", "triangle-up", "cross", "x", "star"),
+        strict=True,
+    )
+)
+"""Modes of no known kind, by number."""
 _DASHES = ("solid", "dash", "dot", "dashdot")
 _VARIANTS = ("", "-open", "-open-dot", "-dot")
 
@@ -47,10 +55,17 @@ def law_look(law: str) -> Look:
 
 
 def mode_look(label: str) -> Look:
-    """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number."""
+    """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number.
+
+    ``mode_3``, whose kind is not known, has its colour by number; what has no number is grey.
+    """
     kind, _, number = label.rpartition("_")
-    colour, symbol = _KINDS.get(kind, (GREY, "x"))
     order = int(number) if number.isdigit() else 1
+    if kind == "mode" and number.isdigit():
+        turn, place = divmod(order - 1, len(_UNNAMED))
+        colour, symbol = _UNNAMED[place]
+        return Look(colour, symbol + _VARIANTS[turn % 4], _DASHES[turn % 4])
+    colour, symbol = _KINDS.get(kind, (GREY, "x"))
     return Look(colour, symbol + _VARIANTS[(order - 1) % 4], _DASHES[(order - 1) % 4])
 
 

@@ -71,6 +71,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     rows = [
         (
             words(name) if name else "not in the model",
+            m.status,
             frequency(m.frequency_hz, m.frequency_std_hz),
             interval(frequency_interval(m), 1.0, 4),
             percent(m.damping_ratio, m.damping_ratio_std),
@@ -85,6 +86,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     ]
     columns = (
         "mode",
+        "status",
         "f [Hz]",
         "95 % of f [Hz]",
         "ζ [%]",
@@ -101,7 +103,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
             " Least ±: what a record of this length allows at best, by the long-data law √(1/2πζfT) and by "
             "the Cramér-Rao bound of the fitted spectrum."
         )
-    return Table(caption, columns, tuple(rows), folded=folded)
+    return Table(caption, columns, tuple(rows), 2, folded=folded)
 
 
 def _limits(m: ModalEstimate) -> str:
