@@ -70,7 +70,7 @@ def one_force_without_noise(seed):
 
 
 def test_records_without_noise_are_refined():
-    """As one's own simulation gives them: two records, most modes refined, intervals that hold."""
+    """As one's own simulation gives them: two records, three modes of four refined, intervals that hold."""
     refined, inside = 0, 0
     for seed in range(2):
         system, record = one_force_without_noise(seed)
@@ -79,7 +79,7 @@ def test_records_without_noise_are_refined():
             mode = min(modes, key=lambda m: abs(m.frequency_hz - f))
             refined += mode.unrefined is not None
             inside += mode.damping_ratio_interval_95[0] < zeta < mode.damping_ratio_interval_95[1]
-    assert refined >= 7
+    assert refined >= 6
     # of eight: fewer than six have a probability of 0.6 % if each holds with 95 %
     assert inside >= 6
 
