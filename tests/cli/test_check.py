@@ -26,6 +26,20 @@ def test_thrust_uses_the_tower_s_foot_most() -> None:
     assert worst[1] == pytest.approx(2.0 * worst[0], rel=1e-9)
 
 
+def test_forces_and_lengths_are_shown() -> None:
+    """jacket15's tower is a cantilever of 116 m; its top carries the thrust across and no more."""
+    arguments = ("jacket15", "--force", "tower_top=1e6,0,0", "--no-weight")
+    rows = {row["member"]: row for row in json.loads(run(*arguments, "--json").stdout)["members"]}
+    tower = rows["tower_12"]
+    assert (tower["effective_length_factor"], tower["column_length_m"]) == (2.0, pytest.approx(116.0))
+    assert tower["end"]["shear_z_n"] == pytest.approx(1e6, rel=1e-6)
+    assert abs(tower["end"]["bending_y_nm"]) < 1.0  # of some 1e8 at the foot
+    text = run(*arguments).stdout
+    assert "K" in text
+    assert "116.00" in text
+    assert "kN·m" in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

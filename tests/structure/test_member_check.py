@@ -1,7 +1,5 @@
 """Member checks on columns and beams whose stresses are textbook."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ from jackettwin.response.static import nodal_load, self_weight, static_displacem
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import clamped, pinned
 from jackettwin.structure import Section, Structure, assemble, read_structure
-from jackettwin.structure.member_check import column_lengths, member_uses
+from jackettwin.structure.member_check import DesignBasis, member_uses
 from jackettwin.structure.model import STEEL, Member, Reaction
 
 TUBE = Section(1.0, 0.02)
@@ -34,7 +32,6 @@ def displaced(structure: Structure, **forces: tuple[float, ...]) -> tuple:
 def test_a_column_s_buckling_length_is_not_its_pieces() -> None:
     """A 10 m cantilever in two pieces has K·L = 20 m; 5 MN in compression: 1.18·81.20/298.70 = 0.32078."""
     structure = cantilever()
-    assert column_lengths(structure) == pytest.approx({"m0": 10.0, "m1": 10.0})
     uses = member_uses(*displaced(structure, n2=(0.0, 0.0, -5e6)))
     for use in uses:
         assert use.by_check["compression"] == pytest.approx(0.32078, rel=1e-4)
@@ -60,15 +57,26 @@ def test_the_worst_instant_counts() -> None:
         assert worst.by_check == pytest.approx(wanted, rel=1e-9)
 
 
-def test_columns_end_where_something_holds_them() -> None:
-    """jacket15: its tower is one column of 116 m, a leg's bay and a brace's half are columns of their own."""
-    structure = read_structure("jacket15")
-    lengths = column_lengths(structure)
-    assert [lengths[f"tower_{k}"] for k in (1, 6, 12)] == pytest.approx([116.0] * 3)
-    bay = np.linalg.norm(np.subtract(structure.nodes["leg_1_1"], structure.nodes["foot_1"]))
-    assert lengths["leg_1_bay_1"] == pytest.approx(bay)
-    held = replace(cantilever(), reactions=(Reaction("n0"), Reaction("n1")))
-    assert column_lengths(held)["m0"] == pytest.approx(5.0)
+def test_forces_are_those_of_the_worst_place_and_instant() -> None:
+    """A cantilever under (Fx, Fy, Fz) and a torque at its top: N = Fz, M = F·(L − z) (statics)."""
+    assembly, u = displaced(cantilever(), n2=(2e5, 1e5, -3e5, 0.0, 0.0, 4e5))
+    lower, upper = member_uses(assembly, np.stack([0.5 * u, u, 0.1 * u]))
+    # local axes of a vertical member: x up, y = −Y, z = X (structure.md)
+    root = (-3e5, -1e5, 2e5, 4e5, -2e6, -1e6)
+    assert (lower.worst.position, upper.worst.position) == (0.0, 0.0)
+    np.testing.assert_allclose(lower.worst.forces, root, rtol=1e-6)
+    np.testing.assert_allclose(lower.worst.end_forces[0], root, rtol=1e-6)
+    middle = (*root[:4], -1e6, -0.5e6)
+    np.testing.assert_allclose(lower.worst.end_forces[1], middle, rtol=1e-6)
+    np.testing.assert_allclose(upper.worst.forces, middle, rtol=1e-6)
+    assert upper.buckling == (2.0, 10.0)
+
+
+def test_a_factor_given_for_a_part_or_member_counts() -> None:
+    assembly, u = displaced(cantilever(), n2=(0.0, 0.0, -5e6))
+    lower, upper = member_uses(assembly, u, DesignBasis(K={"tower": 1.0, "m1": 0.7}))
+    assert (lower.buckling.K, upper.buckling.K) == (1.0, 0.7)
+    assert lower.by_check["compression"] > upper.by_check["compression"]
 
 
 def test_the_legs_stand_in_compression_under_the_weight() -> None:

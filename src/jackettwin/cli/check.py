@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import click
+import numpy as np
+import numpy.typing as npt
 from rich.table import Table
 
 from jackettwin.cli.console import output, print_json
@@ -15,9 +17,17 @@ from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses
 from jackettwin.structure import assemble, read_structure
+from jackettwin.structure.check import few
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.iso19902 import CHECKS, EDITIONS
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
+
+FloatArray = npt.NDArray[np.float64]
+
+_SHOWN = 15
+"""Members in the terminal."""
+_COMPONENTS = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
+_HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 
 
 @click.command("check")
@@ -107,6 +117,7 @@ def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
 
 
 def _row(use: MemberUse) -> dict[str, Any]:
+    worst = use.worst
     return {
         "member": use.member,
         "part": use.part,
@@ -114,8 +125,17 @@ def _row(use: MemberUse) -> dict[str, Any]:
         "check": use.check,
         "clause": CHECKS[use.check],
         "by_check": dict(use.by_check),
+        "effective_length_factor": use.buckling.K,
+        "column_length_m": use.buckling.L,
+        "governing": {"position": worst.position} | _forces(worst.forces),
+        "start": _forces(worst.end_forces[0]),
+        "end": _forces(worst.end_forces[1]),
         "covered": use.covered,
     }
+
+
+def _forces(six: FloatArray) -> dict[str, float]:
+    return dict(zip(_COMPONENTS, map(float, six), strict=True))
 
 
 def _warnings(uses: tuple[MemberUse, ...]) -> list[str]:
@@ -123,22 +143,41 @@ def _warnings(uses: tuple[MemberUse, ...]) -> list[str]:
     over = [use.member for use in uses if use.utilisation > 1.0]
     found = []
     if thin:
-        found.append(f"{len(thin)} members have D/t above 120, beyond ISO 19902 13: {', '.join(thin[:5])}")
+        found.append(f"D/t above 120, beyond ISO 19902 13: {few(thin)}")
     if over:
-        found.append(f"{len(over)} members are used above 1: {', '.join(over[:5])}")
+        found.append(f"used above 1: {few(over)}")
     return found
 
 
 def _print(document: dict[str, Any]) -> None:
-    table = Table(
-        "member", "part", "utilisation", "governed by", title=document["structure"], title_justify="left"
+    shown, left_out = document["members"][:_SHOWN], len(document["members"]) - _SHOWN
+    use = Table("member", "part", "utilisation", "governed by", "K", "L [m]", title_justify="left")
+    use.title = document["structure"]
+    forces = Table(
+        "member", "at", *_HEADINGS, title=r"section forces there \[kN, kN·m]", title_justify="left"
     )
-    for row in document["members"][:15]:
-        table.add_row(row["member"], row["part"], f"{row['utilisation']:.3f}", row["clause"])
-    output.print(table)
-    if len(document["members"]) > 15:
-        output.print(f"and {len(document['members']) - 15} more members")
+    for row in shown:
+        K, L = row["effective_length_factor"], row["column_length_m"]
+        use.add_row(
+            row["member"], row["part"], f"{row['utilisation']:.3f}", row["clause"], f"{K:g}", f"{L:.2f}"
+        )
+        governing = row["governing"]
+        forces.add_row(
+            row["member"], _place(governing["position"]), *(_kilo(governing[name]) for name in _COMPONENTS)
+        )
+    output.print(use)
+    output.print(forces)
+    if left_out > 0:
+        output.print(f"and {left_out} more members; --json has all of them, with the forces at both ends")
     if document["largest_von_mises_stress_pa"] is not None:
         output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
+
+
+def _kilo(value: float) -> str:
+    return f"{round(value / 1e3, 1) + 0.0:,.1f}"  # no minus before nothing
+
+
+def _place(position: float) -> str:
+    return {0.0: "start", 1.0: "end"}.get(position, f"{position:.2f} L")

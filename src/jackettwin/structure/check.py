@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,5 +99,14 @@ def _warnings(structure: Structure) -> Iterator[str]:
     for what, is_odd in oddities:
         names = [member.name for member in structure.members if is_odd(member)]
         if names:
-            more = f" and {len(names) - 5} more" if len(names) > 5 else ""
-            yield f"{what}: {', '.join(names[:5])}{more}"
+            yield f"{what}: {few(names)}"
+
+
+def few(names: Sequence[str], limit: int = 5) -> str:
+    """Return the first names of a list, and how many more there are.
+
+    >>> few(["a", "b", "c"], limit=2)
+    'a, b and 1 more'
+    """
+    more = f" and {len(names) - limit} more" if len(names) > limit else ""
+    return ", ".join(names[:limit]) + more

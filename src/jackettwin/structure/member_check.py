@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.forces import section_forces
+from jackettwin.structure.columns import columns
+from jackettwin.structure.forces import SectionForces, section_forces
 from jackettwin.structure.iso19902 import (
     CHECKS,
     MOST_SLENDER_WALL,
@@ -19,12 +20,9 @@ from jackettwin.structure.iso19902 import (
     strength,
     utilisation,
 )
-from jackettwin.structure.model import Structure
 
 FloatArray = npt.NDArray[np.float64]
 
-_STRAIGHT = 0.9998
-"""Cosine of the angle (about 1°) up to which two members in a row are one column."""
 _BLOCK = 512
 """Instants checked at a time."""
 
@@ -40,14 +38,40 @@ class DesignBasis:
     C_m : float
         Moment reduction factor; table 13.5-1 allows less than 1.
     K : mapping of part or member name to effective length factor
-        On the length between joints that hold a member; a tower is a cantilever, everything else 1 unless
-        given (table 13.5-1 allows 0.7 to 0.8 for braces).
+        On the length between joints that hold a member; unless given, 2 for a cantilever and 1 for everything
+        else (table 13.5-1 allows 0.7 to 0.8 for braces).
     """
 
     yield_strength_pa: float = 355e6
     edition: str = "2007"
     C_m: float = 1.0
-    K: Mapping[str, float] = field(default_factory=lambda: {"tower": 2.0})
+    K: Mapping[str, float] = field(default_factory=dict)
+
+
+class Buckling(NamedTuple):
+    """Effective length factor, and length [m] of the column a member is part of."""
+
+    K: float
+    L: float
+
+
+@dataclass(frozen=True)
+class Worst:
+    """Where along a member, and under which forces, its governing check is worst.
+
+    Attributes
+    ----------
+    position : float
+        0 at the member's start, 1 at its end.
+    forces : (6,) array
+        N, Vy, Vz, T, My, Mz there [N, N·m].
+    end_forces : (2, 6) array
+        The same at the member's start and end at that instant.
+    """
+
+    position: float
+    forces: FloatArray
+    end_forces: FloatArray
 
 
 @dataclass(frozen=True)
@@ -59,6 +83,8 @@ class MemberUse:
     utilisation: float
     check: str
     by_check: Mapping[str, float]
+    buckling: Buckling
+    worst: Worst
     covered: bool
     """Whether D/t ≤ 120, the scope of clause 13."""
 
@@ -84,44 +110,72 @@ def member_uses(
         If the edition is unknown.
     """
     basis = DesignBasis() if basis is None else basis
-    tube = _tubes(assembly, basis)
+    lengths = buckling_lengths(assembly, basis)
+    tube = _tubes(assembly, basis, lengths)
     cases = displacement.reshape(-1, assembly.n_dof)
-    worst = np.zeros((len(CHECKS), tube.D.size))
     spread = None if along is None else along.reshape(-1, *along.shape[-2:])
+    uses: tuple[MemberUse, ...] = ()
     for first in range(0, len(cases), _BLOCK):  # records are long
         here = slice(first, first + _BLOCK)
         held = spread if spread is None or len(spread) == 1 else spread[here]
-        stress = section_stress(assembly, cases[here], along=held)
-        U = utilisation(strength(tube), stress, C_m=basis.C_m, edition=basis.edition)
-        worst = np.maximum(worst, np.stack([u.max(axis=(0, 2)) for u in U]))
-    slender = (tube.D / tube.t)[:, 0]
-    uses = []
-    for index, member in enumerate(assembly.structure.members):
-        mine = assembly.mesh.member == index
-        by_check = dict(zip(CHECKS, map(float, worst[:, mine].max(axis=1)), strict=True))
-        covered = bool((slender[mine] <= MOST_SLENDER_WALL).all())
-        uses.append(_use(member.name, member.part, by_check, covered))
-    return tuple(uses)
+        forces = section_forces(assembly, cases[here], along=held)
+        U = utilisation(
+            strength(tube), section_stress(assembly, forces), C_m=basis.C_m, edition=basis.edition
+        )
+        found = _uses(assembly, np.stack(U), forces, lengths, (tube.D / tube.t)[:, 0])
+        uses = worst_uses(uses, found) if uses else found
+    return uses
 
 
 def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
     """Return the use of every member over two sets of cases."""
-    return tuple(
-        _use(a.member, a.part, {name: max(a.by_check[name], b.by_check[name]) for name in CHECKS}, a.covered)
-        for a, b in zip(first, second, strict=True)
-    )
+    found = []
+    for a, b in zip(first, second, strict=True):
+        worse = a if a.utilisation >= b.utilisation else b
+        by_check = {name: max(a.by_check[name], b.by_check[name]) for name in CHECKS}
+        found.append(replace(worse, by_check=by_check))
+    return tuple(found)
 
 
-def _use(member: str, part: str, by_check: dict[str, float], covered: bool) -> MemberUse:
-    governing = max(by_check, key=lambda name: by_check[name])
-    return MemberUse(member, part, by_check[governing], governing, by_check, covered)
+def _uses(
+    assembly: Assembly, U: FloatArray, forces: SectionForces, lengths: list[Buckling], slender: FloatArray
+) -> tuple[MemberUse, ...]:
+    """Return the use of every member from U, (n_checks, n_cases, n_elements, 2)."""
+    uses = []
+    for index, member in enumerate(assembly.structure.members):
+        mine = np.flatnonzero(assembly.mesh.member == index)
+        own = U[:, :, mine]
+        check, case, element, end = np.unravel_index(int(own.argmax()), own.shape)
+        N = np.stack([component[case, mine] for component in forces], axis=-1)
+        worst = Worst(float(element + end) / mine.size, N[element, end], np.stack([N[0, 0], N[-1, 1]]))
+        uses.append(
+            MemberUse(
+                member.name,
+                member.part,
+                float(own.max()),
+                list(CHECKS)[check],
+                dict(zip(CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=True)),
+                lengths[index],
+                worst,
+                bool((slender[mine] <= MOST_SLENDER_WALL).all()),
+            )
+        )
+    return tuple(uses)
 
 
-def section_stress(
-    assembly: Assembly, displacement: FloatArray, *, along: FloatArray | None = None
-) -> Stress:
+def buckling_lengths(assembly: Assembly, basis: DesignBasis) -> list[Buckling]:
+    """Return K and L of every member."""
+    runs = columns(assembly.structure)
+    found = []
+    for m in assembly.structure.members:
+        own = 2.0 if runs[m.name].is_cantilever else 1.0
+        K = basis.K.get(m.name, basis.K.get(m.part, own))
+        found.append(Buckling(K, runs[m.name].length_m))
+    return found
+
+
+def section_stress(assembly: Assembly, forces: SectionForces) -> Stress:
     """Return nominal stresses at both ends of every element, each (..., n_elements, 2) [Pa]."""
-    forces = section_forces(assembly, displacement, along=along)
     p = assembly.mesh.properties
     D, _ = _dimensions(assembly)
     Z_e = (2.0 * p.I / D)[:, None]
@@ -134,43 +188,6 @@ def section_stress(
     )
 
 
-def column_lengths(structure: Structure) -> dict[str, float]:
-    """Return the length of the straight run each member belongs to [m].
-
-    Members in a row are one column where nothing else holds their common node, as the pieces of a tower.
-    """
-    ends = Counter(node for m in structure.members for node in (m.start, m.end))
-    held = {r.node for r in structure.reactions} | {
-        n for k in structure.rigid_links for n in (k.leader, k.follower)
-    }
-    axis = {m.name: _axis(structure, m.start, m.end) for m in structure.members}
-    run = {m.name: m.name for m in structure.members}
-
-    def root(name: str) -> str:
-        while run[name] != name:
-            name = run[name]
-        return name
-
-    at: dict[str, str] = {}
-    for m in structure.members:
-        for node in (m.start, m.end):
-            other = at.setdefault(node, m.name)
-            if other == m.name or ends[node] != 2 or node in held:
-                continue
-            if abs(axis[m.name][0] @ axis[other][0]) > _STRAIGHT:
-                run[root(m.name)] = root(other)
-    total: dict[str, float] = defaultdict(float)
-    for name, (_, length) in axis.items():
-        total[root(name)] += length
-    return {name: total[root(name)] for name in run}
-
-
-def _axis(structure: Structure, start: str, end: str) -> tuple[FloatArray, float]:
-    along = np.subtract(structure.nodes[end], structure.nodes[start])
-    length = float(np.linalg.norm(along))
-    return along / length, length
-
-
 def _dimensions(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     """Return outer diameter and wall of every element from its area and second moment."""
     p = assembly.mesh.properties
@@ -179,12 +196,9 @@ def _dimensions(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     return D, 0.5 * (D - np.sqrt(np.maximum(inner, 0.0)))
 
 
-def _tubes(assembly: Assembly, basis: DesignBasis) -> Tube:
+def _tubes(assembly: Assembly, basis: DesignBasis, lengths: list[Buckling]) -> Tube:
     """Return every element's tube, (n_elements, 1)."""
-    members = assembly.structure.members
-    lengths = column_lengths(assembly.structure)
-    K = [basis.K.get(m.name, basis.K.get(m.part, 1.0)) for m in members]
-    KL = np.array([k * lengths[m.name] for k, m in zip(K, members, strict=True)])[assembly.mesh.member]
+    KL = np.array([K * L for K, L in lengths])[assembly.mesh.member]
     D, t = _dimensions(assembly)
-    columns = (D, t, assembly.mesh.properties.E, np.full_like(D, basis.yield_strength_pa), KL)
-    return Tube(*(column[:, None] for column in columns))
+    rows = (D, t, assembly.mesh.properties.E, np.full_like(D, basis.yield_strength_pa), KL)
+    return Tube(*(row[:, None] for row in rows))
