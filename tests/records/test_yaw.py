@@ -42,6 +42,23 @@ def test_fixed_yaw_is_the_closed_form() -> None:
     assert out.metadata["axes"] == "rotor"
 
 
+def test_sensors_on_the_nacelle_turn_with_it_and_are_not_turned_again() -> None:
+    along, across = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    channels = (
+        Channel("nac_x", direction=along, height_m=110.0, frame="nacelle"),
+        Channel("nac_y", direction=across, height_m=110.0, frame="nacelle"),
+        Channel("mid_x", direction=along, height_m=60.0),
+        Channel("mid_y", direction=across, height_m=60.0),
+    )
+    data = np.array([[1.0], [0.0], [0.0], [1.0]])  # at yaw 90°, fore-aft is global y
+    record = Record(data, 10.0, channels, conditions={"yaw_deg": 90.0})
+    out = to_rotor_axes(record, rename=False)
+    np.testing.assert_allclose(out.data[:, 0], [1.0, 0.0, 1.0, 0.0], atol=1e-15)
+    back = to_global_axes(out)
+    assert back.channels[0] == channels[0]
+    np.testing.assert_allclose(back.data[:2], data[:2])
+
+
 def test_turning_there_and_back_is_the_identity(tower: SimpleNamespace) -> None:
     record = turned(tower.record(1), np.linspace(0.0, 8.0, 12_000))
     back = to_global_axes(to_rotor_axes(record))

@@ -89,3 +89,11 @@ def test_what_cannot_be_turned_is_said(tmp_path: Path) -> None:
     none = seen(record.select(record.channel_names[::2]), tmp_path / "b.parquet")
     assert "not turned to the rotor's axes" in none.identification.warnings[0]
     assert len(none.identification.channels) == 4
+
+
+def test_turning_and_fixed_sensors_without_a_yaw_are_said(tmp_path: Path) -> None:
+    record = turned("pile_U12_s301", np.array(0.0))
+    top = tuple(replace(c, frame="nacelle") if c.name.startswith("acc_top") else c for c in record.channels)
+    found = seen(replace(record, channels=top, conditions={}), tmp_path / "a.parquet")
+    assert any("the yaw is not known" in line for line in found.identification.warnings)
+    assert {c.frame for c in found.record.channels} == {"nacelle", "global"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 FloatArray = npt.NDArray[np.float64]
+
+Frame = Literal["global", "nacelle"]
 
 LARGEST = 1e15
 """No sensor reads more than this in SI units; what does is damage, and would overflow when squared."""
@@ -30,7 +32,8 @@ class Channel:
 
     ``height_m`` is above mean sea level on the tower axis; ``node`` names a node of the structure
     instead. ``direction`` is a unit vector in global axes (in the rotor's after ``to_rotor_axes``);
-    zeros for a scalar quantity.
+    zeros for a scalar quantity. ``frame`` is ``"nacelle"`` for a sensor that turns with the yaw: its
+    direction is in the rotor's axes from the start.
     """
 
     name: str
@@ -39,6 +42,7 @@ class Channel:
     height_m: float | None = None
     node: str | None = None
     direction: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    frame: Frame = "global"
 
 
 @dataclass(frozen=True)

@@ -44,9 +44,10 @@ def to_rotor_axes(
 
     The yaw is the argument (a number or one for every sample), else the record's channel of quantity
     yaw, sample by sample, else ``conditions["yaw_deg"]``. Two horizontal channels at one place need not
-    lie along x and y. One without a partner cannot be rotated and is left out; its name is kept in
-    ``metadata["without_partner"]``. Remove offsets first: a turning nacelle makes signals of them.
-    Without ``rename`` channels keep their names, the one nearer to x becoming the fore-aft one.
+    lie along x and y; those of frame ``nacelle`` are in these axes already. One without a partner cannot
+    be rotated and is left out; its name is kept in ``metadata["without_partner"]``. Remove offsets first: a
+    turning nacelle makes signals of them. Without ``rename`` channels keep their names, the one nearer to x
+    becoming the fore-aft one.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def yaw_of(record: Record) -> FloatArray:
 
 
 def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str] | None) -> Record:
-    """Rotate every pair by ``yaw``; what is not horizontal stays as it is."""
+    """Rotate every pair by ``yaw``; what is not horizontal, or turns with the nacelle, stays as it is."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     data, channels = record.data.copy(), list(record.channels)
     pairs = list(_pairs(record))
@@ -110,7 +111,7 @@ def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str] | None) ->
         channels[i] = _turned(channels[i], names[0], (1.0, 0.0, 0.0))
         channels[j] = _turned(channels[j], names[1], (0.0, 1.0, 0.0))
     paired = {i for pair in pairs for i in pair}
-    alone = [i for i, channel in enumerate(channels) if _is_horizontal(channel) and i not in paired]
+    alone = [i for i, channel in enumerate(channels) if _rotates(channel) and i not in paired]
     kept = [i for i in range(len(channels)) if i not in alone]
     metadata = dict(record.metadata)
     if alone:
@@ -120,7 +121,7 @@ def _rotate(record: Record, yaw: FloatArray, endings: tuple[str, str] | None) ->
 
 def _pairs(record: Record) -> Iterator[tuple[int, int]]:
     """Yield the horizontal channels of one quantity and place, the one nearer to x first."""
-    left = [i for i, channel in enumerate(record.channels) if _is_horizontal(channel)]
+    left = [i for i, channel in enumerate(record.channels) if _rotates(channel)]
     while left:
         i = left.pop(0)
         first = record.channels[i]
@@ -132,7 +133,13 @@ def _pairs(record: Record) -> Iterator[tuple[int, int]]:
                 break
 
 
-def _is_horizontal(channel: Channel) -> bool:
+def _rotates(channel: Channel) -> bool:
+    """Tell whether a channel is horizontal and fixed to the structure below the nacelle."""
+    return channel.frame == "global" and is_horizontal(channel)
+
+
+def is_horizontal(channel: Channel) -> bool:
+    """Tell whether a channel measures horizontal motion."""
     x, y, z = channel.direction
     return channel.quantity in VIBRATIONS and abs(z) < 1e-3 and (x, y) != (0.0, 0.0)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from math import degrees
 from time import perf_counter
@@ -70,7 +70,7 @@ def simulate(scenario: Scenario) -> Simulation:
     record = Record(
         data=np.vstack([data, *(row[None] for row in signals.values())]),
         sample_rate_hz=1.0 / step,
-        channels=(*(_channel(i) for i in scenario.instruments), *map(_signal_channel, signals)),
+        channels=(*_channels(scenario.instruments), *map(_signal_channel, signals)),
         start_utc=_START,
         conditions=conditions(scenario),
         metadata={
@@ -115,6 +115,13 @@ def conditions(scenario: Scenario) -> dict[str, Any]:
         "wave_direction_deg": None if sea is None or sea.waves is None else degrees(sea.direction),
         "wave_seed": None if sea is None or sea.waves is None else sea.seed,
     }
+
+
+def _channels(instruments: tuple[Instrument, ...]) -> tuple[Channel, ...]:
+    """Return the channels; among fixed sensors, those on the nacelle say that they turn."""
+    if _axes(instruments):
+        return tuple(map(_channel, instruments))
+    return tuple(replace(_channel(i), frame="nacelle" if i.on_nacelle else "global") for i in instruments)
 
 
 def _channel(instrument: Instrument) -> Channel:

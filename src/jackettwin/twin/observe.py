@@ -16,7 +16,7 @@ from jackettwin.records.conditions import with_conditions
 from jackettwin.records.findings import ChannelQuality
 from jackettwin.records.quality import Quality
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
-from jackettwin.records.yaw import knows_yaw, to_rotor_axes, yaw_of
+from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
 
 WORTH_SAYING = 1e-3
@@ -106,8 +106,12 @@ def in_rotor_axes(record: Record, source: Record) -> tuple[Record, tuple[str, ..
     Channels keep their names, so that records at different yaw compare and sensors find them: the one
     nearer to global x is the fore-aft one. A yaw that is zero throughout changes nothing.
     """
-    if record.metadata.get("axes") == "rotor" or not knows_yaw(source):
+    if record.metadata.get("axes") == "rotor":
         return record, ()
+    if not knows_yaw(source):
+        frames = {channel.frame for channel in record.channels if is_horizontal(channel)}
+        mixed = "the yaw is not known: sensors on the nacelle are taken to stand as the fixed ones do"
+        return record, (mixed,) if len(frames) > 1 else ()
     yaw = yaw_of(source)
     if not np.any(yaw):
         return record, ()

@@ -15,6 +15,7 @@ from pydantic import ConfigDict, Field
 
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.files import Schema, validate
+from jackettwin.records.record import Frame
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,6 +39,7 @@ class ChannelEntry(Schema):
     height_m: float | None = None
     node: str | int | None = None
     direction: tuple[float, float, float] | None = None
+    frame: Frame | None = None
 
 
 class _File(Schema):
@@ -153,6 +155,7 @@ def describe(record: Record) -> dict[str, Any]:
             "height_m": c.height_m,
             "node": c.node,
             "direction": list(c.direction),
+            **({} if c.frame == "global" else {"frame": c.frame}),
         }
         for c in record.channels
     }

@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 WITH_TIME, WITHOUT_TIME, UNCOMPRESSED, NAME_LENGTH_IN_FILE = 1, 2, 3, 4
 DEFAULT_NAME_LENGTH = 10
 MOST_HEADER_LINES = 50
-# ElastoDyn's accelerations end in the axis and the letter of their frame: YawBrTAxp, TwHt1ALxt, NcIMUTAxs.
-_AXIS = re.compile(r"(?:TA|AL)([xyz])[a-z]?$")
+# ElastoDyn's accelerations end in the axis and the letter of their frame: YawBrTAxp, TwHt1ALxt, and
+# NcIMUTAxs, which turns with the nacelle.
+_AXIS = re.compile(r"(?:TA|AL)([xyz])([a-z]?)$")
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -103,7 +104,8 @@ def _entry(name: str, unit: str) -> ChannelEntry:
     match = _AXIS.search(name)
     axis = "xyz".index(match[1]) if match else None
     direction = None if axis is None else (float(axis == 0), float(axis == 1), float(axis == 2))
-    return ChannelEntry(unit=unit, direction=direction)
+    turns = match is not None and match[2] == "s"
+    return ChannelEntry(unit=unit, direction=direction, frame="nacelle" if turns else None)
 
 
 def _number(cell: str) -> float:

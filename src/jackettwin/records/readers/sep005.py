@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
 REQUIRED = ("name", "data", "unit_str")
-OWN_KEYS = ("quantity", "height_m", "node", "direction")
+OWN_KEYS = ("quantity", "height_m", "node", "direction", "frame")
 KNOWN = {*REQUIRED, *OWN_KEYS, "fs", "time", "start_timestamp"}
 
 
@@ -61,6 +61,7 @@ def to_sep005(record: Record) -> list[dict[str, Any]]:
         own: dict[str, Any] = {"quantity": channel.quantity, "direction": list(channel.direction)}
         own |= {} if channel.height_m is None else {"height_m": channel.height_m}
         own |= {} if channel.node is None else {"node": channel.node}
+        own |= {} if channel.frame == "global" else {"frame": channel.frame}
         further = record.metadata.get(CHANNEL_METADATA, {}).get(channel.name, {})
         signal = {"name": channel.name, "data": row.copy(), "unit_str": channel.unit, **shared, **own}
         signals.append({**further, **signal})

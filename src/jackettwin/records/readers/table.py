@@ -217,6 +217,7 @@ def _channel(name: str, own: ChannelEntry | None, given: ChannelEntry | None) ->
         height_m=merged.get("height_m"),
         node=None if node is None else str(node),
         direction=direction,
+        frame=merged.get("frame") or "global",
     )
     return channel, factor
 
