@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from jackettwin.errors import InputError
 from jackettwin.identification import Identification, IdentificationSettings, identify
-from jackettwin.identification.picks import Pick, parse_picks, plain_picks
+from jackettwin.identification.picks import Pick, parse_picks, plain_picks, refuse_strangers
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 
@@ -107,3 +107,12 @@ def test_bad_picks_are_named(data: object, field: str) -> None:
 def test_efdd_has_no_poles(record: Record) -> None:
     with pytest.raises(InputError, match="has no poles to pick from"):
         identify(record, IdentificationSettings(method="efdd"), picks=[Pick(0.3)])
+
+
+def test_picks_of_which_none_concerns_the_records_are_a_mistake() -> None:
+    picks = (Pick(0.2, record="day_1"), Pick(0.3, record="day_2"))
+    refuse_strangers(picks, ["day_2", "day_3"])
+    refuse_strangers((*picks, Pick(0.4)), ["day_9"])
+    refuse_strangers((), ["day_9"])
+    with pytest.raises(InputError, match="no pick concerns .*day_1, day_2.*allowed: day_9"):
+        refuse_strangers(picks, ["day_9"])

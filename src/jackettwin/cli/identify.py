@@ -17,7 +17,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.comparison import compare_methods
-from jackettwin.identification.picks import Pick, parse_picks
+from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.twin import observation_document, observe
 from jackettwin.twin.document import comparison_document
@@ -79,9 +79,9 @@ def identify_command(
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
     settings = _settings(settings_file, method, real_poles)
-    picks = _picks(picks_file)
     _refuse_format(out)
     files = record_files(records)
+    picks = _picks(picks_file, files)
     _refuse_many(files, {"--compare": compare, "--report": report is not None})
     if len(files) == 1:
         _deliver(_one(files[0], settings, drop_dead, picks, compare, report), out, as_json, _print_one)
@@ -116,7 +116,12 @@ def _export(document: Mapping[str, Any], out: Path) -> None:
 def _refuse_many(files: Sequence[Path], options: Mapping[str, bool]) -> None:
     for option, given in options.items():
         if given and len(files) > 1:
-            raise InputError("takes one record", field=option, value=f"{len(files)} records")
+            raise InputError(
+                "takes one record",
+                field=option,
+                value=f"{len(files)} records",
+                remedy="run it once a record",
+            )
 
 
 def _one(
@@ -170,11 +175,13 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
     return replace(settings, real_poles=True) if real_poles else settings
 
 
-def _picks(path: str | None) -> tuple[Pick, ...]:
+def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:
     if path is None:
         return ()
     with located(file=path):
-        return parse_picks(read_mapping(path, what="file of picks"))
+        picks = parse_picks(read_mapping(path, what="file of picks"))
+        refuse_strangers(picks, [file.stem for file in files])
+        return picks
 
 
 def _folder(out: Path) -> bool:

@@ -20,6 +20,7 @@ _KEYS: dict[str, tuple[tuple[type, ...], str]] = {
     "record": ((str,), "the name of a record, or null"),
     "doubtful": ((bool,), "true or false"),
 }
+_SHOWN_NAMES = 5
 _NEEDED = ("frequency_hz", "doubtful")
 
 
@@ -78,6 +79,25 @@ def plain_picks(picks: Sequence[Pick]) -> list[dict[str, Any]]:
 def of_record(picks: Sequence[Pick], name: str) -> tuple[Pick, ...]:
     """Return the picks that concern a record."""
     return tuple(pick for pick in picks if pick.record in (None, name))
+
+
+def refuse_strangers(picks: Sequence[Pick], names: Sequence[str]) -> None:
+    """Refuse picks of which none concerns the records: a misspelt name would choose nothing, silently.
+
+    Raises
+    ------
+    InputError
+        If there are picks and each names a record that is not there.
+    """
+    if picks and not any(of_record(picks, name) for name in names):
+        named = sorted({pick.record for pick in picks if pick.record is not None})
+        raise InputError(
+            "no pick concerns these records",
+            field="picks.record",
+            value=", ".join(named),
+            allowed=", ".join(names[:_SHOWN_NAMES]) + (", …" if len(names) > _SHOWN_NAMES else ""),
+            remedy="name a record, or null for every one",
+        )
 
 
 def _pick(entry: Any, field: str) -> Pick:

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.picks import Pick, parse_picks
+from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.water import Water
 from jackettwin.response.sensors import Sensor
@@ -219,7 +219,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         records=tuple(path.parent / record for record in schema.records),
         targets=tuple(Target(**target.model_dump()) for target in schema.targets),
         identification=_identification(schema.identification),
-        picks=_picks(schema.identification, path.parent),
+        picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
         update=_update_settings(schema, path.parent),
     )
 
@@ -229,15 +229,19 @@ def _identification(given: dict[str, Any]) -> IdentificationSettings:
         return IdentificationSettings.from_mapping({k: v for k, v in given.items() if k != "picks"})
 
 
-def _picks(given: dict[str, Any], folder: Path) -> tuple[Pick, ...]:
+def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pick, ...]:
     """Return the picks of ``identification.picks``: a list, or the name of a file of them."""
-    picks = given.get("picks")
-    if isinstance(picks, str):
-        path = folder / picks
+    source = given.get("picks")
+    if isinstance(source, str):
+        path = folder / source
         with located(file=path):
-            return parse_picks(read_mapping(path, what="file of picks"))
+            picks = parse_picks(read_mapping(path, what="file of picks"))
+            refuse_strangers(picks, records)
+            return picks
     with located(field="identification"):
-        return () if picks is None else parse_picks(picks)
+        picks = () if source is None else parse_picks(source)
+        refuse_strangers(picks, records)
+        return picks
 
 
 def _check_update(update: UpdateSchema) -> None:
