@@ -1,6 +1,7 @@
 """Scenario files: what they mean, and what is refused with file, field and remedy."""
 
 from math import pi
+from pathlib import Path
 
 import pytest
 
@@ -60,6 +61,24 @@ def test_water_as_a_hydrodyn_user_gives_it(scenario_file) -> None:
     assert c.growth == (GrowthBand(2.0, -40.0, 0.1, 0.05, 1400.0, 1300.0),)
     assert (c.bare, c.grown) == (Strip(0.8, 1.0, 0.9), Strip(1.1, 1.0, 0.9))
     assert c.tables == (StripTable((0.0,), (Strip(0.7, 1.0, 0.9),), (Strip(0.7, 0.9, 0.9),), ("tower",)),)
+
+
+def test_water_of_a_hydrodyn_file(scenario_file, tmp_path) -> None:
+    """Beside the scenario; what it says must not be said again."""
+    text = (Path(__file__).parents[1] / "data/hydrodyn/members.dat").read_text(encoding="utf-8")
+    simple = text.replace("1.0         2        F", "1.0         1        F").replace(
+        "3        F", "1        F"
+    )
+    filled = simple.replace("     1   NFillGroups", "     0   NFillGroups")
+    (tmp_path / "hd.dat").write_text(filled, encoding="utf-8")
+    sea = read_scenario(scenario_file(water={"hydrodyn": "hd.dat", "density": 1000.0})).sea
+    assert sea is not None and sea.water is not None
+    assert sea.coefficients.bare == Strip(0.65, 1.0, 1.0)
+    assert (sea.coefficients.density_kg_m3, sea.ends.drag) == (1000.0, 0.2)
+    with pytest.raises(InputError, match="water.drag.*HydroDyn file already"):
+        read_scenario(scenario_file(water={"hydrodyn": "hd.dat", "drag": 1.0}))
+    with pytest.raises(InputError, match="hd2.dat: water.hydrodyn: no such"):
+        read_scenario(scenario_file(water={"hydrodyn": "hd2.dat"}))
 
 
 GROWN = {"z_m": 0.0, "thickness_m": 0.1}

@@ -11,7 +11,6 @@ import numpy as np
 from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
-from jackettwin.loads.ends import EndCoefficients
 from jackettwin.loads.files import read_rotor
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
@@ -26,7 +25,7 @@ from jackettwin.simulate.schema import (
     WavesSchema,
     WindSchema,
 )
-from jackettwin.simulate.water_files import WaterSchema, carried_water, water_coefficients
+from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Structure
 
 REGULAR = ("airy", "stokes5", "stream")
@@ -74,7 +73,7 @@ def scenario_from(data: Any, path: Path) -> Scenario:
             name=path.stem,
             path=path,
             asset=asset,
-            sea=_sea(schema, asset.structure),
+            sea=_sea(schema, asset.structure, path.parent),
             air=_air(schema, asset.structure, turbine),
             turbine=turbine,
             clock=_clock(schema.time),
@@ -139,19 +138,20 @@ def _mean_heading(path: tuple[tuple[float, float], ...]) -> float:
     return float(np.trapezoid(yaw, at) / (at[-1] - at[0]))
 
 
-def _sea(schema: ScenarioSchema, structure: Structure) -> Sea | None:
+def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | None:
     c, w = schema.current, schema.waves
     if schema.water is None and w is None and c is None:
         return None
     given = schema.water or WaterSchema()
-    coefficients, water = water_coefficients(given), carried_water(given, structure)
+    members = water_members(given, structure, folder)
+    coefficients, ends = members.coefficients, members.ends
+    water = members.water if members.adds_mass else None
     depth = depth_of(given, structure)
     current = (
         None
         if c is None
         else Current(depth, c.subsurface_m_s, c.wind_driven_m_s, radians(c.direction_deg), c.uniform_m_s)
     )
-    ends = EndCoefficients(given.ends.pressure, given.ends.added_mass, given.ends.drag)
     if w is None:
         return Sea(depth, coefficients, water, current=current, ends=ends)
     with located(field="waves"):

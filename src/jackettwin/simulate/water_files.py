@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
@@ -18,6 +19,8 @@ from jackettwin.loads.coefficients import (
     StripTable,
     require_members,
 )
+from jackettwin.loads.ends import EndCoefficients
+from jackettwin.loads.hydrodyn_deck import read_hydrodyn
 from jackettwin.loads.water import Water
 from jackettwin.structure import Structure
 
@@ -79,11 +82,54 @@ class WaterSchema(Schema):
     growth_density: Positive = GROWTH_KG_M3
     flooded: bool | list[str] = []
     ends: EndsSchema = EndsSchema()
+    hydrodyn: str | None = None
+    """A HydroDyn input file that says all of this, but depth, density and ``adds_mass``."""
     adds_mass: bool | None = None
 
 
-def water_coefficients(w: WaterSchema) -> Coefficients:
+class Members(NamedTuple):
+    """What members are in the water: coefficients, also of their ends, what is flooded.
+
+    ``adds_mass`` tells whether growth and water go into the mass, or the structure's holds them already.
+    """
+
+    coefficients: Coefficients
+    ends: EndCoefficients
+    water: Water
+    adds_mass: bool
+
+
+def water_members(w: WaterSchema, structure: Structure, folder: Path) -> Members:
+    """Return what ``water`` says of members; a HydroDyn file is sought in ``folder``.
+
+    Raises
+    ------
+    InputError
+        If members or parts are not the structure's, or a HydroDyn file is given beside its own content.
+    """
+    if w.hydrodyn is None:
+        ends = EndCoefficients(w.ends.pressure, w.ends.added_mass, w.ends.drag)
+        coefficients, flooded = _coefficients(w, structure), _flooded(w, structure)
+    else:
+        twice = sorted(w.model_fields_set - {"hydrodyn", "depth_m", "density", "adds_mass"})
+        if twice:
+            raise InputError(
+                "given by the HydroDyn file already",
+                field=f"water.{twice[0]}",
+                remedy="leave one of them out",
+            )
+        with located(field="water.hydrodyn"):
+            coefficients, ends, flooded = read_hydrodyn(
+                folder / w.hydrodyn, structure, density_kg_m3=w.density
+            )
+    adds = bool(coefficients.growth or flooded) if w.adds_mass is None else w.adds_mass
+    return Members(coefficients, ends, Water(flooded), adds)
+
+
+def _coefficients(w: WaterSchema, structure: Structure) -> Coefficients:
     """Return the coefficients of members and the growth on them."""
+    names = [(m.name, m.part) for m in structure.members]
+    require_members((m for t in w.coefficients for m in t.members), names, "water.coefficients.members")
     bare = Strip(w.drag, w.added_mass, w.pressure)
     grown = _strip(w.with_growth, bare)
     with located(field="water.marine_growth"):
@@ -93,18 +139,12 @@ def water_coefficients(w: WaterSchema) -> Coefficients:
     return Coefficients(w.drag, w.added_mass, w.pressure, growth, grown, tables, w.density)
 
 
-def carried_water(w: WaterSchema, structure: Structure) -> Water | None:
-    """Return what moves with the structure, None if its mass holds it already."""
-    names = [(m.name, m.part) for m in structure.members]
+def _flooded(w: WaterSchema, structure: Structure) -> tuple[str, ...]:
     if isinstance(w.flooded, bool):
         below = {m.name for m in structure.members if m.part not in ("tower", "piles")}
-        flooded = tuple(sorted(below)) if w.flooded else ()
-    else:
-        flooded = tuple(w.flooded)
-    require_members(flooded, names, "water.flooded")
-    require_members((m for t in w.coefficients for m in t.members), names, "water.coefficients.members")
-    adds = bool(w.marine_growth or flooded) if w.adds_mass is None else w.adds_mass
-    return Water(flooded) if adds else None
+        return tuple(sorted(below)) if w.flooded else ()
+    require_members(w.flooded, [(m.name, m.part) for m in structure.members], "water.flooded")
+    return tuple(w.flooded)
 
 
 def _strip(given: StripSchema | None, default: Strip) -> Strip:

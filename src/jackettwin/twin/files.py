@@ -13,10 +13,9 @@ from jackettwin.files import Schema, find_file, read_mapping, read_yaml, shipped
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads.conditions import SeaState
-from jackettwin.loads.water import Water
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.files import depth_of
-from jackettwin.simulate.water_files import WaterSchema, carried_water, water_coefficients
+from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure, read_structure
 from jackettwin.structure.files import BodySchema
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
@@ -212,7 +211,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         gravity=schema.gravity,
         rayleigh=Rayleigh() if damping is None else Rayleigh.minimum(damping.ratio, damping.frequency_hz),
         rayleigh_ratio=0.0 if damping is None else damping.ratio,
-        water=_water(schema, structure),
+        water=_water(schema, structure, path.parent),
         tie=schema.support.tie,
         heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
@@ -283,19 +282,18 @@ def _structure(schema: TwinSchema, folder: Path) -> Structure:
     return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
 
 
-def _water(schema: TwinSchema, structure: Structure) -> WaterConfig | None:
+def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfig | None:
     """Return the water; a sea alone is water without growth."""
     sea, given = schema.sea, schema.water
     if sea is None and given is None:
         return None
     given = given or WaterSchema()
-    coefficients, carried = water_coefficients(given), carried_water(given, structure)
-    flooded = carried_water(given.model_copy(update={"adds_mass": True}), structure) or Water()
+    members = water_members(given, structure, folder)
     return WaterConfig(
         depth_m=depth_of(given, structure),
-        coefficients=coefficients,
-        carried=flooded,
-        adds_mass=carried is not None,
+        coefficients=members.coefficients,
+        carried=members.water,
+        adds_mass=members.adds_mass,
         sea=None if sea is None else SeaState(sea.hs_m, sea.tp_s, radians(sea.direction_deg)),
     )
 
