@@ -113,3 +113,15 @@ def test_a_set_with_a_mode_too_many_is_not_certified(
 
     monkeypatch.setattr(certified, "_distinct", with_one_more)
     assert not all_modes(condensed, rows, AB).certified
+
+
+@pytest.mark.parametrize("law", [kelvin_voigt(2.5e9, 7.6e8), Springpot(3e9, 0.06, 1.15)])
+def test_many_retained_modes_are_eliminated_without_loss(jacket15, law: Law) -> None:
+    """Some of the thirty retained modes are beside their resonance on fixed feet."""
+    steel = Rayleigh.minimum(0.003, 0.6)
+    system = build_system(jacket15, on_translations(jacket15.structure, law), rayleigh=steel)
+    wide = condense(system, below_hz=3.0)
+    found = all_modes(wide, law_rows([law]), np.array([steel.alpha, steel.beta]))
+    exact = damped_modes(system, below_hz=found.radius / (2.0 * np.pi))
+    assert found.certified and found.poles.size == 18
+    np.testing.assert_allclose(found.poles, exact.eigenvalues, rtol=1e-8)

@@ -1,11 +1,15 @@
 """Supports of a structure."""
 
+from dataclasses import replace
+
 import numpy as np
 from tests.response.conftest import DECK
 
 from jackettwin.soil import clamped, on_translations, own_support, pinned
+from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import kelvin_voigt
 from jackettwin.structure import read_structure
+from jackettwin.structure.model import Reaction
 
 FEET = ("foot_1", "foot_2", "foot_3", "foot_4")
 
@@ -32,3 +36,11 @@ def test_a_deck_brings_its_pile_head_stiffness() -> None:
     for spring in support.springs:
         assert spring.matrix[2, 2] > 0.0
         assert np.count_nonzero(spring.matrix) == 1
+
+
+def test_modes_are_numbered_on_pins_unless_these_let_the_structure_turn() -> None:
+    structure = read_structure("jacket15")
+    assert standing(structure) == pinned(structure)
+    for feet in (("foot_1",), ("foot_1", "foot_2")):
+        leaning = replace(structure, reactions=tuple(Reaction(node, (True,) * 6) for node in feet))
+        assert standing(leaning) == clamped(leaning)

@@ -7,13 +7,19 @@ from jackettwin.errors import InputError
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.support import Support, pinned
-from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.soil.support import Spring, Support, pinned
+from jackettwin.soil.viscoelastic import Prony
+from jackettwin.structure import Assembly, Rayleigh, assemble
+from jackettwin.structure.model import STEEL, Member, PointMass, Reaction, Section, Structure
 from jackettwin.updating import family, support_model
 from jackettwin.updating.feet import TIES, feet, priors_of
 from jackettwin.updating.model import SupportModel
 
 F1 = 0.1832
+HEAD = np.diag([6e8, 6e8, 4e9, 3e11, 3e11, 6e10])
+HEAD[0, 4] = HEAD[4, 0] = -9e9
+HEAD[1, 3] = HEAD[3, 1] = 9e9
+"""Of a pile of 6 m diameter in medium sand [N/m, N, N·m]."""
 
 
 @pytest.fixture(scope="module")
@@ -80,3 +86,43 @@ def test_gradients_on_heads_are_differences(jacket15: Assembly, heads: Support) 
 def test_rigid_heads_are_refused(jacket15: Assembly) -> None:
     with pytest.raises(InputError, match="no stiffness that a law could scale"):
         feet(jacket15.structure, "all", heads=pinned(jacket15.structure))
+
+
+@pytest.fixture(scope="module")
+def monopile() -> Assembly:
+    pile, tower = Section(6.0, 0.06), Section(5.0, 0.03)
+    return assemble(
+        Structure(
+            name="monopile",
+            nodes={"foot": (0.0, 0.0, 0.0), "tp": (0.0, 0.0, 40.0), "top": (0.0, 0.0, 117.0)},
+            members=(
+                Member("pile", "foot", "tp", pile, pile, STEEL),
+                Member("tower", "tp", "top", tower, tower, STEEL),
+            ),
+            masses=(PointMass("top", 350e3, (-0.4, 0.0, 2.0)),),
+            reactions=(Reaction("foot", (True,) * 6),),
+            subdivide=4,
+        )
+    )
+
+
+def test_a_monopile_is_numbered_clamped_and_fitted_on_its_pile_head(monopile: Assembly) -> None:
+    head = Support(springs=(Spring("foot", HEAD, Prony(k0=1.0)),))
+    model = support_model(
+        monopile,
+        family=family("maxwell-3"),
+        rayleigh=Rayleigh.minimum(0.005, 0.25),
+        tie="horizontal-vertical",
+        heads=head,
+        highest_mode=5,
+    )
+    exact = undamped_modes(build_system(monopile, head), 5).frequency_hz
+    k_h, k_v = model.feet.stiffness
+    found = model.predict(np.array([k_h, 1e-4, k_v, 1e-4]), (1, 2, 4)).poles
+    # a loss factor of 1e-4 stiffens the head by as much again up to the second bending mode
+    np.testing.assert_allclose(np.abs(found) / (2 * np.pi), exact[[0, 1, 3]], rtol=2e-4)
+
+
+def test_a_monopile_needs_springs_that_hold_rotations(monopile: Assembly) -> None:
+    with pytest.raises(InputError, match="support.stiffness: .*turns over.*6×6"):
+        support_model(monopile, family=family("maxwell-3"), rayleigh=Rayleigh.minimum(0.005, 0.25))

@@ -84,8 +84,8 @@ def test_with_much_data_it_is_the_laplace_approximation(model: SupportModel) -> 
     residuals = record_of(model, 1e5)
     posterior = sample_posterior(single(model, residuals), particles=120, islands=3, seed=1)
     laplace = np.sqrt(np.diag(log_covariance(single(model, residuals), TRUTH)))
-    # 360 draws know a standard deviation to 4 %, correlated ones to about 10 %
-    np.testing.assert_allclose(posterior.log_theta.std(axis=0), laplace, rtol=0.25)
+    # some 500 effective draws know a standard deviation to 3 %; the posterior is not quite normal
+    np.testing.assert_allclose(posterior.log_theta.std(axis=0), laplace, rtol=0.12)
     np.testing.assert_allclose(posterior.log_theta.mean(axis=0), np.log(TRUTH), atol=0.5 * laplace.max())
 
 
@@ -98,7 +98,7 @@ def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
 
 
 def test_islands_that_disagree_are_no_posterior(model: SupportModel) -> None:
-    with pytest.raises(NumericalError, match="did not converge: R-hat"):
+    with pytest.raises(NumericalError, match="did not converge"):
         sample_posterior(single(model, record_of(model, 6e5)), particles=6, islands=4)
 
 

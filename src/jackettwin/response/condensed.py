@@ -35,6 +35,7 @@ from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.system import Group, Matrix, Pencil, System
+from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure.eigen import lowest_modes
 
@@ -67,8 +68,8 @@ class Condensed:
     basis : (assembly.n_dof, n) shapes of the coordinates
     boundary : (n_boundary,) DOFs of the assembly
     pinned : UndampedModes
-        With the supports' translations held, in these coordinates: they count the modes. Other boundary
-        DOFs (a nacelle's dashpot) are free in them.
+        With the supports' translations held (a monopile's rotations, too), in these coordinates: they count
+        the modes. Other boundary DOFs (a nacelle's dashpot) are free in them.
     radius : float
         F is exact for |λ| up to here [rad/s].
     terms : (n_terms, n_pairs) K_B, M_B, moments R_k, then p_j p_jᵀ of the summed modes; upper triangles
@@ -287,8 +288,12 @@ def _entries(pencil: Pencil) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
 
 
 def _held(system: System, boundary: IntArray) -> IntArray:
-    """Return the coordinates of the boundary that pinned supports would hold."""
-    pins = [system.assembly.dofs(spring.node)[list(TRANSLATIONS)] for spring in system.support.springs]
+    """Return the coordinates of the boundary that the feet modes are numbered on would hold."""
+    held = dict(standing(system.assembly.structure).fixed)
+    pins = [
+        system.assembly.dofs(spring.node)[list(held.get(spring.node, TRANSLATIONS))]
+        for spring in system.support.springs
+    ]
     return np.flatnonzero(np.isin(boundary, pins))
 
 

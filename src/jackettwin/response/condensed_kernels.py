@@ -10,10 +10,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.response.condensed_matrix import compiled, factor, fill, law_derivatives, solve, times
+from jackettwin.response.condensed_matrix import (
+    compiled,
+    eliminate,
+    factor,
+    fill,
+    law_derivatives,
+    solve,
+    solve_eliminated,
+    times,
+)
 
 _MAX_STEPS = 30
 _MAX_DEPTH = 24
+
+
+@compiled
+def _matrices(n):
+    """Return room for F, dF/ds and what elimination leaves of F."""
+    shape = (n, n)
+    return np.empty(shape, np.complex128), np.empty(shape, np.complex128), np.empty(shape, np.complex128)
 
 
 @compiled
@@ -38,10 +54,11 @@ def refine(model, rows, rayleigh, which, values, vectors, tolerance):
     ``which`` (n_starts,) is the parameter set of each start. Returns (n_starts,) booleans: converged.
     """
     n = vectors.shape[1]
-    n_pairs = model[0].shape[1]
-    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    n_pairs, w2 = model[0].shape[1], model[4]
+    F, dF, G = _matrices(n)
     s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
-    u, y, pivot = np.empty(n, np.complex128), np.empty(n, np.complex128), np.empty(n, np.int64)
+    u, y, room = np.empty(n, np.complex128), np.empty(n, np.complex128), np.empty(n, np.complex128)
+    pivot, place = np.empty(n, np.int64), np.empty(w2.size, np.int64)
     done = np.zeros(values.size, np.bool_)
     for m in range(values.size):
         laws, a, b = rows[which[m]], rayleigh[which[m], 0], rayleigh[which[m], 1]
@@ -55,11 +72,12 @@ def refine(model, rows, rayleigh, which, values, vectors, tolerance):
         for _ in range(_MAX_STEPS):
             fill(model, laws, a, b, s, F, dF, s0, s1)
             times(dF, x, y)
-            if factor(F, pivot) == 0.0:
+            left, _ = eliminate(F, w2, place, G)
+            if factor(G, left, pivot) == 0.0:
                 done[m] = True
                 break
             u[:] = y
-            solve(F, pivot, u)
+            solve_eliminated(F, place, G, left, pivot, u, room)
             top = 0.0j
             for i in range(n):
                 top += u[i] * y[i]
@@ -158,17 +176,18 @@ def slopes(model, rows, rayleigh, which, values, vectors, jacobian, rayleigh_jac
         # [F, F'x; xᴴ, 0] [dx; dλ] = [−(∂F/∂z)x; 0]
         bordered[:n, :n], bordered[:n, n], bordered[n, :n] = F, y, np.conj(x)
         bordered[n, n] = 0.0
-        factor(bordered, pivot)
+        factor(bordered, n + 1, pivot)
         for z in range(n_z):
-            solve(bordered, pivot, loads[z])
+            solve(bordered, n + 1, pivot, loads[z])
             dvectors[m, z] = loads[z, :n]
 
 
 @compiled
-def _phase(model, rows, a, b, s, known, F, dF, s0, s1, pivot):
+def _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place):
     """Return the phase of det F(s)/Π(s − p)(s − p̄) over the known poles p."""
     fill(model, rows, a, b, s, F, dF, s0, s1)
-    phase = factor(F, pivot)
+    left, phase = eliminate(F, model[4], place, G)
+    phase *= factor(G, left, pivot)
     for p in known:
         away = (s - p) * (s - np.conj(p))
         phase *= np.conj(away) / abs(away)
@@ -197,22 +216,23 @@ def winding(model, rows, a, b, radius, cut, n_points, known):
     """
     n = model[3].shape[0] + model[3].shape[1]
     n_pairs = model[0].shape[1]
-    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    F, dF, G = _matrices(n)
     s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
-    pivot = np.empty(n, np.int64)
+    pivot, place = np.empty(n, np.int64), np.empty(model[4].size, np.int64)
     stop, phase = np.empty(_MAX_DEPTH + 2), np.empty(_MAX_DEPTH + 2, np.complex128)
     small = 1e-6 * radius
     total = 0.0
     for kind in range(3 if cut else 1):
         n_here = n_points if kind < 2 else 4
         u0 = 0.0
-        here = _phase(model, rows, a, b, _point(kind, 0.0, radius, small), known, F, dF, s0, s1, pivot)
+        here = _phase(
+            model, rows, a, b, _point(kind, 0.0, radius, small), known, F, dF, G, s0, s1, pivot, place
+        )
         for i in range(n_here):
             depth = 0
             stop[0] = (i + 1) / n_here
-            phase[0] = _phase(
-                model, rows, a, b, _point(kind, stop[0], radius, small), known, F, dF, s0, s1, pivot
-            )
+            s = _point(kind, stop[0], radius, small)
+            phase[0] = _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place)
             while depth >= 0:
                 turn = np.angle(phase[depth] * np.conj(here))
                 if abs(turn) <= 0.7:
@@ -224,7 +244,7 @@ def winding(model, rows, a, b, radius, cut, n_points, known):
                     return np.nan
                 stop[depth + 1] = 0.5 * (u0 + stop[depth])
                 s = _point(kind, stop[depth + 1], radius, small)
-                phase[depth + 1] = _phase(model, rows, a, b, s, known, F, dF, s0, s1, pivot)
+                phase[depth + 1] = _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place)
                 depth += 1
     inside = 0
     for p in known:
@@ -236,23 +256,29 @@ def winding(model, rows, a, b, radius, cut, n_points, known):
 @compiled
 def inertia(model, rows, a, b, points):
     """Return the number of negative eigenvalues of the real symmetric F at each point of the real axis."""
-    n = model[3].shape[0] + model[3].shape[1]
+    w2 = model[4]
+    n = model[3].shape[0] + w2.size
     n_pairs = model[0].shape[1]
-    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    F, dF, G = _matrices(n)
     s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    place = np.empty(w2.size, np.int64)
     A = np.empty((n, n))
     count = np.zeros(points.size, np.int64)
     for m in range(points.size):
         fill(model, rows, a, b, complex(points[m], 0.0), F, dF, s0, s1)
-        for i in range(n):
-            for j in range(n):
-                A[i, j] = F[i, j].real
-        for k in range(n):
+        left, _ = eliminate(F, w2, place, G)
+        for j in range(w2.size):
+            if place[j] < 0 and F[n - w2.size + j, n - w2.size + j].real < 0.0:
+                count[m] += 1
+        for i in range(left):
+            for j in range(left):
+                A[i, j] = G[i, j].real
+        for k in range(left):
             if A[k, k] < 0.0:
                 count[m] += 1
-            for i in range(k + 1, n):
+            for i in range(k + 1, left):
                 f = A[i, k] / A[k, k] if A[k, k] != 0.0 else 0.0
-                for j in range(i, n):
+                for j in range(i, left):
                     A[i, j] -= f * A[k, j]
                     A[j, i] = A[i, j]
     return count

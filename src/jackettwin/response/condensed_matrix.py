@@ -19,6 +19,9 @@ from numba import njit
 # sums may be regrouped for speed, but signed zeros stay: they tell the sides of the branch cut apart
 compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 
+_NEAR = 0.05
+"""A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
+
 
 @compiled
 def _law(row, s):
@@ -124,9 +127,68 @@ def fill(model, rows, a, b, s, F, dF, s0, s1):
 
 
 @compiled
-def factor(A, pivot):
-    """Factor A = PLU in place; return the phase of det A (0 if singular)."""
-    n = A.shape[0]
+def eliminate(F, w2, place, G):
+    """Eliminate retained modes from F; return the size of what is left in G and the phase of their pivots.
+
+    They only meet the boundary, not each other. Those near their own resonance stay, for they would be poor
+    pivots: ``place`` (n_retained,) says where in G, or −1.
+    """
+    nr = w2.size
+    nb = F.shape[0] - nr
+    m, phase = nb, 1.0 + 0.0j
+    G[:nb, :nb] = F[:nb, :nb]
+    for j in range(nr):
+        pivot = F[nb + j, nb + j]
+        if abs(pivot) < _NEAR * w2[j]:
+            place[j] = m
+            G[:nb, m] = F[:nb, nb + j]
+            G[m, :nb] = F[:nb, nb + j]
+            G[m, nb:m], G[nb:m, m], G[m, m] = 0.0, 0.0, pivot
+            m += 1
+            continue
+        place[j] = -1
+        phase *= pivot / abs(pivot)
+        inverse = 1.0 / pivot
+        for i in range(nb):
+            f = F[i, nb + j] * inverse
+            for k in range(i, nb):
+                G[i, k] -= f * F[k, nb + j]
+    for i in range(nb):
+        for k in range(i):
+            G[i, k] = G[k, i]
+    return m, phase
+
+
+@compiled
+def solve_eliminated(F, place, G, m, pivot, x, z):
+    """Overwrite x with F⁻¹x from the factors of what :func:`eliminate` left; ``z`` is room for m numbers."""
+    nr = place.size
+    nb = F.shape[0] - nr
+    for i in range(nb):
+        z[i] = x[i]
+    for j in range(nr):
+        if place[j] >= 0:
+            z[place[j]] = x[nb + j]
+            continue
+        x[nb + j] /= F[nb + j, nb + j]
+        for i in range(nb):
+            z[i] -= F[i, nb + j] * x[nb + j]
+    solve(G, m, pivot, z)
+    for i in range(nb):
+        x[i] = z[i]
+    for j in range(nr):
+        if place[j] >= 0:
+            x[nb + j] = z[place[j]]
+            continue
+        force = 0.0j
+        for i in range(nb):
+            force += F[i, nb + j] * z[i]
+        x[nb + j] -= force / F[nb + j, nb + j]
+
+
+@compiled
+def factor(A, n, pivot):
+    """Factor the leading n × n of A = PLU in place; return the phase of its determinant (0 if singular)."""
     phase = 1.0 + 0.0j
     for k in range(n):
         best, at = -1.0, k
@@ -153,9 +215,8 @@ def factor(A, pivot):
 
 
 @compiled
-def solve(A, pivot, x):
-    """Overwrite x with A⁻¹x from the factors of :func:`factor`."""
-    n = A.shape[0]
+def solve(A, n, pivot, x):
+    """Overwrite x (n,) with A⁻¹x from the factors of :func:`factor`."""
     for k in range(n):
         at = pivot[k]
         x[k], x[at] = x[at], x[k]

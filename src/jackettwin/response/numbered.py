@@ -38,7 +38,7 @@ class Status(IntEnum):
     NEIGHBOUR = 1
     """Continued from a neighbouring set and recognised by shape."""
     UNCERTIFIED = 2
-    """Poles were found but the count does not confirm that they are all."""
+    """Poles were found, here or where these were continued from, but the count does not confirm them all."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,8 @@ def numbered_poles(
     cold = np.ones(n_sets, dtype=np.bool_)
     if near is not None:
         cold = ~_continue(model, points, near, poles, shapes)
-        status[~cold] = Status.NEIGHBOUR
+        doubtful = np.broadcast_to(near.status == Status.UNCERTIFIED, n_sets)
+        status[~cold] = np.where(doubtful, Status.UNCERTIFIED, Status.NEIGHBOUR)[~cold]
     for k in np.flatnonzero(cold):
         found = all_modes(model, points.rows[k], points.rayleigh[k])
         successor = _successors(model, found, modes)
@@ -173,7 +174,7 @@ def _continue(
     new = np.einsum("kmi,kmi->km", x.conj() @ M, x).real
     trusted = done & (cross >= _KIN * own * new) & (found.imag > REAL * np.abs(found))
     trusted &= np.abs(found) <= model.radius
-    good: BoolArray = np.logical_and(trusted.all(axis=1), near.status != Status.UNCERTIFIED)
+    good: BoolArray = trusted.all(axis=1)
     for i in range(n_modes):
         for j in range(i):
             good &= np.abs(found[:, i] - found[:, j]) > SAME * np.abs(found[:, i])

@@ -9,8 +9,9 @@ from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.simulate.scenario import Asset
 from jackettwin.simulate.schema import ScenarioSchema
-from jackettwin.soil import pinned, read_support
+from jackettwin.soil import read_support
 from jackettwin.soil.foundation import Foundation, FoundationSchema, SoilSchema, read_foundation
+from jackettwin.soil.support import standing
 from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
 
 
@@ -89,5 +90,5 @@ def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:
 
 
 def _first_frequency(structure: Structure) -> float:
-    system = build_system(assemble(structure), pinned(structure))
+    system = build_system(assemble(structure), standing(structure))
     return float(undamped_modes(system, 1).frequency_hz[0])

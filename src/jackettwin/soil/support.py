@@ -51,6 +51,20 @@ def clamped(structure: Structure) -> Support:
     return Support(fixed=tuple((node, (0, 1, 2, 3, 4, 5)) for node in structure.reaction_nodes))
 
 
+def standing(structure: Structure) -> Support:
+    """Return the support that modes are numbered on: pinned feet.
+
+    Clamped feet where pins would let the structure turn over: one foot, or feet in a line.
+    """
+    feet = np.array([structure.nodes[node] for node in structure.reaction_nodes])
+    if feet.size == 0:
+        return pinned(structure)
+    apart = feet - feet.mean(axis=0)
+    spread = np.linalg.svd(apart, compute_uv=False)
+    in_line = len(feet) < 3 or spread[1] <= 1e-6 * spread[0]
+    return clamped(structure) if in_line else pinned(structure)
+
+
 def on_translations(structure: Structure, law: Law) -> Support:
     """Return the same law on the three translations of every reaction node (thesis (7.2) and (7.5))."""
     return Support(springs=tuple(Spring(node, TRANSLATIONS_ONLY, law) for node in structure.reaction_nodes))

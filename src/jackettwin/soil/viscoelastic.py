@@ -233,42 +233,49 @@ def zener(k0: float, c: float, k1: float) -> Prony:
     return Prony(k0=k0, k=(k1,), tau=(c / k1,))
 
 
-# Fixed shape of the three-branch law: least-maximum error of a constant loss factor over 0.1–3 Hz.
-MAXWELL_3_CORNERS_HZ = (0.095, 0.577, 3.66)
+# Fixed shape of the three-branch law: least-maximum error of a constant loss factor from 0.55 to 16 f0, which
+# holds the global modes of a support structure whose first is f0 (0.1–3 Hz at 0.183 Hz).
+MAXWELL_3_CORNERS = (0.519, 3.153, 20.0)
+"""In units of f0."""
 MAXWELL_3_WEIGHTS = (0.161, 0.128, 0.219)
 
 
 def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
     """Return the three-branch law with storage stiffness ``k`` and ``loss_factor`` at ``f0`` [Hz].
 
-    The branches keep their corners and the ratio of their weights; their common scale s solves
+    The branches keep their corners about f0 and the ratio of their weights; their common scale s solves
     η = s·I/(1 + s·R), with R + iI the response of the unscaled branches at f0.
 
     Raises
     ------
     InputError
-        If the loss factor is beyond what the shape can give at f0.
+        If the loss factor is beyond what the shape can give.
     """
     require_positive("f0", f0)
-    fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
-    common, response = maxwell_3_scale(loss_factor, f0)
+    w = np.array(MAXWELL_3_WEIGHTS)
+    common, response = maxwell_3_scale(loss_factor)
     scale = float(common)
     k0 = k / (1.0 + scale * response.real)
     return Prony(
-        k0=k0, k=tuple(float(v) for v in scale * w * k0), tau=tuple(float(v) for v in 1.0 / (2.0 * pi * fc))
+        k0=k0, k=tuple(float(v) for v in scale * w * k0), tau=tuple(float(v) for v in maxwell_3_times(f0))
     )
 
 
-def maxwell_3_scale(loss_factor: FloatArray | float, f0: float) -> tuple[FloatArray, complex]:
-    """Return the common scale s of the three branches and their unscaled response R + iI at ``f0`` [Hz].
+def maxwell_3_times(f0: float) -> FloatArray:
+    """Return the relaxation times (3,) of the three branches about ``f0`` [Hz]."""
+    return np.asarray(1.0 / (2.0 * pi * f0 * np.array(MAXWELL_3_CORNERS)))
+
+
+def maxwell_3_scale(loss_factor: FloatArray | float) -> tuple[FloatArray, complex]:
+    """Return the common scale s of the three branches and their unscaled response R + iI at f0.
 
     Raises
     ------
     InputError
-        If the loss factor is beyond what the shape can give at f0.
+        If the loss factor is beyond what the shape can give.
     """
-    fc, w = np.array(MAXWELL_3_CORNERS_HZ), np.array(MAXWELL_3_WEIGHTS)
-    response = complex(np.sum(w * (1j * f0 / fc) / (1.0 + 1j * f0 / fc)))
+    corners, w = np.array(MAXWELL_3_CORNERS), np.array(MAXWELL_3_WEIGHTS)
+    response = complex(np.sum(w * 1j / (corners + 1j)))
     limit = response.imag / response.real
     eta = np.asarray(loss_factor)
     if not ((eta >= 0.0) & (eta < limit)).all():

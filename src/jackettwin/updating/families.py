@@ -12,13 +12,13 @@ import numpy.typing as npt
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
 from jackettwin.soil.viscoelastic import (
-    MAXWELL_3_CORNERS_HZ,
     MAXWELL_3_WEIGHTS,
     Law,
     Springpot,
     kelvin_voigt,
     maxwell_3,
     maxwell_3_scale,
+    maxwell_3_times,
     zener,
 )
 
@@ -105,14 +105,14 @@ def _maxwell_3_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray
     rows, slopes = _empty(values, branches=3)
     k, eta = values.T
     w = np.array(MAXWELL_3_WEIGHTS)
-    s, response = maxwell_3_scale(eta, reference_hz)
+    s, response = maxwell_3_scale(eta)
     ds = eta * response.imag / (response.imag - eta * response.real) ** 2
     # k0 = k/(1 + sR), k_j = s w_j k0
     shrink = 1.0 / (1.0 + s * response.real)
     k0 = k * shrink
     rows[:, K0] = k0
     rows[:, BRANCHES::2] = (s * k0)[:, None] * w
-    rows[:, BRANCHES + 1 :: 2] = 1.0 / (2.0 * pi * np.array(MAXWELL_3_CORNERS_HZ))
+    rows[:, BRANCHES + 1 :: 2] = maxwell_3_times(reference_hz)
     slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
     slopes[:, K0, 1] = -k0 * response.real * shrink * ds
     slopes[:, BRANCHES::2, 1] = (k0 * shrink * ds)[:, None] * w

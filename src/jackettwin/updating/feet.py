@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.soil.support import Spring, Support
+from jackettwin.soil.support import Spring, Support, pinned, standing
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.model import Structure
 
@@ -72,12 +72,19 @@ def feet(
     Raises
     ------
     InputError
-        If the tie is unknown, there are no reaction nodes, or the heads hold a foot rigidly or not at all.
+        If the tie is unknown, there are no reaction nodes, the heads hold a foot rigidly or not at all, or
+        there are none under a structure that would turn over.
     """
     if tie not in TIES:
         raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
     if not structure.reactions:
         raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
+    if heads is None and standing(structure) != pinned(structure):
+        raise InputError(
+            "a structure on one foot, or on feet in a line, turns over on springs that do not hold rotations",
+            field="support.stiffness",
+            remedy="give a foundation or a support file whose 6×6 stiffness the laws scale",
+        )
     nodes = structure.reaction_nodes
     groups: dict[str, Group] = {"": (_EVERY, nodes)}
     if tie == "per-leg":

@@ -16,7 +16,7 @@ from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
-from jackettwin.soil.support import Support, pinned
+from jackettwin.soil.support import Support, standing
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
@@ -231,8 +231,8 @@ class ExactModes:
 
 
 def numbered_modes(assembly: Assembly, number: int) -> UndampedModes:
-    """Return the undamped modes on pinned supports: their order numbers the modes everywhere."""
-    return undamped_modes(build_system(assembly, pinned(assembly.structure)), number)
+    """Return the undamped modes whose order numbers all modes: on pinned feet, a monopile's clamped."""
+    return undamped_modes(build_system(assembly, standing(assembly.structure)), number)
 
 
 def support_model(

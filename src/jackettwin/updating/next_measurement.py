@@ -31,7 +31,7 @@ class Measurement:
     ----------
     gain_nats : float
         Information gained on all parameters together, ½ ln of the determinants' ratio: the posterior's mean.
-    ratio : (d,) posterior over prior standard deviation of each ln θ with it: the posterior's median
+    ratio : (d,) posterior over prior standard deviation of each ln θ with it: its mean square, rooted
     """
 
     what: str
@@ -122,4 +122,4 @@ def _judged(problem: Problem, what: str, pairs: list[tuple[FloatArray, FloatArra
         before, after = base + precision, base + extra + precision
         gains.append(0.5 * (np.linalg.slogdet(after)[1] - np.linalg.slogdet(before)[1]))
         ratios.append(np.sqrt(np.diag(np.linalg.inv(after))) / prior)
-    return Measurement(what, float(np.mean(gains)), np.asarray(np.median(ratios, axis=0)))
+    return Measurement(what, float(np.mean(gains)), np.sqrt(np.mean(np.square(ratios), axis=0)))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -27,11 +28,14 @@ from jackettwin.updating.problem import Found, Problem
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
 
 _ESS = 0.5
 """Each rung of the ladder keeps this share of the particles effective."""
 _MOVES = 12
 """Moves of every particle on every rung."""
+_KEPT = 3
+"""On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
 _LARGEST_SPREAD = 0.5
 """Standard deviation of log Z between islands beyond which it is not known."""
 
@@ -64,7 +68,7 @@ class Posterior:
         return np.asarray(np.exp(np.quantile(self.log_theta, [tail, 1.0 - tail], axis=0)).T)
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Swarm:
     """Particles of one island and what is known of them."""
 
@@ -73,15 +77,26 @@ class _Swarm:
     log_p: FloatArray
     found: Found
 
-    def take(self, index: npt.NDArray[np.intp]) -> None:
-        self.z, self.log_l, self.log_p = self.z[index], self.log_l[index], self.log_p[index]
-        self.found = tuple(_pick(modes, index) for modes in self.found)
+    def take(self, index: IntArray) -> _Swarm:
+        return _Swarm(
+            self.z[index],
+            self.log_l[index],
+            self.log_p[index],
+            tuple(_pick(modes, index) for modes in self.found),
+        )
 
-    def accept(self, yes: BoolArray, other: _Swarm) -> None:
-        self.z = np.where(yes[:, None], other.z, self.z)
-        self.log_l = np.where(yes, other.log_l, self.log_l)
-        self.log_p = np.where(yes, other.log_p, self.log_p)
-        self.found = tuple(_either(yes, *pair) for pair in zip(other.found, self.found, strict=True))
+    def where(self, yes: BoolArray, other: _Swarm) -> _Swarm:
+        """Return the swarm with the particles of another where ``yes``."""
+        index = np.where(yes, np.arange(yes.size) + yes.size, np.arange(yes.size))
+        return self.joined(other).take(index)
+
+    def joined(self, other: _Swarm) -> _Swarm:
+        return _Swarm(
+            np.concatenate([self.z, other.z]),
+            np.concatenate([self.log_l, other.log_l]),
+            np.concatenate([self.log_p, other.log_p]),
+            tuple(_both(*pair) for pair in zip(self.found, other.found, strict=True)),
+        )
 
 
 def sample_posterior(
@@ -125,9 +140,9 @@ def sample_posterior(
     ]
     return gathered(
         problem,
-        z=np.array([swarm.z for swarm, _ in runs]),
-        poles=np.array([swarm.found[0].poles for swarm, _ in runs]),
-        log_l=np.array([swarm.log_l for swarm, _ in runs]),
+        z=np.array([_by_particle([swarm.z for swarm in kept]) for kept, _ in runs]),
+        poles=np.array([_by_particle([swarm.found[0].poles for swarm in kept]) for kept, _ in runs]),
+        log_l=np.array([_by_particle([swarm.log_l for swarm in kept]) for kept, _ in runs]),
         log_z=np.array([value for _, value in runs]),
     )
 
@@ -167,31 +182,55 @@ def gathered(
     )
 
 
+def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """Return what was kept of each particle one after the other, as a chain that shows its correlation."""
+    return np.asarray(np.stack(kept, axis=1).reshape(-1, *kept[0].shape[1:]))
+
+
 def _island(
     problem: Problem,
     prior: Prior,
     n: int,
     rng: np.random.Generator,
     progress: Callable[[], None] | None,
-) -> tuple[_Swarm, float]:
+) -> tuple[list[_Swarm], float]:
     z = prior.draw(n, rng)
     swarm = _evaluate(problem, prior, z, problem.anchor(z.mean(axis=0)))
-    beta, log_z = 0.0, 0.0
+    beta, log_z, kept = 0.0, 0.0, [swarm]
     while beta < 1.0:
         step = _next_step(swarm.log_l, 1.0 - beta)
         weight = step * swarm.log_l
         log_z += float(logsumexp(weight) - np.log(n))
         beta += step
-        swarm.take(_systematic(np.exp(weight - logsumexp(weight)), rng))
-        for move in range(_MOVES):
-            z = _proposal(swarm.z, rng, wide=move % 4 == 3)
-            inside: BoolArray = np.isfinite(prior.log_density(z))
-            trial = _evaluate(problem, prior, np.where(inside[:, None], z, swarm.z), swarm.found)
-            log_ratio = beta * (trial.log_l - swarm.log_l) + trial.log_p - swarm.log_p
-            swarm.accept(inside & (np.log1p(-rng.random(n)) < log_ratio), trial)
+        swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), rng))
+        kept = []
+        for move in range(1, _MOVES + 1):
+            swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
+            if move % _KEPT == 0:
+                kept.append(swarm)
         if progress is not None:
             progress()
-    return swarm, log_z
+    return kept, log_z
+
+
+def _moved(
+    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator, *, wide: bool
+) -> _Swarm:
+    """Return the swarm after one move of each half by differences of the other.
+
+    The half that lends the differences stands still, which leaves the joint distribution exactly invariant; a
+    swarm that moves at once by its own differences ends a few per cent too narrow.
+    """
+    order = rng.permutation(swarm.log_l.size)
+    still, moving = (swarm.take(half) for half in np.array_split(order, 2))
+    for _ in range(2):
+        z = _proposal(moving.z, still.z, rng, wide=wide)
+        inside: BoolArray = np.isfinite(prior.log_density(z))
+        trial = _evaluate(problem, prior, np.where(inside[:, None], z, moving.z), moving.found)
+        log_ratio = beta * (trial.log_l - moving.log_l) + trial.log_p - moving.log_p
+        moving = moving.where(inside & (np.log1p(-rng.random(len(z))) < log_ratio), trial)
+        still, moving = moving, still
+    return still.joined(moving).take(np.argsort(order))
 
 
 def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> _Swarm:
@@ -201,10 +240,11 @@ def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None)
 
 def _next_step(log_l: FloatArray, most: float) -> float:
     """Return the step of β that leaves the effective sample size at its share, by bisection."""
+    below = log_l - log_l.max()
 
     def effective(step: float) -> float:
-        w = step * log_l
-        return float(np.exp(2.0 * logsumexp(w) - logsumexp(2.0 * w))) / log_l.size
+        w = np.exp(step * below)
+        return float(w.sum() ** 2 / (w @ w) / w.size)
 
     if effective(most) >= _ESS:
         return most
@@ -215,33 +255,33 @@ def _next_step(log_l: FloatArray, most: float) -> float:
     return high
 
 
-def _systematic(weight: FloatArray, rng: np.random.Generator) -> npt.NDArray[np.intp]:
+def _systematic(weight: FloatArray, rng: np.random.Generator) -> IntArray:
     u = (rng.random() + np.arange(weight.size)) / weight.size
     return np.minimum(np.searchsorted(np.cumsum(weight), u), weight.size - 1)
 
 
-def _proposal(z: FloatArray, rng: np.random.Generator, *, wide: bool) -> FloatArray:
+def _proposal(z: FloatArray, others: FloatArray, rng: np.random.Generator, *, wide: bool) -> FloatArray:
     """Return differential-evolution steps (ter Braak 2006): they follow the shape of the swarm."""
-    n, d = z.shape
-    a = (np.arange(n) + rng.integers(1, n, n)) % n
-    b = (a + rng.integers(1, n, n)) % n
+    (n, d), m = z.shape, len(others)
+    a = rng.integers(m, size=n)
+    b = (a + rng.integers(1, m, n)) % m
     # full steps now and then jump between separate hills
     gamma = 1.0 if wide else 2.38 / np.sqrt(2.0 * d) * rng.uniform(0.2, 1.0)
-    jitter = 0.02 * z.std(axis=0) * rng.standard_normal(z.shape)
-    return np.asarray(z + gamma * (z[a] - z[b]) + jitter)
+    jitter = 0.02 * others.std(axis=0) * rng.standard_normal(z.shape)
+    return np.asarray(z + gamma * (others[a] - others[b]) + jitter)
 
 
-def _either(yes: BoolArray, new: NumberedModes, old: NumberedModes) -> NumberedModes:
+def _both(one: NumberedModes, other: NumberedModes) -> NumberedModes:
     return NumberedModes(
-        np.where(yes[:, None], new.poles, old.poles),
-        np.where(yes[:, None, None], new.shapes, old.shapes),
-        old.slopes,
-        old.shape_slopes,
-        np.where(yes, new.status, old.status),
+        np.concatenate([one.poles, other.poles]),
+        np.concatenate([one.shapes, other.shapes]),
+        np.concatenate([one.slopes, other.slopes]),
+        one.shape_slopes,
+        np.concatenate([one.status, other.status]),
     )
 
 
-def _pick(found: NumberedModes, index: npt.NDArray[np.intp]) -> NumberedModes:
+def _pick(found: NumberedModes, index: IntArray) -> NumberedModes:
     return NumberedModes(
         found.poles[index], found.shapes[index], found.slopes[index], found.shape_slopes, found.status[index]
     )

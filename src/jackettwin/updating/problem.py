@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.numbered import NumberedModes, Status
+from jackettwin.response.numbered import NumberedModes
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior
@@ -210,9 +210,10 @@ def _known_residuals(state: State, z: FloatArray, modes: NumberedModes) -> tuple
 
 
 def _some(found: NumberedModes, which: list[int]) -> NumberedModes:
-    """Return some of the modes; a set that lost one of them is no start."""
-    poles = found.poles[:, which]
-    status = np.where(np.isnan(poles).any(axis=1), Status.UNCERTIFIED, found.status)
+    """Return some of the modes."""
     return replace(
-        found, poles=poles, shapes=found.shapes[:, which], slopes=found.slopes[:, which], status=status
+        found,
+        poles=found.poles[:, which],
+        shapes=found.shapes[:, which],
+        slopes=found.slopes[:, which],
     )

@@ -1,0 +1,43 @@
+"""Cases of a long run, kept one a line, so that an interrupted run goes on where it stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+KEPT = ROOT / "out" / "qualify"
+
+Result = dict[str, Any]
+
+
+def cases(name: str, number: int, run: Callable[[int], Result]) -> list[Result]:
+    """Return the results of cases 0 to number − 1; those of this very code are not computed again.
+
+    Each result carries ``cpu_s``, the processor time that it took.
+    """
+    path = KEPT / f"{name}-{digest(name)}.jsonl"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    known = {line["case"]: line for line in map(json.loads, lines)}
+    with path.open("a", encoding="utf-8") as kept:
+        for case in range(number):
+            if case not in known:
+                known[case] = {"case": case} | run(case)
+                kept.write(json.dumps(known[case]) + "\n")
+                kept.flush()
+            sys.stderr.write(f"\r{name} {case + 1}/{number}")
+    sys.stderr.write("\n")
+    return [known[case] for case in range(number)]
+
+
+def digest(name: str) -> str:
+    """Return a short hash of a script and of all code that it may call."""
+    files = [ROOT / "qualify" / f"{name}.py", *sorted((ROOT / "src" / "jackettwin").rglob("*.py"))]
+    layers = ("updating", "response", "soil", "structure", name)
+    text = b"".join(f.read_bytes() for f in files if f.parent.name in layers or f.stem in layers)
+    return hashlib.sha256(text).hexdigest()[:10]
