@@ -118,10 +118,28 @@ def test_wheeler_brings_the_surface_value_to_the_surface() -> None:
     assert float(wave.surface(crest, np.zeros(1))[0, 0]) == 0.0
 
 
+@pytest.mark.parametrize(("stretching", "slope"), [("vertical", 0.0), ("extrapolated", 1.0)])
+def test_above_still_water_motion_stays_or_runs_straight_on(stretching: str, slope: float) -> None:
+    """u(z) = u(0) + z u′(0) with u′(0) = k tanh kd · u(0); w′(0) = k coth kd · w(0); pressure as u."""
+    wave = airy_wave(height=6.0, period=10.0, depth=30.0, stretching=stretching)
+    k, t = float(wave.k[0]), 1.3
+    above, still = np.array([[2.0, 0.0, 2.5]]), np.array([[2.0, 0.0, 0.0]])
+    grows = 1.0 + slope * 2.5 * k * np.array([np.tanh(30.0 * k), 1.0, 1.0 / np.tanh(30.0 * k)])
+    for high, low in zip(wave.motion(above, t), wave.motion(still, t), strict=True):
+        np.testing.assert_allclose(high, low * grows, rtol=1e-12)
+    np.testing.assert_allclose(
+        wave.pressure(above, np.array([t])), wave.pressure(still, np.array([t])) * grows[0], rtol=1e-12
+    )
+    assert float(wave.surface(np.zeros((1, 3)), np.zeros(1))[0, 0]) == pytest.approx(3.0)
+    below = np.array([[2.0, 0.0, -4.0]])
+    linear = airy_wave(height=6.0, period=10.0, depth=30.0)
+    np.testing.assert_array_equal(wave.motion(below, t)[0], linear.motion(below, t)[0])
+
+
 def test_bad_seas_are_refused() -> None:
     with pytest.raises(InputError, match="gamma"):
         irregular_sea(Hs=3.0, Tp=7.0, depth=70.0, duration=600.0, seed=1, gamma=0.5)
-    with pytest.raises(InputError, match="none, wheeler"):
+    with pytest.raises(InputError, match="none, vertical, extrapolated, wheeler"):
         airy_wave(height=3.0, period=7.0, depth=70.0, stretching="delta")
 
 

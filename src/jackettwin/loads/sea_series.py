@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.loads.kernels import between_levels
-from jackettwin.loads.waves import AirySea, depth_functions
+from jackettwin.loads.waves import AirySea
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -42,11 +42,12 @@ def sea_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int)
     lines = _lines(sea, period, n_times)
     along = np.outer(points[:, 0], np.cos(sea.direction)) + np.outer(points[:, 1], np.sin(sea.direction))
     steady = sea.amplitude * np.exp(1j * (sea.phase - sea.k * along))
-    if sea.stretching == "none":
-        fields = _fields(sea, steady, np.minimum(points[:, 2], 0.0), lines, n_times)
+    still = sea.stretching == "none"
+    eta = np.zeros((n_times, points.shape[0])) if still else _transformed(steady, lines, n_times).T
+    if sea.stretching != "wheeler":
+        fields = _fields(sea, steady, points[:, 2], lines, n_times)
         both = np.einsum("mf,fpt->tpm", _mixing(sea), fields, optimize=True)
-        return SeaSeries(np.zeros((n_times, points.shape[0])), both[..., :3], both[..., 3:])
-    eta = _transformed(steady, lines, n_times).T
+        return SeaSeries(eta, both[..., :3], both[..., 3:])
     level = np.minimum((points[:, 2] - eta) * sea.depth / (sea.depth + eta), 0.0)
     nodes = np.cos(np.pi * (np.arange(LEVELS) + 0.5) / LEVELS)
     middle, half = 0.5 * (level.max(0) + level.min(0)), 0.5 * np.ptp(level, axis=0) + 1e-9
@@ -88,7 +89,7 @@ def _fields(
 
     Waves of one direction have two components, along it and up; else three.
     """
-    horizontal, vertical = depth_functions(sea.k, z, sea.depth)
+    horizontal, vertical = sea.depth_functions(z)
     u, w = sea.omega * horizontal * steady, 1j * sea.omega * vertical * steady
     one = np.ptp(sea.direction) == 0.0
     components = [u, w] if one else [u * np.cos(sea.direction), u * np.sin(sea.direction), w]

@@ -19,7 +19,7 @@ from jackettwin.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 
-STRETCHING = ("none", "wheeler")
+STRETCHING = ("none", "vertical", "extrapolated", "wheeler")
 
 
 class Waves(Protocol):
@@ -96,8 +96,9 @@ class AirySea:
     ----------
     amplitude, omega, direction, phase : amplitude [m], ω [rad/s], heading β from +x [rad], φ [rad]
     depth : water depth [m]
-    stretching : ``"none"``: linear theory up to still water. ``"wheeler"``: z is mapped to
-        (z − η) d/(d + η), up to the moving surface.
+    stretching : ``"none"``: linear theory up to still water. Up to the moving surface: ``"vertical"``: above
+        still water as at still water. ``"extrapolated"``: straight on with the slope there. ``"wheeler"``: z
+        is mapped to (z − η) d/(d + η). HydroDyn's ``WaveStMod`` 0 to 3.
     """
 
     amplitude: FloatArray
@@ -129,16 +130,16 @@ class AirySea:
 
     def surface(self, points: FloatArray, t: FloatArray) -> FloatArray:
         """Return the elevation if stretched, else still water, (n_times, n_points)."""
-        if self.stretching == "wheeler":
-            return self.elevation(points, t)
-        return np.zeros((np.size(t), points.shape[0]))
+        if self.stretching == "none":
+            return np.zeros((np.size(t), points.shape[0]))
+        return self.elevation(points, t)
 
     def motion(self, points: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return velocity and acceleration, each (n_times, n_points, 3)."""
         t = np.atleast_1d(np.asarray(t, dtype=np.float64))
         spatial, z = self._spatial(points), points[:, 2]
-        if self.stretching == "none":
-            return self._fields(np.exp(1j * np.outer(t, self.omega)), spatial, np.minimum(z, 0.0))
+        if self.stretching != "wheeler":
+            return self._fields(np.exp(1j * np.outer(t, self.omega)), spatial, z)
         steps = [
             self._fields(np.exp(1j * self.omega * time)[None], spatial, row)
             for time, row in zip(t, self._stretched(points, t), strict=True)
@@ -150,8 +151,8 @@ class AirySea:
         t = np.atleast_1d(np.asarray(t, dtype=np.float64))
         steady = self.amplitude * self.omega**2 / self.k * np.exp(1j * self.phase) * self._spatial(points)
         rotating = np.exp(1j * np.outer(t, self.omega))
-        if self.stretching == "none":
-            horizontal, _ = depth_functions(self.k, np.minimum(points[:, 2], 0.0), self.depth)
+        if self.stretching != "wheeler":
+            horizontal, _ = self.depth_functions(points[:, 2])
             return np.asarray((rotating @ (steady * horizontal).T).real)
         levels = self._stretched(points, t)
         steps = [
@@ -159,6 +160,17 @@ class AirySea:
             for row, z in zip(rotating, levels, strict=True)
         ]
         return np.array(steps)
+
+    def depth_functions(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return cosh k(z+d)/sinh kd and sinh k(z+d)/sinh kd at levels, (n_points, n_waves).
+
+        Above still water they stay or run straight on, as the stretching has it.
+        """
+        C, S = depth_functions(self.k, np.minimum(z, 0.0), self.depth)
+        if self.stretching != "extrapolated":
+            return C, S
+        rise = np.outer(np.maximum(z, 0.0), self.k)
+        return C + rise * S, S + rise * C
 
     def _stretched(self, points: FloatArray, t: FloatArray) -> FloatArray:
         """Return Wheeler's levels (n_times, n_points)."""
@@ -176,7 +188,7 @@ class AirySea:
         self, rotating: npt.NDArray[np.complex128], spatial: npt.NDArray[np.complex128], z: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return (velocity, acceleration) at levels ``z`` without asking whether these are wet."""
-        horizontal, vertical = depth_functions(self.k, z, self.depth)
+        horizontal, vertical = self.depth_functions(z)
         steady = self.amplitude * self.omega * np.exp(1j * self.phase) * spatial
         u, w = steady * horizontal, 1j * steady * vertical
         columns = np.stack([u * np.cos(self.direction), u * np.sin(self.direction), w], axis=1)

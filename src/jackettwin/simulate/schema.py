@@ -76,7 +76,7 @@ class WavesSchema(Schema):
     spreading: Positive | None = None
     direction_deg: float = 0.0
     seed: Seed = 0
-    stretching: Literal["none", "wheeler"] | None = None
+    stretching: Literal["none", "vertical", "extrapolated", "wheeler"] | None = None
     relative_velocity: Literal["none", "linearised", "full"] = "linearised"
 
 
