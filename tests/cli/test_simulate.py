@@ -42,6 +42,11 @@ def test_people_get_a_table(case: Path) -> None:
     result = CliRunner().invoke(main, ["simulate", str(case), "--out", str(case.with_name("r.parquet"))])
     assert result.exit_code == 0, result.stderr
     assert "acc_top_x" in result.stdout and "times real time" in result.stdout
+    # truth reaches as far as the simulation does: 5 Hz, beyond the second pair of any jacket
+    truth = read_record(case.with_name("r.parquet")).metadata["true_modes"]
+    assert len(truth) > 12
+    assert truth[-1]["frequency_hz"] > 4.0
+    assert f"and {len(truth) - 12} more up to" in result.stdout
 
 
 def test_loads_have_the_keys_of_the_contract(case: Path) -> None:

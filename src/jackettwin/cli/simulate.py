@@ -14,6 +14,9 @@ from jackettwin.simulate import Simulation, read_scenario, simulate
 
 DEFAULT_SCENARIO = "parked"
 
+_SHOWN = 12
+"""True modes in the terminal."""
+
 
 @click.command("simulate")
 @click.argument("scenario", default=DEFAULT_SCENARIO)
@@ -50,6 +53,10 @@ def _print(done: Simulation, path: Path) -> None:
         table.add_row(channel.name, channel.unit, f"{rms:.4g}", f"{abs(known).max():.4g}")
     output.print(table)
     truth = Table("true mode", "f [Hz]", "ζ [%]")
-    for mode in done.record.metadata["true_modes"]:
+    modes = done.record.metadata["true_modes"]
+    for mode in modes[:_SHOWN]:
         truth.add_row(mode["label"], f"{mode['frequency_hz']:.4f}", f"{100.0 * mode['damping_ratio']:.2f}")
     output.print(truth)
+    if len(modes) > _SHOWN:
+        last = modes[-1]["frequency_hz"]
+        output.print(f"and {len(modes) - _SHOWN} more up to {last:.2f} Hz, in the record's JSON")

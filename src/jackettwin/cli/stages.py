@@ -33,18 +33,32 @@ def stages_command(structure: str, against: str | None, number: int, gravity: bo
     own = stages(read_structure(structure), number, gravity=gravity)
     reference: Reference = {}
     if against is not None:
-        reference = _PUBLISHED.get(against) or _frequencies(
-            stages(read_structure(against), number, gravity=gravity)
+        reference = _PUBLISHED.get(against) or _paired(
+            own, stages(read_structure(against), number, gravity=gravity)
         )
-    document = {"structure": structure, "against": against, "stages": [_row(s, reference) for s in own]}
+    alone = [s.name for s in own if against is not None and s.parts[-1] not in reference]
+    document = {
+        "structure": structure,
+        "against": against,
+        "stages": [_row(s, reference) for s in own],
+        "not_compared": alone,
+    }
     if as_json:
         print_json(document)
     else:
         _print(document)
 
 
-def _frequencies(found: tuple[Stage, ...]) -> Reference:
-    return {stage.parts[-1]: tuple(map(float, stage.frequency_hz)) for stage in found}
+def _paired(own: tuple[Stage, ...], other: tuple[Stage, ...]) -> Reference:
+    """Return the other structure's frequencies by our part added last: the whole is always comparable.
+
+    Other stages are, where the same parts stand in both.
+    """
+    theirs = {frozenset(stage.parts): stage for stage in other[:-1]}
+    pairs = [(stage, theirs.get(frozenset(stage.parts))) for stage in own[:-1]] + [(own[-1], other[-1])]
+    return {
+        stage.parts[-1]: tuple(map(float, match.frequency_hz)) for stage, match in pairs if match is not None
+    }
 
 
 def _row(stage: Stage, reference: Reference) -> dict[str, Any]:
@@ -81,3 +95,8 @@ def _print(document: dict[str, Any]) -> None:
                 ]
             table.add_row(*cells)
         output.print(table)
+    if document["not_compared"]:
+        output.print(
+            f"not compared with {document['against']}: {', '.join(document['not_compared'])}; "
+            "it has no stage of the same parts (SubDyn decks name none: the whole is all there is)"
+        )

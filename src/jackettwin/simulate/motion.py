@@ -20,13 +20,11 @@ from jackettwin.response.time import (
 )
 from jackettwin.simulate.driving import Loads, loads_on
 from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
-from jackettwin.simulate.model import Model, TrueMode, true_modes
+from jackettwin.simulate.model import BAND_HZ, Model, TrueMode, true_modes
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
 
 FloatArray = npt.NDArray[np.float64]
-
-_TRUTH_BELOW_HZ = 1.0
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ def _motion(scenario: Scenario) -> Motion:
         states,
         force,
         clock.load_step_s,
-        true_modes(loads.model, below_hz=_TRUTH_BELOW_HZ),
+        true_modes(loads.model, below_hz=BAND_HZ),
         loads.signals,
     )
 

@@ -34,7 +34,10 @@ class Stage:
     @property
     def name(self) -> str:
         """``jacket``, then ``+ transition_piece`` and so on: the part added last."""
-        return self.parts[0] if len(self.parts) == 1 else f"+ {self.parts[-1]}"
+        last = self.parts[-1] or "members of no named part"
+        if len(self.parts) > 1:
+            return f"+ {last}"
+        return self.parts[0] or "whole structure"
 
 
 def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple[Stage, ...]:
