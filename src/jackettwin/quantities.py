@@ -177,5 +177,40 @@ def guess_quantity(name: str, unit: str) -> str:
     return allowed[0] if len(allowed) == 1 and unit != "1" else "other"
 
 
+def names_other(name: str) -> bool:
+    """Tell whether a channel's name is that of something else than a vibration.
+
+    >>> names_other("WindSpeed"), names_other("ch1")
+    (True, False)
+    """
+    named = [kind for kind, words in _WORDS if any(word in name.lower() for word in words)]
+    return bool(named) and named[0] not in VIBRATIONS
+
+
+def vibration_of(unit: str) -> str:
+    """Return the kind of vibration that is measured in a unit.
+
+    Raises
+    ------
+    InputError
+        If none is, or several are.
+
+    Examples
+    --------
+    >>> vibration_of("g"), vibration_of("mm/s")
+    ('acceleration', 'velocity')
+    """
+    kinds = [kind for kind in QUANTITIES if kind in VIBRATIONS and _has_unit(QUANTITIES[kind], unit)]
+    if len(kinds) != 1:
+        raise InputError(
+            "is not the unit of one kind of vibration",
+            field="unit",
+            value=unit,
+            allowed="e.g. m/s^2, g, mg, mm/s, mm",
+            remedy="state the quantity of each channel in the JSON beside the file",
+        )
+    return kinds[0]
+
+
 def _has_unit(q: Quantity, unit: str) -> bool:
     return unit == q.unit != "-" or any(unit == other for other, _ in q.scales)

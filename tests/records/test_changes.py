@@ -30,6 +30,15 @@ def test_sound_channels_do_not_change(rows: list[int], tower: SimpleNamespace) -
         assert changes(record.data[list(rows)]) == []
 
 
+def test_the_ends_of_a_long_record_are_no_change(tower: SimpleNamespace) -> None:
+    """Its modes lie a hundred times above the lowest band, into which a jump between the ends would leak."""
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        modes = [tower.oscillator(rng.standard_normal(90_000), f, 0.01, 50.0) for f in (1.2, 2.7)]
+        y = tower.shapes.T @ np.array(modes)
+        assert changes(y + 0.05 * y.std(axis=1, keepdims=True) * rng.standard_normal(y.shape)) == []
+
+
 def test_a_force_that_changes_is_no_change_of_a_sensor(tower: SimpleNamespace) -> None:
     data = tower.record(1).data
     data[:, N // 2 :] *= 3.0

@@ -18,6 +18,8 @@ from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
+from jackettwin.quantities import plain_unit, vibration_of
+from jackettwin.records.readers.table import Unsaid
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.twin import observation_document, observe
 from jackettwin.twin.document import comparison_document
@@ -59,6 +61,10 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 @click.option(
     "--drop-dead", is_flag=True, help="Leave channels that carry nothing out instead of refusing the record."
 )
+@click.option(
+    "--sample-rate", type=click.FloatRange(min=0.0, min_open=True), help="Hz, of files that do not say it."
+)
+@click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
 @click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def identify_command(
@@ -71,6 +77,8 @@ def identify_command(
     picks_file: str | None,
     out: Path | None,
     drop_dead: bool,
+    sample_rate: float | None,
+    unit: str | None,
     workers: int | None,
     as_json: bool,
 ) -> None:
@@ -83,12 +91,13 @@ def identify_command(
     files = record_files(records)
     picks = _picks(picks_file, files)
     _refuse_many(files, {"--compare": compare, "--report": report is not None})
+    how: dict[str, Any] = {"drop_dead": drop_dead, "picks": picks, "unsaid": _unsaid(sample_rate, unit)}
     if len(files) == 1:
-        _deliver(_one(files[0], settings, drop_dead, picks, compare, report), out, as_json, _print_one)
+        _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
         return
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
         kept = Path(passing) if out is None or not _folder(out) else out / "records"
-        _deliver(_many(files, settings, drop_dead, picks, kept, workers), out, as_json, _print_many)
+        _deliver(_many(files, settings, how, kept, workers), out, as_json, _print_many)
 
 
 def _deliver(
@@ -127,14 +136,13 @@ def _refuse_many(files: Sequence[Path], options: Mapping[str, bool]) -> None:
 def _one(
     file: Path,
     settings: IdentificationSettings,
-    drop_dead: bool,
-    picks: tuple[Pick, ...],
+    how: Mapping[str, Any],
     compare: bool,
     report: Path | None,
 ) -> dict[str, Any]:
     with progress(1 + compare + (report is not None), "identify") as step:
         step(f"identify {file.name}")
-        seen = observe(file, settings, drop_dead=drop_dead, picks=picks)
+        seen = observe(file, settings, **how)
         document = observation_document(seen)
         if compare:
             step("by every method")
@@ -151,16 +159,13 @@ def _one(
 def _many(
     files: Sequence[Path],
     settings: IdentificationSettings,
-    drop_dead: bool,
-    picks: tuple[Pick, ...],
+    how: Mapping[str, Any],
     folder: Path,
     workers: int | None,
 ) -> dict[str, Any]:
     """Return the document; its long lists are read from the folder's results as they are written."""
     with progress(len(files), "identify") as step:
-        batch = observe_many(
-            files, settings, folder=folder, drop_dead=drop_dead, picks=picks, workers=workers, step=step
-        )
+        batch = observe_many(files, settings, folder=folder, workers=workers, step=step, **how)
     if not len(batch):
         raise InputError(f"no record could be identified; the first: {batch.failed[0].problem}")
     return many_document(batch)
@@ -173,6 +178,13 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
             settings = IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
     settings = settings if method is None else settings.with_method(method)
     return replace(settings, real_poles=True) if real_poles else settings
+
+
+def _unsaid(sample_rate: float | None, unit: str | None) -> Unsaid:
+    if unit is not None:
+        with located(field="--unit"):
+            vibration_of(plain_unit(unit))
+    return Unsaid(sample_rate, unit)
 
 
 def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy import signal
 
 from jackettwin.records.signs import LEAST_CYCLES, strongest_line
 
@@ -29,10 +30,14 @@ FEWEST_PARTS = 4
 """On either side of a change."""
 LEARNT_FROM = (slice(0, 10), slice(10, 20), slice(0, 6), slice(14, 20))
 """Parts from which a prediction is learnt: one of them lies on one side of any change."""
-BANDS = 4
+BANDS = 8
 """Octaves looked at, from below the strongest line up."""
-LINES_A_PART = 2.0
-"""Spectral lines of a band needed for each part."""
+LINES_A_PART = (2, 24)
+"""Spectral lines of a band for each part, least and most."""
+WELL_EXPLAINED = 0.98
+"""Coherence that makes it needless to look at further bands."""
+IN_MOST = 0.8
+"""Median over the parts of the coherence there: what is explained must not be a single event."""
 CASES_A_CHANNEL = 8.0
 """Envelope samples needed for each channel of a prediction."""
 MOST_OTHERS = 6
@@ -116,18 +121,23 @@ def changes(y: FloatArray) -> list[Change]:
 
 
 def _envelopes(y: FloatArray) -> list[ComplexArray]:
-    """Return the complex envelopes of all channels in octaves, each (n_channels, PARTS · samples a part)."""
+    """Return the complex envelopes of all channels in octaves, each (n_channels, PARTS · samples a part).
+
+    The ends are tapered, lest the jump between them leak into every band.
+    """
     out: list[ComplexArray] = []
-    if y.shape[1] < 4 * LEAST_CYCLES:
+    n = y.shape[1]
+    if n < 4 * LEAST_CYCLES:
         return out
-    spectra = np.fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1)
+    taper = signal.windows.tukey(n, 1.0 / PARTS)
+    spectra = np.fft.rfft(np.where(np.isfinite(y), y, 0.0) * taper, axis=1)
     low = max(int(strongest_line(spectra) / np.sqrt(2.0)), LEAST_CYCLES)
     for _ in range(BANDS):
-        n = max(low // PARTS, int(LINES_A_PART)) * PARTS
-        if low + n > spectra.shape[1]:
+        lines = min(max(low // PARTS, LINES_A_PART[0]), LINES_A_PART[1]) * PARTS
+        if low + lines > spectra.shape[1]:
             break
-        out.append(np.fft.ifft(spectra[:, low : low + n], axis=1))
-        low += n
+        out.append(np.fft.ifft(spectra[:, low : low + lines], axis=1))
+        low *= 2
     return out
 
 
@@ -138,13 +148,18 @@ def _present(y: FloatArray) -> BoolArray:
 
 
 def _change(bands: list[ComplexArray], there: BoolArray, rows: list[int], i: int) -> Change | None:
-    """Return the change of channel i, in parts, in the band in which the others explain it best."""
-    found = [_against_others(z, there, rows, i, some) for z in bands for some in LEARNT_FROM]
-    known = [one for one in found if one is not None]
-    if not known:
+    """Return the change of channel i, in parts, in the first band in which the others explain it well."""
+    best: _Against | None = None
+    for z in bands:
+        for some in LEARNT_FROM:
+            seen = _against_others(z, there, rows, i, some)
+            if seen is not None and (best is None or seen.explained > best.explained):
+                best = seen
+        if best is not None and best.explained > WELL_EXPLAINED:
+            break
+    if best is None or best.explained < EXPLAINED:
         return None
-    best = max(known, key=lambda one: one.explained)
-    return _split(i, best, certain=len(rows) > 2) if best.explained > EXPLAINED else None
+    return _split(i, best, certain=len(rows) > 2)
 
 
 @dataclass(frozen=True)
@@ -161,6 +176,14 @@ class _Against:
         cross, predicted, own = self.cross[parts], self.predicted[parts], self.own[parts]
         power = max(float(predicted.sum()) * float(own.sum()), np.finfo(float).tiny)
         return _Against(float(np.abs(cross.sum())) / power**0.5, cross, predicted, own)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the channel follows its prediction, in most of the parts."""
+        there = self.predicted > 0.0
+        power = np.sqrt(np.maximum(self.predicted * self.own, np.finfo(float).tiny))
+        in_most = float(np.median((np.abs(self.cross) / power)[there])) if there.any() else 0.0
+        return self.explained > EXPLAINED and in_most > IN_MOST
 
     @property
     def gain(self) -> complex:
@@ -230,7 +253,7 @@ def _gain_of_the_worse(left: _Against, right: _Against, *, first: bool) -> tuple
 
     The worse is the one that shows nothing, else the shorter; None if the sides are alike or neither tells.
     """
-    sound = [side.explained > EXPLAINED for side in (left, right)]
+    sound = [side.follows for side in (left, right)]
     if not any(sound):
         return None
     better_is_left = sound[0] and (first or not sound[1])

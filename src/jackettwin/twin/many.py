@@ -26,6 +26,7 @@ from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.records.readers import FORMATS
+from jackettwin.records.readers.table import Unsaid
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.version import __version__
 
@@ -92,6 +93,7 @@ class _Work:
     settings: IdentificationSettings
     drop_dead: bool
     picks: tuple[Pick, ...]
+    unsaid: Unsaid
 
 
 def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
@@ -126,6 +128,7 @@ def observe_many(
     folder: Path,
     drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
+    unsaid: Unsaid | None = None,
     workers: int | None = None,
     step: Callable[[str], None] = lambda _: None,
 ) -> Batch:
@@ -137,12 +140,14 @@ def observe_many(
         Of results: those that are there are not computed again, new ones are put there as they come.
     picks : tuple of Pick
         Poles to take instead of the automatic selection, for the records they name.
+    unsaid : Unsaid, optional
+        Rate and unit, for files that do not say them.
     workers : int, optional
         Processes; default one a core. One works in this process.
     step : callable
         Told the name of every record that is done.
     """
-    work = _Work(settings, drop_dead, picks)
+    work = _Work(settings, drop_dead, picks, unsaid or Unsaid())
     places = [_place(folder, file, work) for file in files]
     left = []
     for i, place in enumerate(places):
@@ -207,7 +212,8 @@ def _ignore_interrupt() -> None:
 
 def _one(file: Path, work: _Work) -> Seen | Failed:
     try:
-        return kept(observe(file, work.settings, drop_dead=work.drop_dead, picks=work.picks))
+        seen = observe(file, work.settings, drop_dead=work.drop_dead, picks=work.picks, unsaid=work.unsaid)
+        return kept(seen)
     except JackettwinError as error:
         return Failed(str(file), str(error))
 

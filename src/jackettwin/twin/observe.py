@@ -15,6 +15,7 @@ from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.findings import ChannelQuality
 from jackettwin.records.quality import Quality
+from jackettwin.records.readers.table import Unsaid
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
@@ -48,6 +49,7 @@ def observe(
     sensors: tuple[Sensor, ...] = (),
     drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
+    unsaid: Unsaid | None = None,
 ) -> Observation:
     """Read, judge, repair, turn to the rotor's axes and identify one record.
 
@@ -59,13 +61,15 @@ def observe(
         Leave channels that carry nothing out instead of refusing the record.
     picks : tuple of Pick
         Poles to take instead of the automatic selection, for the records they name.
+    unsaid : Unsaid, optional
+        Rate and unit, for a file that does not say them.
 
     Raises
     ------
     InputError
         If the record cannot be read, a channel carries nothing, or the record cannot be identified.
     """
-    record = with_conditions(read_record(path))
+    record = with_conditions(read_record(path, unsaid))
     with located(file=path):
         chosen = _placed(record, sensors) if sensors else moving_channels(record)
         quality = assess(chosen)
@@ -139,7 +143,7 @@ def moving_channels(record: Record) -> Record:
             field="channels",
             value=record.channel_names,
             allowed=", ".join(MOTION),
-            remedy="state the quantity of each channel",
+            remedy="state quantity and unit in the JSON beside the record (identify: or --unit)",
         )
     return record.select(names)
 

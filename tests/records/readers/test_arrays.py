@@ -110,6 +110,17 @@ def test_hdf5_attributes_give_rate_and_unit(tmp_path: Path) -> None:
     np.testing.assert_allclose(record.data, Y * 9.80665e-3, rtol=1e-15)
 
 
+@pytest.mark.parametrize(("key", "value"), [("fs", 20.0), ("wf_increment", 0.05)])
+def test_a_dataset_may_hold_its_rate(key: str, value: float, tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "r.h5", "w") as file:
+        item = file.create_dataset("2024/acc_x", data=Y[0])
+        item.attrs[key] = value
+        item.attrs["unit_string"] = "g"
+    record = read_record(tmp_path / "r.h5")
+    assert record.sample_rate_hz == pytest.approx(20.0)
+    np.testing.assert_allclose(record.data[0], Y[0] * 9.80665, rtol=1e-15)
+
+
 def test_a_missing_package_names_its_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     save_h5(tmp_path / "r.h5", data=Y)
 

@@ -7,6 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record
+from jackettwin.records.readers.table import Unsaid
 
 
 def read_text(text: str, tmp_path: Path, encoding: str = "utf-8") -> Record:
@@ -87,7 +88,7 @@ def test_ambiguous_dates_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("1,2\n3,4\n", "has no header row"),
+        ("1,2\n3,1\n", "sample rate is missing"),
         ("# fs: 5\nacc_x\ng\n1\nx1\n3\n", r"line 5, channel acc_x: is not a number \(got 'x1'\)"),
         ("# fs: fast\nacc_x\ng\n1\n2\n", "fs: is not a rate.*fast"),
         ("# fs: 5\nacc_x,acc_x\ng,g\n1,2\n3,4\n", "channel name is given twice.*acc_x"),
@@ -119,3 +120,45 @@ def test_a_column_of_words_is_left_out_and_named(tmp_path: Path) -> None:
     record = read_text("time [s],acc_x [g],state\n0,1,idling\n0.2,2,idling\n0.4,3,parked\n", tmp_path)
     assert record.channel_names == ("acc_x",)
     assert record.metadata["left_out"] == ["state"]
+
+
+def test_columns_without_names_are_numbered(tmp_path: Path) -> None:
+    path = tmp_path / "bare.txt"
+    path.write_text("1.5e0 2\n-1 3\n0.5 1\n")
+    record = read_record(path, Unsaid(sample_rate_hz=20.0, unit="g"))
+    assert record.channel_names == ("column_1", "column_2")
+    assert {c.quantity for c in record.channels} == {"acceleration"}
+    np.testing.assert_allclose(record.data[0], np.array([1.5, -1.0, 0.5]) * 9.80665, rtol=1e-15)
+    assert record.sample_rate_hz == 20.0
+    path.write_text("0.0 2\n0.1 3\n0.2 1\n")
+    timed = read_record(path, Unsaid(unit="mm/s"))
+    assert (timed.channel_names, timed.sample_rate_hz) == (("column_2",), 10.0)
+    assert timed.channels[0].quantity == "velocity"
+
+
+def test_what_a_file_says_wins_over_what_is_assumed(tmp_path: Path) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("# fs: 5\nacc_x [g],ch2,wind\n1,2,3\n2,3,4\n")
+    record = read_record(path, Unsaid(sample_rate_hz=20.0, unit="mm/s"))
+    assert record.sample_rate_hz == 5.0
+    assert [c.quantity for c in record.channels] == ["acceleration", "velocity", "other"]
+
+
+def test_a_table_of_a_campbell_logger_reads(tmp_path: Path) -> None:
+    text = (
+        '"TOA5","CR6","CR6","1234","CR6.Std.10","CPU:prog.CR6","5555","fast"\n'
+        '"TIMESTAMP","RECORD","Acc_X"\n"TS","RN","g"\n"","","Smp"\n'
+        '"2024-03-01 12:00:00",0,0.5\n"2024-03-01 12:00:00.1",1,0.25\n"2024-03-01 12:00:00.2",2,-1\n'
+    )
+    record = read_text(text, tmp_path).select(["Acc_X"])
+    np.testing.assert_allclose(record.data[0], np.array([0.5, 0.25, -1.0]) * 9.80665, rtol=1e-15)
+    assert record.sample_rate_hz == pytest.approx(10.0)
+    assert record.start_utc is not None and record.start_utc.hour == 12
+
+
+def test_a_unit_in_the_name_of_the_time(tmp_path: Path) -> None:
+    record = read_text(
+        "timestamp_ms,acc_x [g]\n1709290800000,1\n1709290800050,2\n1709290800100,3\n", tmp_path
+    )
+    assert record.sample_rate_hz == pytest.approx(20.0)
+    assert record.start_utc is not None and record.start_utc.year == 2024

@@ -22,7 +22,7 @@ from jackettwin.records.readers.description import (
     parse_description,
     parse_time,
 )
-from jackettwin.records.readers.table import TIME_NAMES, Table, seconds
+from jackettwin.records.readers.table import Table, is_time, seconds, time_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Arrays = dict[str, npt.NDArray[Any]]
 
 NAME_LISTS = ("channel_names", "channelnames", "names", "channels", "labels")
-STEP_KEYS = ("dt", "time_step", "step_s")
+STEP_KEYS = ("dt", "time_step", "step_s", "wf_increment")
 
 
 def table_from_arrays(
@@ -49,7 +49,7 @@ def table_from_arrays(
     numbers = {key: np.squeeze(value) for key, value in arrays.items() if value.dtype.kind in "fiub"}
     scalars = {_last(key): float(value) for key, value in numbers.items() if value.ndim == 0}
     named = {_last(key): text for key, text in texts.items()}
-    times = [key for key, value in numbers.items() if value.ndim == 1 and _last(key) in TIME_NAMES]
+    times = [key for key, value in numbers.items() if value.ndim == 1 and is_time(_last(key))]
     vectors = {key: value for key, value in numbers.items() if value.ndim == 1 and key not in times}
     rows = _matrix_rows(numbers, named) | _common_length(vectors)
     if not rows:
@@ -61,7 +61,9 @@ def table_from_arrays(
         raise InputError(
             "channels differ in length", field="data", value=sorted(lengths), remedy="store one rate a file"
         )
-    times_s, start = seconds(numbers[times[0]].astype(np.float64)) if times else (None, None)
+    times_s, start = (None, None)
+    if times:
+        times_s, start = seconds(numbers[times[0]].astype(np.float64), time_unit(_last(times[0])))
     return Table(
         names=tuple(rows),
         data=np.vstack([np.asarray(row, dtype=np.float64) for row in rows.values()]),

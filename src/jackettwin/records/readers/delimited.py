@@ -3,7 +3,8 @@
 ``#`` lines before the header may hold ``key: value``. Comma, semicolon, tab, bar or blanks
 separate; a decimal comma is understood wherever the comma does not separate. Units may stand in
 a row of their own or in brackets behind the names. Empty cells, ``nan``, ``NA``, ``null`` and the
-like are missing samples.
+like are missing samples. Columns without names are numbered; the four lines on top of a TOA5 table
+(Campbell) are understood.
 """
 
 from __future__ import annotations
@@ -26,7 +27,17 @@ if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
 MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "inf", "-inf", "+inf"}
-RATE_KEYS = ("sample_rate_hz", "sample_rate", "sampling_rate", "sampling_frequency", "fs")
+RATE_KEYS = (
+    "sample_rate_hz",
+    "sample_rate",
+    "samplerate",
+    "sampling_rate",
+    "samplingrate",
+    "sampling_frequency",
+    "samplingfrequency",
+    "fs",
+    "fsamp",
+)
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
 # Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
 _DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
@@ -43,20 +54,22 @@ def read(path: Path) -> Table:
         Names the line and the cell that is not understood.
     """
     lines = _decode(path.read_bytes()).splitlines()
+    lines = _without_toa5(lines)
     comments, start = _preamble(lines)
     delimiter = _delimiter(lines[start : start + 50])
     rows = [row for row in _cells("\n".join(lines[start:]), delimiter) if any(cell.strip() for cell in row)]
-    if not rows or _is_data(rows[0], delimiter):
-        raise InputError(
-            "has no header row", field="line 1", allowed="channel names", remedy="name the columns"
-        )
-    names, units = _names_and_units(rows[0])
-    body = rows[1:]
+    if not rows:
+        raise InputError("holds no rows", field="data", allowed="names and numbers")
+    bare = _is_data(rows[0], delimiter)
+    names, units = _numbered(rows[0]) if bare else _names_and_units(rows[0])
+    body = rows if bare else rows[1:]
     if body and not _is_data(body[0], delimiter):
         units = {name: cell.strip() for name, cell in zip(names, body[0], strict=False) if cell.strip()}
         body = body[1:]
     first_line = start + len(rows) - len(body) + 1
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
+    if bare and _climbs_evenly(columns[0]):
+        names[0] = ""  # a count or a time, as an index without a name is
     return table_from_columns(names, columns, units, **_known(comments))
 
 
@@ -88,6 +101,25 @@ def _preamble(lines: list[str]) -> tuple[dict[str, str], int]:
         if found:
             comments[key.strip()] = value.strip()
     return comments, len(lines)
+
+
+def _without_toa5(lines: list[str]) -> list[str]:
+    """Return the lines without what Campbell's TOA5 tables put above the names and below the units."""
+    if not lines or not lines[0].lstrip('"').startswith("TOA5"):
+        return lines
+    return [*lines[1:3], *lines[4:]]
+
+
+def _climbs_evenly(column: npt.NDArray[Any]) -> bool:
+    if column.dtype.kind != "f" or len(column) < 3:
+        return False
+    steps = np.diff(column)
+    return bool(np.all(np.abs(steps - np.median(steps)) < 0.5 * np.median(steps)))
+
+
+def _numbered(row: list[str]) -> tuple[list[str], dict[str, str]]:
+    """Return names for columns that have none."""
+    return [f"column_{i + 1}" for i in range(len(row))], {}
 
 
 def _known(comments: dict[str, str]) -> dict[str, Any]:

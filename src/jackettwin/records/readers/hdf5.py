@@ -1,7 +1,7 @@
 """HDF5 (and MATLAB 7.3, which is HDF5): datasets and attributes by the rules of named arrays.
 
-A dataset's attribute ``unit`` or ``units`` is its unit; scalar attributes of the file or of a group
-(the rate, the start) count as named scalars.
+A dataset's attribute ``unit``, ``units`` or ``unit_string`` is its unit; scalar attributes of the file, of a
+group or of a dataset (the rate, the start) count as named scalars.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, MissingExtra
-from jackettwin.records.readers.arrays import arrays_from_record, table_from_arrays
+from jackettwin.records.readers.arrays import STEP_KEYS, arrays_from_record, table_from_arrays
+from jackettwin.records.readers.delimited import RATE_KEYS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from jackettwin.records.readers.table import Table
     from jackettwin.records.record import Record
 
+UNIT_KEYS = ("unit", "units", "unit_string")
 MOST_COMPRESSION = 1000
 """A damaged header announces any size; what deflate cannot have packed into the file is refused."""
 
@@ -41,10 +43,10 @@ def read(path: Path) -> Table:
         if name.startswith("#"):  # MATLAB's own bookkeeping
             return
         for key, value in item.attrs.items():
-            if isinstance(item, h5py.Group):
-                arrays[f"{name}.{key}".lstrip(".")] = _array(value)
-            elif key in ("unit", "units"):
+            if isinstance(item, h5py.Dataset) and key in UNIT_KEYS:
                 units[name] = str(_array(value).ravel()[0])
+            elif isinstance(item, h5py.Group) or key.lower() in (*RATE_KEYS, *STEP_KEYS):
+                arrays[f"{name}.{key}".lstrip(".")] = _array(value)
         if isinstance(item, h5py.Dataset):
             arrays[name] = _dataset(h5py, item)
 

@@ -10,7 +10,7 @@ from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
 from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
 from jackettwin.records.readers.description import description_text, read_description
-from jackettwin.records.readers.table import Table, to_record
+from jackettwin.records.readers.table import Table, Unsaid, to_record
 from jackettwin.records.record import Record
 
 
@@ -41,12 +41,17 @@ FORMATS = (
 )
 
 
-def read_record(path: Path | str) -> Record:
+def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
     """Read a record in any known format, with the ``NAME.json`` beside it if there is one.
 
     The JSON chooses and describes channels and wins over what the file says of them; a
     contradiction in the sample rate is an error. Numbers are brought to SI units; what is not a
     finite number, or is beyond 1e15, becomes a missing sample (NaN).
+
+    Parameters
+    ----------
+    unsaid : Unsaid, optional
+        Rate and unit, for a file that does not say them.
 
     Raises
     ------
@@ -69,7 +74,7 @@ def read_record(path: Path | str) -> Record:
             remedy="the file is damaged or not of this format",
         ) from error
     try:
-        return to_record(table, description, path)
+        return to_record(table, description, path, unsaid)
     except InputError as error:
         raise error.at(file=path) from None
 

@@ -12,7 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, did_you_mean
-from jackettwin.quantities import VIBRATIONS, guess_quantity, plain_unit, quantity, to_si
+from jackettwin.quantities import (
+    VIBRATIONS,
+    guess_quantity,
+    names_other,
+    plain_unit,
+    quantity,
+    to_si,
+    vibration_of,
+)
 from jackettwin.records.clock import regularise
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.record import LARGEST, Channel, Record
@@ -24,7 +32,23 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 TIME_NAMES = ("time", "time_s", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit")
+_TIME_UNIT = re.compile(r"^(?P<name>.+?)[_ ]*\(?(?P<unit>ms|us|µs|ns|s)\)?$", re.IGNORECASE)
 _AXIS_SUFFIX = re.compile(r"[_ .\-]([xyz])$", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Unsaid:
+    """What holds for a file that does not say so itself, nor the JSON beside it.
+
+    Attributes
+    ----------
+    sample_rate_hz : float or None
+    unit : str or None
+        Of the channels without a unit: of acceleration, velocity, displacement or another vibration.
+    """
+
+    sample_rate_hz: float | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -74,7 +98,8 @@ def table_from_columns(
     channels = {name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit}
     time = _time_column(names, columns)
     if time is not None:
-        times_s, start_utc = seconds(columns[time], channels.pop(names[time], ChannelEntry()).unit)
+        unit = channels.pop(names[time], ChannelEntry()).unit or time_unit(names[time])
+        times_s, start_utc = seconds(columns[time], unit)
         known = {"start_utc": start_utc, **known, "times_s": times_s}
     kept = [i for i in range(len(names)) if i != time and names[i] and columns[i].dtype.kind == "f"]
     left_out = [name for i, name in enumerate(names) if name and i != time and i not in kept]
@@ -91,7 +116,7 @@ def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> i
         return dated[0]
     if not names:
         return None
-    numeric, called_time = columns[0].dtype.kind == "f", names[0].strip().lower() in TIME_NAMES
+    numeric, called_time = columns[0].dtype.kind == "f", is_time(names[0])
     if called_time and not numeric:
         raise InputError(
             "times are not understood",
@@ -102,6 +127,22 @@ def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> i
         )
     counts_rows = numeric and np.array_equal(columns[0], np.arange(len(columns[0])))
     return 0 if called_time or (numeric and not names[0] and not counts_rows) else None
+
+
+def is_time(name: str) -> bool:
+    """Tell whether a name is that of a time, with or without its unit.
+
+    >>> [is_time(name) for name in ("Time", "timestamp_ms", "time (s)", "temp")]
+    [True, True, True, False]
+    """
+    match = _TIME_UNIT.match(name.strip())
+    return any(text.lower() in TIME_NAMES for text in (name.strip(), match["name"] if match else ""))
+
+
+def time_unit(name: str) -> str | None:
+    """Return the unit in the name of a time, e.g. ``ms`` of ``timestamp_ms``."""
+    match = _TIME_UNIT.match(name.strip())
+    return match["unit"] if match and name.strip().lower() not in TIME_NAMES else None
 
 
 def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
@@ -126,7 +167,7 @@ def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArr
     return times_s, None
 
 
-def to_record(table: Table, beside: Description | None, path: Path) -> Record:
+def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsaid | None = None) -> Record:
     """Return the record: columns chosen and described by the JSON, in SI units, on a regular grid.
 
     Raises
@@ -135,7 +176,7 @@ def to_record(table: Table, beside: Description | None, path: Path) -> Record:
         If the two contradict each other or something needed is in neither.
     """
     _refuse_twins(table.names)
-    said = beside or table.description or Description()
+    said, unsaid = beside or table.description or Description(), unsaid or Unsaid()
     names = tuple(said.channels) if said.channels else table.names
     data = table.data[[_row_of(name, table) for name in names]]
     stated = _stated_rate(table, said)
@@ -144,16 +185,19 @@ def to_record(table: Table, beside: Description | None, path: Path) -> Record:
         data, clock = regularise(table.times_s, data, sample_rate_hz=stated)
         stated = clock.sample_rate_hz
         metadata["clock"] = asdict(clock)
+    stated = stated or unsaid.sample_rate_hz
     if stated is None:
         raise InputError(
             "sample rate is missing",
             field="sample_rate_hz",
             allowed="> 0 Hz",
-            remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file',
+            remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file '
+            "(identify: or --sample-rate)",
         )
     if data.shape[1] < 2:
         raise InputError("holds no samples", field="data", value=data.shape[1], allowed="at least 2 samples")
-    described = [_channel(name, table.channels.get(name), (said.channels or {}).get(name)) for name in names]
+    entries = [_merged(name, table.channels.get(name), (said.channels or {}).get(name)) for name in names]
+    described = [_channel(name, entry, unsaid.unit) for name, entry in zip(names, entries, strict=True)]
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
         data = data * np.array([factor for _, factor in described])[:, None]
     return Record(
@@ -198,12 +242,19 @@ def _stated_rate(table: Table, said: Description) -> float | None:
     return given if given is not None else own
 
 
-def _channel(name: str, own: ChannelEntry | None, given: ChannelEntry | None) -> tuple[Channel, float]:
-    """Merge what the file and the description say; return the channel in SI and the factor to it."""
-    merged = {**(own or ChannelEntry()).model_dump(exclude_none=True)}
-    merged |= (given or ChannelEntry()).model_dump(exclude_unset=True)  # null says "not this"
+def _merged(name: str, own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
+    """Return what the file says of a channel, overruled by what the description says: null is "not this"."""
+    own_entry = (own or ChannelEntry()).model_dump(exclude_none=True)
+    return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
+
+
+def _channel(name: str, merged: Mapping[str, Any], unsaid_unit: str | None) -> tuple[Channel, float]:
+    """Return the channel in SI and the factor to it."""
     unit = plain_unit(merged.get("unit") or "")
     kind = merged.get("quantity") or guess_quantity(name, unit)
+    if not unit and unsaid_unit is not None and kind in (*VIBRATIONS, "other") and not names_other(name):
+        unit = plain_unit(unsaid_unit)
+        kind = vibration_of(unit) if kind == "other" else kind
     try:
         factor, si_unit = _factor(kind, unit)
         direction = _unit_vector(merged.get("direction") or _direction_in(name, kind))
@@ -231,7 +282,7 @@ def _factor(kind: str, unit: str) -> tuple[float, str]:
             "unit is missing",
             field="unit",
             allowed=f"{si_unit} or another unit of {kind}",
-            remedy="state the unit of the stored numbers",
+            remedy="state the unit of the stored numbers in the JSON beside the file (identify: or --unit)",
         )
     return to_si(kind, unit or si_unit), si_unit
 
