@@ -40,6 +40,13 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         ("ratio: 0.01,", "ratio: 1.5,", r"damping\.rayleigh\.ratio.*< 1"),
         ("jacket15", "jacket51", r"no such structure.*did you mean 'jacket15'"),
         ("tie: all", "tie: some", r"support\.tie.*horizontal-vertical"),
+        ("tie: all", "tie: per-leg, shared: [eta]", r"support\.shared.*no law has such a parameter"),
+        ("tie: all", "scatter: {k: 0.3}", r"support\.scatter.*share all parameters already"),
+        (
+            "tie: all",
+            "tie: per-leg, shared: [k], scatter: {k: 0.3}",
+            r"support\.scatter.*shared or scatters, not both",
+        ),
         ("tie: all", "law: zenner", r"unknown law.*did you mean 'zener'"),
         ("support: {tie: all}\n", "support: {tie: all}\nsupport: {tie: all}\n", r"'support' is given twice"),
         ("targets:", "records: [a.parquet]\ntargets:", r"give records or targets"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import click
+import numpy as np
 from rich.table import Table
 
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Update
+from jackettwin.updating.scatter import leg_scatter
 
 DEFAULT_TWIN = "openfast_pile"
 
@@ -36,6 +38,8 @@ def print_updates(result: TwinResult) -> None:
         output.print(f"\n[bold]{u.law}[/bold]")
         output.print(_parameters(u))
         output.print(_modes(result.measured, u))
+        for line in _leg_scatter(u):
+            output.print(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
                 output.print(f"  {e.label}: {_unexplained(e)}")
@@ -55,6 +59,19 @@ def _parameters(u: Update) -> Table:
         bound = ", on its bound" if p.name in u.best.at_bound else ""
         table.add_row(p.name, f"{value:.3g}{unit}", span, verdict + bound)
     return table
+
+
+def _leg_scatter(u: Update) -> list[str]:
+    """Return by how much legs scatter about their mean, a line a parameter."""
+    found = () if u.uncertainty is None else leg_scatter(u.problem.prior, u.uncertainty.log_theta)
+    lines = []
+    for s in found:
+        low, middle, high = np.quantile(s.draws, [0.05, 0.5, 0.95])
+        lines.append(
+            f"{s.name} scatters by {middle:.2g} in its logarithm between the legs ({low:.2g} … {high:.2g}; "
+            f"before the data {s.before[0]:.2g} … {s.before[1]:.2g})"
+        )
+    return lines
 
 
 def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:

@@ -92,6 +92,10 @@ class TwinConfig:
     rayleigh_ratio: float
     water: WaterConfig | None
     tie: str
+    shared: tuple[str, ...]
+    """Parameters of the laws with one value for all legs."""
+    scatter: Mapping[str, float]
+    """Typical standard deviation of ln θ between legs, by parameter of the laws."""
     heads: str | None
     """Pile heads whose 6×6 stiffness the laws scale: a SUPPORT, ``own`` for the structure's."""
     sensors: tuple[Sensor, ...]

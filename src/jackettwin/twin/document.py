@@ -15,6 +15,7 @@ from jackettwin.twin.result import MeasuredMode, TwinResult
 from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
+from jackettwin.updating.scatter import leg_scatter
 from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
 
@@ -172,6 +173,10 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
             for i, mode in enumerate(q.modes)
         ],
         "support": {name: _quantiles(values) for name, values in q.support.items()},
+        "leg_scatter": {
+            s.name: {**_quantiles(s.draws), "prior_interval_90": list(s.before)}
+            for s in leg_scatter(u.problem.prior, known.log_theta)
+        },
         "profile_likelihood": {
             p.name: {"values": p.values.tolist(), "cost": p.cost.tolist()} for p in known.profiles
         },

@@ -70,11 +70,17 @@ class DampingSchema(Schema):
 
 
 class SupportSchema(Schema):
-    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale."""
+    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale.
+
+    ``shared`` parameters have one value for all tie groups; ``scatter`` says by how much, in ln θ, the others
+    may be expected to differ between them.
+    """
 
     law: str | None = None
     tie: Literal["all", "horizontal-vertical", "per-leg"] = "all"
     stiffness: str | None = None
+    shared: list[str] = []
+    scatter: dict[str, Annotated[float, Field(gt=0.0, le=3.0)]] = {}
 
 
 class SensorSchema(Schema):
@@ -197,6 +203,8 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     if schema.support.law:
         with located(field="support"):
             family(schema.support.law)
+    with located(field="support"):
+        _check_ties(schema.support, schema.update)
     with located(field="update"):
         _check_update(schema.update)
     damping = schema.damping.rayleigh if schema.damping is not None else None
@@ -213,6 +221,8 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         rayleigh_ratio=0.0 if damping is None else damping.ratio,
         water=_water(schema, structure, path.parent),
         tie=schema.support.tie,
+        shared=tuple(dict.fromkeys(schema.support.shared)),
+        scatter=dict(schema.support.scatter),
         heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
@@ -241,6 +251,30 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
         picks = () if source is None else parse_picks(source)
         refuse_strangers(picks, records)
         return picks
+
+
+def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
+    known = sorted({p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters})
+    for field, names in (("shared", support.shared), ("scatter", [*support.scatter])):
+        for name in names:
+            if name not in known:
+                raise InputError(
+                    "no law has such a parameter",
+                    field=field,
+                    value=name,
+                    allowed=", ".join(known),
+                    remedy=did_you_mean(name, known),
+                )
+        if names and support.tie == "all":
+            raise InputError(
+                "all supports share all parameters already",
+                field=field,
+                value=names,
+                remedy="tie: per-leg or horizontal-vertical",
+            )
+    both = set(support.shared) & set(support.scatter)
+    if both:
+        raise InputError("a parameter is shared or scatters, not both", field="scatter", value=sorted(both))
 
 
 def _check_update(update: UpdateSchema) -> None:

@@ -23,12 +23,12 @@ from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.measure import Measured, Sighting, measure
-from jackettwin.twin.problem import Evidence, law_model
+from jackettwin.twin.problem import Evidence, law_model, tied_problem
 from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
-from jackettwin.updating import SupportModel, joint, numbered_modes
+from jackettwin.updating import Problem, SupportModel, numbered_modes
 from jackettwin.updating.drift import Drift, find_drift
 from jackettwin.updating.joint import Growth
-from jackettwin.updating.posterior import Posterior, sample_posterior
+from jackettwin.updating.posterior import sample_posterior
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -184,20 +184,21 @@ def follow_modes(
     data = _states(config, everything, labels, wind)
     rotor = rotor_damping(config, assembly, numbered, wind)
     model = law_model(config, Evidence(assembly, None, data, rotor), law)
+    parameters = _problem(config, model, data).parameters
     if prior is not None:
-        _agree(config, prior, law, model)
+        _agree(config, prior, law, model, [p.name for p in parameters])
     days = past
     for batch in batches:
         step(f"update after {batch[-1].name}")
         known = [*known, *batch]
-        posterior = _posterior(config, model, _states(config, known, labels, wind))
-        days = (*days, _known_after(batch, posterior, model))
+        problem = _problem(config, model, _states(config, known, labels, wind))
+        days = (*days, _known_after(config, batch, problem))
     return Followed(
         name=config.name,
         law=law,
         reference_hz=model.reference_hz,
         wind_m_s=wind,
-        units={p.name: p.unit for p in model.parameters},
+        units={p.name: p.unit for p in parameters},
         days=days,
         drift=_drift(config, model, days, labels, wind),
         warnings=(),
@@ -263,13 +264,13 @@ def _measured(records: Sequence[RecordModes]) -> Measured:
     return Measured((), (), sightings, ())
 
 
-def _posterior(config: TwinConfig, model: SupportModel, states: States) -> Posterior:
-    problem = joint(model.reaching(max(m for r, _ in states.values() for m in r.modes)), states)
-    return sample_posterior(problem, particles=config.update.particles, seed=config.update.seed)
+def _problem(config: TwinConfig, model: SupportModel, states: States) -> Problem:
+    return tied_problem(config, model.reaching(max(m for r, _ in states.values() for m in r.modes)), states)
 
 
-def _known_after(batch: tuple[RecordModes, ...], posterior: Posterior, model: SupportModel) -> Day:
-    names = [p.name for p in model.parameters]
+def _known_after(config: TwinConfig, batch: tuple[RecordModes, ...], problem: Problem) -> Day:
+    posterior = sample_posterior(problem, particles=config.update.particles, seed=config.update.seed)
+    names = [p.name for p in problem.parameters]
     median = np.exp(np.median(posterior.log_theta, axis=0))
     interval = {n: (float(a), float(b)) for n, (a, b) in zip(names, posterior.interval(), strict=True)}
     return Day(batch, dict(zip(names, median.tolist(), strict=True)), interval)
@@ -296,8 +297,8 @@ def _drift(
     growing = tuple(p.name for p in model.parameters if p.unit == _STIFFNESS)
     growth = Growth(growing, times, _WHOLE_SPAN / float(at[-1]))
     errors = _model_errors(config, labels)
-    problem = joint(model, states, errors=errors, growth=growth)
-    start = [*(days[-1].median[p.name] for p in model.parameters), *(1.0 for _ in errors)]
+    problem = tied_problem(config, model, states, errors=errors, growth=growth)
+    start = [days[-1].median.get(p.name, 1.0) for p in problem.parameters[:-1]]
     return find_drift(problem, np.log(start))
 
 
@@ -326,10 +327,9 @@ def _since_first(days: Sequence[Day]) -> FloatArray:
     return np.array([(day.time_utc - days[0].time_utc).total_seconds() / 86400.0 for day in days])
 
 
-def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel) -> None:
+def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel, names: list[str]) -> None:
     """Refuse a prior of another structure, law or set of parameters."""
     same = abs(prior.reference_hz / model.reference_hz - 1.0) < 1e-6
-    names = [p.name for p in model.parameters]
     if not same or prior.law != law or list(prior.units) != names:
         raise InputError(
             "the prior is of another law, structure or set of parameters",

@@ -15,6 +15,7 @@ from jackettwin.twin.rotor import RotorDamping, States
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import Problem, family, joint, support_model
 from jackettwin.updating.extras import Extras
+from jackettwin.updating.joint import Growth
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.shapes import ShapeTarget
 
@@ -47,8 +48,30 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
         If bounds, priors, ties or pile heads do not fit the law.
     """
     model = law_model(config, evidence, law)
+    return tied_problem(config, model, evidence.states, shapes=_shapes(config, model, evidence))
+
+
+def tied_problem(
+    config: TwinConfig,
+    model: SupportModel,
+    states: States,
+    *,
+    shapes: tuple[ShapeTarget, ...] = (),
+    errors: Mapping[str, float] | None = None,
+    growth: Growth | None = None,
+) -> Problem:
+    """Return the problem of a model in some states, its legs tied as the twin says."""
+    law = {p.name for p in model.family.parameters}
     with located(file=config.path):
-        return joint(model, evidence.states, shapes=_shapes(config, model, evidence))
+        return joint(
+            model,
+            states,
+            shapes=shapes,
+            shared=tuple(name for name in config.shared if name in law),
+            scatter={name: scale for name, scale in config.scatter.items() if name in law},
+            errors=errors,
+            growth=growth,
+        )
 
 
 def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:

@@ -15,8 +15,6 @@ IDENTIFIED, WEAK = 0.3, 0.8
 """Posterior over prior standard deviation of ln θ below which a parameter is identified, or weakly so."""
 _TRADES = 0.7
 """Correlation from which two parameters trade places."""
-_TRADES = 0.7
-"""Correlation from which two parameters trade places."""
 _UNSEEN = 0.5
 """Standard deviations of the data that a prior standard deviation of a parameter moves, at the median."""
 _DESIGN_POINTS = 48

@@ -12,8 +12,9 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
-from jackettwin.updating.prior import BoxPrior
+from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
+from jackettwin.updating.scatter import Legs, ScatteredPrior
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
 
@@ -59,6 +60,8 @@ def joint(
     *,
     per_state: tuple[str, ...] = (),
     shapes: tuple[ShapeTarget, ...] = (),
+    shared: tuple[str, ...] = (),
+    scatter: Mapping[str, float] | None = None,
     errors: Mapping[str, float] | None = None,
     growth: Growth | None = None,
 ) -> Problem:
@@ -72,6 +75,11 @@ def joint(
         Parameters with a value of their own in each state, named ``parameter@state``.
     shapes : tuple of ShapeTarget
         Measured shapes, in the first state; its residuals hold their modes, too.
+    shared : tuple of str
+        Parameters of the law with one value for all tie groups: every leg its stiffness, all one loss factor.
+    scatter : {parameter of the law: s₀}, optional
+        Those of all tie groups have a common mean, about which they scatter by an unknown standard deviation
+        of ln θ, about s₀ (:mod:`jackettwin.updating.scatter`).
     errors : {datum: log_std}, optional
         Errors of the model that all states share, by datum (``f1``, ``ζ4``): each is a factor ``error_f1`` on
         the model's value, lognormal around one. More states do not average them out.
@@ -83,14 +91,15 @@ def joint(
     InputError
         If a name is none of the model's, or priors meet residuals without standard deviations.
     """
-    errors = errors or {}
+    errors, alias = errors or {}, _alias(model, (*shared, *(scatter or {})), shared)
     names = [p.name for p in model.parameters]
     grown = () if growth is None else growth.parameters
     _no_strangers((*per_state, *grown, *(name for _, factors in states.values() for name in factors)), names)
-    shared = [p for p in model.parameters if p.name not in per_state]
+    unique = {alias.get(p.name, p.name): p for p in model.parameters}
+    everywhere = [replace(p, name=name) for name, p in unique.items() if p.name not in per_state]
     own = [p for p in model.parameters if p.name in per_state]
     parameters = (
-        *shared,
+        *everywhere,
         *(replace(p, name=f"{p.name}@{state}") for state in states for p in own),
         *(_factor(f"error_{datum}", log_std) for datum, log_std in errors.items()),
         *(() if growth is None else (_factor(GROWTH, growth.log_std),)),
@@ -100,7 +109,8 @@ def joint(
     for i, (state, (residuals, factors)) in enumerate(states.items()):
         weights = np.zeros((len(names), len(parameters)))
         for row, name in enumerate(names):
-            weights[row, place.get(name, place.get(f"{name}@{state}", -1))] = 1.0
+            known = alias.get(name, name)
+            weights[row, place.get(known, place.get(f"{known}@{state}", -1))] = 1.0
             if growth is not None and name in grown:
                 weights[row, place[GROWTH]] = growth.days.get(state, 0.0)
         shared_errors = np.zeros((residuals.count, len(parameters)))
@@ -109,9 +119,32 @@ def joint(
                 shared_errors[row, place[f"error_{datum}"]] = 1.0
         shifts = np.log([factors.get(name, 1.0) for name in names])
         built.append(State(state, residuals, weights, shifts, shared_errors, () if i else shapes))
-    problem = Problem(model, tuple(built), parameters, BoxPrior.of(parameters))
+    problem = Problem(model, tuple(built), parameters, _prior(model, parameters, scatter or {}))
     _no_priors_without_deviations(problem)
     return problem
+
+
+def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...]) -> dict[str, str]:
+    """Return {the model's name: the problem's} of shared parameters; refuse what is none of the law's."""
+    law = [p.name for p in model.family.parameters]
+    for name in given:
+        if name not in law:
+            raise InputError(
+                "the law has no such parameter", field="support", value=name, allowed=", ".join(law)
+            )
+    return {name + suffix: name for name in shared for suffix in model.feet.suffixes}
+
+
+def _prior(model: SupportModel, parameters: tuple[Parameter, ...], scatter: Mapping[str, float]) -> Prior:
+    """Return the parameters' priors; those of tie groups that scatter are drawn together."""
+    place = {p.name: i for i, p in enumerate(parameters)}
+    legs = []
+    for name, scale in scatter.items():
+        columns = [place[name + suffix] for suffix in model.feet.suffixes if name + suffix in place]
+        if len(columns) > 1:
+            legs.append(Legs(name, np.array(columns, dtype=np.intp), scale))
+    box = BoxPrior.of(parameters)
+    return ScatteredPrior(box, tuple(legs)) if legs else box
 
 
 def _factor(name: str, log_std: float) -> Parameter:
@@ -127,6 +160,8 @@ def _no_strangers(given: Sequence[str], names: list[str]) -> None:
 
 def _no_priors_without_deviations(problem: Problem) -> None:
     informed = [p.name for p in problem.parameters if p.median is not None]
+    if isinstance(problem.prior, ScatteredPrior):
+        informed += [group.name for group in problem.prior.legs]
     if problem.relative and informed:
         raise InputError(
             "a prior needs data with standard deviations",

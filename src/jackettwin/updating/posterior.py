@@ -102,7 +102,6 @@ class _Swarm:
 def sample_posterior(
     problem: Problem,
     *,
-    prior: Prior | None = None,
     particles: int = 300,
     islands: int = 4,
     seed: int = 0,
@@ -114,8 +113,6 @@ def sample_posterior(
     ----------
     problem : Problem
         Its residuals weighted by standard deviations, not relative.
-    prior : Prior, optional
-        Instead of the problem's.
     particles, islands : int
         Particles on each of the independent islands.
     progress : callable, optional
@@ -135,9 +132,7 @@ def sample_posterior(
             remedy="give every target frequency and damping ratio its standard deviation",
         )
     rng = np.random.default_rng(seed)
-    runs = [
-        _island(problem, prior or problem.prior, particles, child, progress) for child in rng.spawn(islands)
-    ]
+    runs = [_island(problem, particles, child, progress) for child in rng.spawn(islands)]
     return gathered(
         problem,
         z=np.array([_by_particle([swarm.z for swarm in kept]) for kept, _ in runs]),
@@ -188,12 +183,9 @@ def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 
 def _island(
-    problem: Problem,
-    prior: Prior,
-    n: int,
-    rng: np.random.Generator,
-    progress: Callable[[], None] | None,
+    problem: Problem, n: int, rng: np.random.Generator, progress: Callable[[], None] | None
 ) -> tuple[list[_Swarm], float]:
+    prior = problem.prior
     z = prior.draw(n, rng)
     swarm = _evaluate(problem, prior, z, problem.anchor(z.mean(axis=0)))
     beta, log_z, kept = 0.0, 0.0, [swarm]

@@ -16,7 +16,15 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Prior(Protocol):
-    """A density of z = ln θ."""
+    """A density of z = ln θ between bounds."""
+
+    @property
+    def low(self) -> FloatArray:
+        """Lower bounds of z, (d,)."""
+
+    @property
+    def high(self) -> FloatArray:
+        """Upper bounds of z, (d,)."""
 
     @property
     def std(self) -> FloatArray:
@@ -25,8 +33,14 @@ class Prior(Protocol):
     def draw(self, n: int, rng: np.random.Generator) -> FloatArray:
         """Return draws (n, d)."""
 
+    def from_unit(self, u: FloatArray) -> FloatArray:
+        """Return the z of independent uniform numbers u (..., d)."""
+
     def log_density(self, z: FloatArray) -> FloatArray:
         """Return ln p (n,) of points (n, d); −inf outside the bounds."""
+
+    def rows(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return what is not flat as residuals of one point (d,), −2 ln p + constant, and their Jacobian."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +99,15 @@ class BoxPrior:
 
     def log_density(self, z: FloatArray) -> FloatArray:
         """Return ln p (n,) of points (n, d); −inf outside the bounds."""
+        inside = np.all((z >= self.low) & (z <= self.high), axis=1)
+        return np.where(inside, self.log_densities(z).sum(axis=1), -np.inf)
+
+    def log_densities(self, z: FloatArray) -> FloatArray:
+        """Return ln p of every coordinate (n, d) of points between the bounds."""
         _, _, mass = self._standard()
         scale = np.where(self._flat, 1.0, self.scale)
         normal = -0.5 * ((z - self.mean) / scale) ** 2 - np.log(scale * np.maximum(mass, 1e-300))
-        each = np.where(self._flat, -np.log(self.high - self.low), normal - 0.5 * log(2.0 * pi))
-        inside = np.all((z >= self.low) & (z <= self.high), axis=1)
-        return np.where(inside, each.sum(axis=1), -np.inf)
+        return np.where(self._flat, -np.log(self.high - self.low), normal - 0.5 * log(2.0 * pi))
 
     def rows(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the normal priors as residuals (n_normal,) and their Jacobian (n_normal, d)."""

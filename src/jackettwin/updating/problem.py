@@ -10,7 +10,7 @@ import numpy.typing as npt
 from jackettwin.response.numbered import NumberedModes
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
-from jackettwin.updating.prior import BoxPrior
+from jackettwin.updating.prior import Prior
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
 
@@ -87,14 +87,14 @@ class Problem:
     ----------
     parameters : tuple of Parameter
         The model's, and for a state-dependent one a copy for each state.
-    prior : BoxPrior
+    prior : Prior
         Of their logarithms z.
     """
 
     model: SupportModel
     states: tuple[State, ...]
     parameters: tuple[Parameter, ...]
-    prior: BoxPrior
+    prior: Prior
 
     @property
     def relative(self) -> bool:
@@ -140,7 +140,7 @@ class Problem:
     def evaluate(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, FloatArray, Found | None]:
         """Return residuals, their Jacobian by z and the modes at one point (d,); None if a mode is lost.
 
-        The normal priors follow the data's residuals.
+        The priors that are not flat follow the data's residuals.
         """
         values, rows = [], []
         found = self._modes(z[None], near, slopes=True)
