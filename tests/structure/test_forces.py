@@ -1,5 +1,7 @@
 """Section forces against statics of a cantilever and the balance of the reference jacket."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
@@ -8,6 +10,7 @@ from jackettwin.structure import Section, Structure, assemble, read_structure
 from jackettwin.structure.forces import element_weight, section_forces, utilisation, von_mises_stress
 from jackettwin.structure.model import STEEL, Member, Reaction
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 L, D, T = 10.0, 1.0, 0.03
 
 
@@ -108,3 +111,29 @@ def test_the_foot_of_a_column_carries_all_of_it() -> None:
     w, leaning = beam_of((0.6, 0.0, 0.8), pieces=1, both_ends=False)
     np.testing.assert_allclose(leaning.axial[0], [-0.8 * w * L, 0.0], atol=1e-6 * w * L)
     np.testing.assert_allclose(leaning.bending[0], [0.3 * w * L**2, 0.0], atol=1e-6 * w * L**2)
+
+
+@pytest.mark.parametrize(
+    "source", ["jacket15", EXAMPLES / "three_leg_jacket.yaml"], ids=["jacket15", "three legs"]
+)
+@pytest.mark.parametrize("subdivide", [1, 3])
+def test_every_node_is_in_balance(source: str | Path, subdivide: int) -> None:
+    """Weight along every member: what members pull at a free node is the weight of the masses there."""
+    structure = read_structure(source)
+    assembly = assemble(structure, subdivide=subdivide)
+    load = np.asarray(assembly.mass @ np.tile([0, 0, -9.80665, 0, 0, 0], assembly.n_dof // 6))
+    held = np.concatenate([assembly.dofs(foot) for foot in structure.reaction_nodes])
+    forces = section_forces(assembly, static(assembly, load, held), along=element_weight(assembly))
+    mesh = assembly.mesh
+    pull = np.zeros((len(mesh.node_names), 6))
+    six = np.stack(list(forces), axis=-1)
+    for side, nodes in ((0, mesh.start), (1, mesh.end)):
+        out = np.einsum("epi,eij->epj", six[:, side].reshape(-1, 2, 3), mesh.axes).reshape(-1, 6)
+        np.add.at(pull, nodes, (1 - 2 * side) * out)
+    pull[[mesh.node_names.index(foot) for foot in structure.reaction_nodes]] = 0.0
+    (rna,) = structure.masses
+    wanted = np.zeros_like(pull)
+    x, y, _ = rna.cg_offset_m
+    top = mesh.node_names.index(rna.node)
+    wanted[top, 2:5] = -9.80665 * rna.mass_kg * np.array([1.0, y, -x])
+    np.testing.assert_allclose(pull + wanted, 0.0, atol=1e-6 * np.abs(load).sum())

@@ -18,7 +18,7 @@ from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses
 from jackettwin.structure import assemble, read_structure
 from jackettwin.structure.check import few
-from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
+from jackettwin.structure.forces import element_weight
 from jackettwin.structure.iso19902 import CHECKS, EDITIONS
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
 
@@ -71,7 +71,7 @@ def check_command(
         )
     if scenario is not None:
         chosen_scenario = read_scenario(scenario)
-        _report(chosen_scenario.name, scenario_uses(chosen_scenario, basis), None, as_json)
+        _report(chosen_scenario.name, scenario_uses(chosen_scenario, basis), as_json)
         return
     assert structure is not None
     chosen = read_structure(structure)
@@ -82,14 +82,13 @@ def check_command(
     if not no_weight:
         load, along = load + self_weight(assembly), element_weight(assembly)
     u = static_displacement(build_system(assembly, held), load)
-    stress = von_mises_stress(assembly, section_forces(assembly, u, along=along))
-    _report(chosen.name, member_uses(assembly, u, basis, along=along), float(stress.max()), as_json)
+    _report(chosen.name, member_uses(assembly, u, basis, along=along), as_json)
 
 
-def _report(name: str, uses: tuple[MemberUse, ...], stress_pa: float | None, as_json: bool) -> None:
+def _report(name: str, uses: tuple[MemberUse, ...], as_json: bool) -> None:
     document = {
         "structure": name,
-        "largest_von_mises_stress_pa": stress_pa,
+        "largest_von_mises_stress_pa": max(use.von_mises_pa for use in uses),
         "members": [_row(use) for use in sorted(uses, key=lambda use: -use.utilisation)],
         "warnings": _warnings(uses),
     }
@@ -130,6 +129,7 @@ def _row(use: MemberUse) -> dict[str, Any]:
         "governing": {"position": worst.position} | _forces(worst.forces),
         "start": _forces(worst.end_forces[0]),
         "end": _forces(worst.end_forces[1]),
+        "von_mises_stress_pa": use.von_mises_pa,
         "covered": use.covered,
     }
 
@@ -169,8 +169,7 @@ def _print(document: dict[str, Any]) -> None:
     output.print(forces)
     if left_out > 0:
         output.print(f"and {left_out} more members; --json has all of them, with the forces at both ends")
-    if document["largest_von_mises_stress_pa"] is not None:
-        output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
+    output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.columns import columns
-from jackettwin.structure.forces import SectionForces, section_forces
+from jackettwin.structure.forces import SectionForces, section_forces, von_mises_stress
 from jackettwin.structure.iso19902 import (
     CHECKS,
     MOST_SLENDER_WALL,
@@ -85,6 +85,8 @@ class MemberUse:
     by_check: Mapping[str, float]
     buckling: Buckling
     worst: Worst
+    von_mises_pa: float
+    """Largest von Mises stress, whatever the governing check [Pa]."""
     covered: bool
     """Whether D/t ≤ 120, the scope of clause 13."""
 
@@ -133,7 +135,8 @@ def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> t
     for a, b in zip(first, second, strict=True):
         worse = a if a.utilisation >= b.utilisation else b
         by_check = {name: max(a.by_check[name], b.by_check[name]) for name in CHECKS}
-        found.append(replace(worse, by_check=by_check))
+        stress = max(a.von_mises_pa, b.von_mises_pa)
+        found.append(replace(worse, by_check=by_check, von_mises_pa=stress))
     return tuple(found)
 
 
@@ -142,6 +145,7 @@ def _uses(
 ) -> tuple[MemberUse, ...]:
     """Return the use of every member from U, (n_checks, n_cases, n_elements, 2)."""
     uses = []
+    stress = von_mises_stress(assembly, forces).reshape(-1, assembly.mesh.start.size, 2)
     for index, member in enumerate(assembly.structure.members):
         mine = np.flatnonzero(assembly.mesh.member == index)
         own = U[:, :, mine]
@@ -157,6 +161,7 @@ def _uses(
                 dict(zip(CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=True)),
                 lengths[index],
                 worst,
+                float(stress[:, mine].max()),
                 bool((slender[mine] <= MOST_SLENDER_WALL).all()),
             )
         )
