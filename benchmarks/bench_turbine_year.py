@@ -21,6 +21,7 @@ from jackettwin.records import write_record
 from jackettwin.twin.export import export_modes
 from jackettwin.twin.many import Batch, observe_many
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.together import fuse_batch
 
 YEAR, WORKERS = 52_560, 2
 
@@ -42,7 +43,7 @@ def measured(folder: Path, n: int) -> Batch:
     started = time.perf_counter()
     batch = observe_many(files, IdentificationSettings(), folder=folder / f"results{n}", workers=WORKERS)
     wall = time.perf_counter() - started
-    document = many_document(batch)
+    document = many_document(batch, fuse_batch(batch))
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / n
     say(f"{n} records, {len(batch.failed)} failed, {len(document['modes'])} modes fused")
@@ -58,7 +59,7 @@ def fused(batch: Batch, times: int, folder: Path) -> None:
     """Fuse and export a batch whose results come many times over."""
     many = Batch(batch.results * times, ())
     started = time.perf_counter()
-    document = many_document(many)
+    document = many_document(many, fuse_batch(many))
     for path in (folder / "modes.json", folder / "modes.csv", folder / "modes.nc"):
         export_modes(document, path)
     seconds = time.perf_counter() - started

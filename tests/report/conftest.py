@@ -8,7 +8,8 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from jackettwin.identification import ModalEstimate, identify
+from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate, identify
+from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, assess
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.sensors import Sensor
@@ -142,3 +143,19 @@ def _check_units(figure: go.Figure) -> None:
 def assert_units() -> Callable[[go.Figure], None]:
     """Fail on an axis that shows numbers without quantity and unit."""
     return _check_units
+
+
+@pytest.fixture(scope="session")
+def identifications() -> list[Identification]:
+    """Three records of one system of two modes."""
+    rng = np.random.default_rng(3)
+    system = ModalSystem(
+        frequency_hz=np.array([0.5, 1.3]),
+        damping_ratio=np.array([0.02, 0.015]),
+        mode_shapes=np.array([[1.0, 0.6, 0.3], [-0.4, 0.5, 1.0]]),
+        force=np.eye(2),
+    )
+    settings = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
+    return [
+        identify(simulate(system, rng, duration_s=300.0, sample_rate_hz=10.0), settings) for _ in range(3)
+    ]

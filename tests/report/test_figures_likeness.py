@@ -3,25 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.identification import IdentificationSettings, fuse, identify
+from jackettwin.identification import fuse
 from jackettwin.identification.convergence import convergence
-from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.report import figures_likeness as figures
-
-
-@pytest.fixture(scope="module")
-def identifications():
-    rng = np.random.default_rng(3)
-    system = ModalSystem(
-        frequency_hz=np.array([0.5, 1.3]),
-        damping_ratio=np.array([0.02, 0.015]),
-        mode_shapes=np.array([[1.0, 0.6, 0.3], [-0.4, 0.5, 1.0]]),
-        force=np.eye(2),
-    )
-    settings = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
-    return [
-        identify(simulate(system, rng, duration_s=300.0, sample_rate_hz=10.0), settings) for _ in range(3)
-    ]
 
 
 def names(found):

@@ -20,6 +20,7 @@ from jackettwin.twin import many
 from jackettwin.twin.export import export_modes
 from jackettwin.twin.many import Batch, observe_many, record_files
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.together import fuse_batch
 
 SETTINGS = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
 WIND = (7.2, 8.4, 12.1, 8.1)
@@ -52,7 +53,7 @@ def batch(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Batch:
 
 @pytest.fixture(scope="module")
 def document(batch: Batch) -> dict:
-    return many_document(batch)
+    return many_document(batch, fuse_batch(batch))
 
 
 def test_a_broken_record_stops_nothing(batch: Batch) -> None:
@@ -88,7 +89,7 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
     again = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
     assert started == ["r0.parquet", "r1.parquet", "r2.parquet", "r3.parquet", "r9.parquet"]
     # to the last digit and letter
-    assert "".join(json_pieces(many_document(again))) == "".join(json_pieces(document))
+    assert "".join(json_pieces(many_document(again, fuse_batch(again)))) == "".join(json_pieces(document))
     # other settings are another result
     observe_many(files[:1], replace(SETTINGS, max_order=20), folder=tmp_path, workers=1)
     assert started[5:] == ["r0.parquet"]
@@ -137,7 +138,8 @@ def test_records_of_other_sensors_stand_for_themselves(folder: Path, tmp_path: P
     channels = tuple(replace(c, name=f"b{i}") for i, c in enumerate(record.channels))
     write_record(replace(record, channels=channels), tmp_path / "other.parquet")
     files = [folder / "r0.parquet", tmp_path / "other.parquet"]
-    document = many_document(observe_many(files, SETTINGS, folder=tmp_path / "results", workers=1))
+    batch = observe_many(files, SETTINGS, folder=tmp_path / "results", workers=1)
+    document = many_document(batch, fuse_batch(batch))
     assert document["modes"] == []
     assert "records share no channel" in document["warnings"][0]
     assert len(list(document["records"])) == 2

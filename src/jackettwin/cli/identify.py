@@ -21,11 +21,13 @@ from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.table import Unsaid
 from jackettwin.report.identification_page import build_identification_page
+from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import observation_document, observe
 from jackettwin.twin.document import comparison_document
 from jackettwin.twin.export import WRITERS, export_modes
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.together import fuse_batch
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""
@@ -43,7 +45,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 @click.option(
     "--report",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="HTML page on one record: spectra, stabilisation, methods, moving shapes.",
+    help="HTML page: spectra, stabilisation and moving shapes of one record, or modes followed over many.",
 )
 @click.option("--compare", is_flag=True, help="One record by every method, side by side.")
 @click.option("--real-poles", is_flag=True, help="Look for relaxations as well: poles that do not oscillate.")
@@ -90,14 +92,16 @@ def identify_command(
     _refuse_format(out)
     files = record_files(records)
     picks = _picks(picks_file, files)
-    _refuse_many(files, {"--compare": compare, "--report": report is not None})
+    if compare and len(files) > 1:
+        several = f"{len(files)} records"
+        raise InputError("takes one record", field="--compare", value=several, remedy="run it once a record")
     how: dict[str, Any] = {"drop_dead": drop_dead, "picks": picks, "unsaid": _unsaid(sample_rate, unit)}
     if len(files) == 1:
         _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
         return
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
         kept = Path(passing) if out is None or not _folder(out) else out / "records"
-        _deliver(_many(files, settings, how, kept, workers), out, as_json, _print_many)
+        _deliver(_many(files, settings, how, kept, workers, report), out, as_json, _print_many)
 
 
 def _deliver(
@@ -120,17 +124,6 @@ def _export(document: Mapping[str, Any], out: Path) -> None:
         messages.print(f"wrote {path}")
     if _folder(out):
         write_json({"picks": document["picks"]}, out / "picks.json")
-
-
-def _refuse_many(files: Sequence[Path], options: Mapping[str, bool]) -> None:
-    for option, given in options.items():
-        if given and len(files) > 1:
-            raise InputError(
-                "takes one record",
-                field=option,
-                value=f"{len(files)} records",
-                remedy="run it once a record",
-            )
 
 
 def _one(
@@ -162,13 +155,18 @@ def _many(
     how: Mapping[str, Any],
     folder: Path,
     workers: int | None,
+    report: Path | None,
 ) -> dict[str, Any]:
     """Return the document; its long lists are read from the folder's results as they are written."""
     with progress(len(files), "identify") as step:
         batch = observe_many(files, settings, folder=folder, workers=workers, step=step, **how)
     if not len(batch):
         raise InputError(f"no record could be identified; the first: {batch.failed[0].problem}")
-    return many_document(batch)
+    together = fuse_batch(batch)
+    if report is not None:
+        build_many_page(together, batch.failed, report)
+        messages.print(f"wrote {report}")
+    return many_document(batch, together)
 
 
 def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:

@@ -6,27 +6,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from jackettwin.errors import InputError
 from jackettwin.files import Streamed
 from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.convergence import convergence
-from jackettwin.identification.fusion import fused_records
 from jackettwin.identification.picks import plain_picks
-from jackettwin.identification.tracking import follow
 from jackettwin.twin.document import identification_document
-from jackettwin.twin.groups import Group, group_key, grouped
+from jackettwin.twin.groups import Group
 from jackettwin.twin.many import Batch
+from jackettwin.twin.together import Together
 
 
-def many_document(batch: Batch) -> dict[str, Any]:
+def many_document(batch: Batch, together: Together) -> dict[str, Any]:
     """Return the document of ``jackettwin identify`` for several records: fused, by group, one by one.
 
     ``records``, ``rejected``, ``quality`` and ``picks`` are ``Streamed``.
     """
-    modes, groups, warnings, duration_s = _fused(batch)
     return {
-        "modes": modes,
-        "groups": groups,
+        "modes": [] if together.fused is None else _modes(together.fused),
+        "groups": [_group_document(group) for group in together.groups],
         "records": Streamed(lambda: _records(batch)),
         "rejected": Streamed(lambda: _rejected(batch)),
         "quality": Streamed(
@@ -37,29 +34,20 @@ def many_document(batch: Batch) -> dict[str, Any]:
         "picks": Streamed(lambda: (pick for one in batch for pick in plain_picks(one.identification.picks))),
         "failed": [asdict(one) for one in batch.failed],
         "records_identified": len(batch),
-        "duration_s": duration_s,
-        "warnings": warnings,
+        "duration_s": together.duration_s,
+        "warnings": list(together.warnings),
     }
 
 
-def _fused(batch: Batch) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[str], float]:
-    """Return fused modes, groups, warnings and the records' length together."""
-    try:
-        followed = follow((one.identification, group_key(one.conditions)) for one in batch)
-    except InputError as error:
-        # loggers of different sensors: each stands for itself
-        return [], [], [f"not fused: {error}"], sum(one.identification.duration_s for one in batch)
-    fused = fused_records(followed)
+def _modes(fused: FusedIdentification) -> list[dict[str, Any]]:
     names = [channel.name for channel in fused.channels]
-    modes = [
+    return [
         {
             **fused_mode_document(mode, names),
             "convergence": [asdict(step) for step in convergence(mode)],
         }
         for mode in fused.modes
     ]
-    groups = [_group_document(group) for group in grouped(followed)]
-    return modes, groups, list(fused.warnings), fused.duration_s
 
 
 def _records(batch: Batch) -> Iterator[dict[str, Any]]:
