@@ -71,18 +71,18 @@ def test_a_steady_tone_is_taken_out_before_the_fit(tower, rng):
 
 
 def test_a_fit_that_breaks_down_leaves_what_the_subspace_method_found(tower, rng, monkeypatch):
-    from jackettwin.identification import choice
+    from jackettwin.identification import fits
 
     def broken(*args, **kwargs):
         raise np.linalg.LinAlgError("singular")
 
     record = simulate(tower, rng, sample_rate_hz=5.0)
-    monkeypatch.setattr(choice, "refine", broken)
+    monkeypatch.setattr(fits, "refine", broken)
     # what does not fit the whole band is refined in narrow ones
     narrow = identify(record)
     assert not narrow.warnings
     assert {mode.method for mode in narrow.modes} == {"maximum likelihood"}
-    monkeypatch.setattr(choice, "refine_group", broken)
+    monkeypatch.setattr(fits, "refine_group", broken)
     result = identify(record)
     assert any("broke down" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import Rejected
-from jackettwin.identification.local_refinement import DITHER_SHARES, groups, refine_group
+from jackettwin.identification.fits import Start, believed_fits
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.periodogram import DERIVATIVES
-from jackettwin.identification.refinement import Refined, refine
 from jackettwin.identification.resolve import guarded_band_hz
-from jackettwin.identification.selection import beside_tones, long_data_limits, with_covariance
+from jackettwin.identification.selection import beside_tones, with_covariance
+from jackettwin.identification.straying import long_data_limits
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
     from jackettwin.identification.prepared import Prepared
+    from jackettwin.identification.refinement import Refined
     from jackettwin.identification.selection import Candidate, Tones
     from jackettwin.identification.settings import IdentificationSettings
 
@@ -30,12 +30,6 @@ BoolArray = npt.NDArray[np.bool_]
 
 MOST_MISSING = 0.01
 """Share of missing samples in a channel up to which a periodogram is trusted."""
-
-MOST_LACK_OF_FIT = 1.4
-"""Mean square of the misfit over its expectation up to which a fit of the whole band is believed;
-records that are what the model says have 0.8 to 1.1."""
-MOST_LOCAL_LACK_OF_FIT = 2.0
-"""The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
 
 TAKEN_LINES = 0.75
 """A line as far from a tone as this went with it."""
@@ -64,82 +58,44 @@ def chosen_modes(
         if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
             warnings = ("modes not refined: gaps remain in the record",)
         else:
-            start = _start([judged[i].mode for i in open_to], sure, ready, tones)
-            fits, warnings = _fits(y, resolved, start)
-            for members, fit in fits:
-                for position in np.flatnonzero(members):
+            start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
+            band = guarded_band_hz(resolved)
+            fits, warnings = believed_fits(y, resolved.sample_rate_hz, band, start)
+            for fit in fits:
+                for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
-                modes |= _numbers(judged, open_to, fit, scale, y.shape[1] / resolved.sample_rate_hz)
+                modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
     tones_hz = (*tones.frequency_hz.values(), *ready.tones_hz)
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
     return replace(found, rejected=(*found.rejected, *_tones(ready.tones_hz, resolved)))
 
 
-class _Start(TypedDict):
-    frequency_hz: FloatArray
-    damping_ratio: FloatArray
-    shapes: FloatArray
-    sure: BoolArray
-    derivatives: list[int]
-    avoid_hz: tuple[tuple[float, float], ...]
-
-
-def _start(modes: list[ModalEstimate], sure: BoolArray, ready: Prepared, tones: Tones) -> _Start:
-    return _Start(
+def _start(
+    modes: list[ModalEstimate],
+    sure: BoolArray,
+    ready: Prepared,
+    tones: Tones,
+    settings: IdentificationSettings,
+) -> Start:
+    return Start(
         frequency_hz=np.array([m.frequency_hz for m in modes]),
         damping_ratio=np.array([m.damping_ratio for m in modes]),
+        log_damping_std=np.array([_log_damping_std(m) for m in modes]),
         shapes=np.array([m.mode_shape.real for m in modes]) / ready.scale,
         sure=sure,
         derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
         avoid_hz=(*tones.swept_hz, *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz)),
+        most_damping=settings.max_damping_ratio,
     )
+
+
+def _log_damping_std(mode: ModalEstimate) -> float:
+    return 0.0 if mode.log_covariance is None else float(np.sqrt(mode.log_covariance[1, 1]))
 
 
 def _taken_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
     """Return the range of the lines that went with a tone: one on either side of it, or that it is on."""
     return tone_hz - TAKEN_LINES / duration_s, tone_hz + TAKEN_LINES / duration_s
-
-
-def _fits(
-    y: FloatArray, resolved: ResolvedSettings, start: _Start
-) -> tuple[list[tuple[BoolArray, Refined]], tuple[str, ...]]:
-    """Return the fits that are believed, with the candidates each speaks for, and what is said of others.
-
-    One fit of the whole band if it describes the record, else one of each group of close modes.
-    """
-    band, rate = guarded_band_hz(resolved), resolved.sample_rate_hz
-    whole, obstacle = _tried(lambda: refine(y, rate, band, **start), MOST_LACK_OF_FIT)
-    if whole is not None:
-        return [(np.ones(len(start["sure"]), dtype=bool), whole)], ()
-    fits, warnings = [], []
-    for group in groups(start["frequency_hz"], start["sure"], band):
-        for share in DITHER_SHARES:
-            work = partial(refine_group, y, rate, group, dither_share=share, **start)
-            fit, obstacle = _tried(work, MOST_LOCAL_LACK_OF_FIT)
-            if fit is not None:
-                break
-        if fit is None:
-            f = ", ".join(f"{f:.3g}" for f in start["frequency_hz"][group.members & start["sure"]])
-            warnings.append(f"modes at {f} Hz not refined: {obstacle}")
-        else:
-            fits.append((group.members, fit))
-    return fits, tuple(warnings)
-
-
-def _tried(fit: Callable[[], Refined], most: float) -> tuple[Refined | None, str]:
-    """Return a fit that is to be used, or why there is none."""
-    try:
-        refined = fit()
-    except np.linalg.LinAlgError:
-        return None, "the arithmetic of the fit broke down"
-    if not refined.converged:
-        return None, "the fit of the spectral model did not converge"
-    if refined.lack_of_fit > most:
-        return None, (
-            f"the spectrum is not that of modes under smooth random forces "
-            f"(lack of fit {refined.lack_of_fit:.1f}, at most {most:g})"
-        )
-    return refined, ""
 
 
 def _numbers(
@@ -150,6 +106,8 @@ def _numbers(
     for k, position in enumerate(refined.candidate):
         index = open_to[position]
         f, zeta = float(refined.frequency_hz[k]), float(refined.damping_ratio[k])
+        limits = long_data_limits(f, zeta, duration_s)
+        lift = np.maximum(limits / np.sqrt(np.diag(refined.covariance[k])), 1.0)
         shape = refined.shapes[k] * scale
         top = int(np.argmax(np.abs(shape)))
         relative = shape / shape[top]
@@ -164,9 +122,9 @@ def _numbers(
             method="maximum likelihood",
             unrefined=judged[index].mode,
             cramer_rao_log_std=refined.cramer_rao[k],
-            damping_ratio_cov_limit=float(long_data_limits(f, zeta, duration_s)[1]),
+            damping_ratio_cov_limit=float(limits[1]),
         )
-        out[index] = with_covariance(mode, refined.covariance[k])
+        out[index] = with_covariance(mode, refined.covariance[k] * np.outer(lift, lift))
     return out
 
 

@@ -99,6 +99,7 @@ def refine_group(
         sure=sure[among],
         derivatives=derivatives,
         avoid_hz=avoid_hz,
+        background=True,
         local_dither_share=dither_share,
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)

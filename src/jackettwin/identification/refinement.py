@@ -96,6 +96,7 @@ def refine(
     sure: BoolArray,
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
+    background: bool = False,
     local_dither_share: float | None = None,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
@@ -113,9 +114,10 @@ def refine(
         Derivatives in time by which a channel lags acceleration.
     avoid_hz : sequence of (low, high)
         Ranges that are left out of the fit.
+    background : bool
+        Whether shapes that follow their force are fitted too: the modes outside the band, or waves below it.
     local_dither_share : float, optional
-        Given where the band holds some of the modes only: a background stands for the others, and so much
-        of the local median spectrum is added.
+        So much of the local median spectrum is added, given where the band holds some of the modes only.
     """
     data = periodogram(
         y,
@@ -129,7 +131,7 @@ def refine(
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
     first = likelihood.start(data, frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
-    if local_dither_share is not None:
+    if background:
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)

@@ -12,6 +12,7 @@ from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.harmonics import is_tone, swept_hz, without_unsteady_tone
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.steady_tones import without_tones
+from jackettwin.identification.straying import long_data_limits
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -156,12 +157,6 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
         frequency_interval_95=_interval(mode.frequency_hz, std_f),
         damping_ratio_interval_95=_interval(mode.damping_ratio, std_zeta),
     )
-
-
-def long_data_limits(f: float, zeta: float, duration_s: float) -> FloatArray:
-    """Return the least coefficients of variation of f and ζ: √(ζ/(2πfT)) and 1/√(2πζfT) (Au 2014)."""
-    cycles = 2.0 * np.pi * f * duration_s
-    return np.asarray(np.sqrt([zeta / cycles, 1.0 / (zeta * cycles)]))
 
 
 def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
