@@ -11,6 +11,7 @@ from jackettwin.cli.console import output, print_json
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
+from jackettwin.simulate.rotor_limits import rotor_notes
 
 DEFAULT_SCENARIO = "parked"
 
@@ -32,6 +33,8 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
         print_json({**done.document(), "record": str(path)})
     else:
         _print(done, path)
+        for note in rotor_notes(chosen):
+            output.print(f"note: {note}")
 
 
 def _record_path(out: str) -> Path:

@@ -19,18 +19,18 @@ from jackettwin.loads.rotor import Rotor
 FloatArray = npt.NDArray[np.float64]
 
 
-def read_rotor(name: str | Path) -> tuple[Rotor, Control]:
+def read_rotor(name: str | Path, *, folder: Path | None = None) -> tuple[Rotor, Control]:
     """Return the rotor and the control limits of a windIO file, or of a shipped one (``iea15``).
 
     Airfoils are blended by relative thickness, then given the stall delay of rotation at the optimal
-    tip-speed ratio; stations are those of the blade's twist.
+    tip-speed ratio; stations are those of the blade's twist. A relative path is relative to ``folder``.
 
     Raises
     ------
     InputError
         If the file is missing or lacks a part that is needed.
     """
-    path = find_file(name, "rotors")
+    path = find_file(name, "rotors", folder=folder)
     data = read_yaml(path, what="windIO file")
     try:
         return _rotor(data), _control(data)

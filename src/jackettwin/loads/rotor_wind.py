@@ -101,7 +101,7 @@ class RotorWind:
 
 def rotor_wind(
     wind: Wind,
-    rotor: Rotor,
+    rotor: Rotor | None,
     *,
     duration: float,
     step: float,
@@ -114,13 +114,18 @@ def rotor_wind(
 
     Parameters
     ----------
+    rotor : Rotor or None
+        None is wind on the tower alone.
     azimuth : float or None
         Of the first blade of a rotor that stands [rad]; None if it turns.
     piece : float
         Longest piece of blade or tower with a wind of its own [m].
     """
     hub = wind.hub_height_m
-    on_rotor = _rings(hub, rotor.radius) if azimuth is None else _blades(hub, rotor, azimuth, piece)
+    if rotor is None:
+        on_rotor = np.empty((0, _POINTS, 2))
+    else:
+        on_rotor = _rings(hub, rotor.radius) if azimuth is None else _blades(hub, rotor, azimuth, piece)
     tower = _pieces(np.zeros(2), np.array([0.0, hub]), piece)
     places = [np.array([[[0.0, hub]]]), on_rotor, tower]
     points = np.concatenate([group.reshape(-1, 2) for group in places])
@@ -141,7 +146,7 @@ def rotor_wind(
         fluctuation[:, 1:last],
         fluctuation[:, last:],
         step,
-        rotor.radius,
+        0.0 if rotor is None else rotor.radius,
         azimuth,
     )
 

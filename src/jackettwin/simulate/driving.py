@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.simulate.model import Model, aerodynamics, build_model, with_aerodynamics
+from jackettwin.loads.rotor_wind import RotorWind
+from jackettwin.simulate.model import Aerodynamics, Model, aerodynamics, build_model, with_aerodynamics
 from jackettwin.simulate.scenario import Air, Clock, Scenario, Sea, Turbine
 from jackettwin.simulate.water import (
     RelativeDrag,
@@ -77,10 +78,10 @@ def loads_on(scenario: Scenario, n_steps: int) -> Loads:
     water = air = _Part(model, nothing, nothing)
     if scenario.sea is not None:
         water = _of_water(scenario.sea, model, clock, nothing)
-    if scenario.air is not None and scenario.turbine is not None:
+    if scenario.air is not None:
         air = _of_air(scenario.air, scenario.turbine, water.model, clock)
     return Loads(
-        water.model if air.rotor is None else air.model,
+        water.model if scenario.air is None else air.model,
         water.repeating + air.repeating,
         water.before + air.before,
         water.wave,
@@ -117,25 +118,36 @@ def _of_water(sea: Sea, model: Model, clock: Clock, nothing: FloatArray) -> _Par
     return _Part(model, nothing, nothing, signals, wave=water, relative=beyond)
 
 
-def _of_air(air: Air, turbine: Turbine, model: Model, clock: Clock) -> _Part:
-    basis, step = model.reduced.basis, clock.load_step_s
-    aero = aerodynamics(air, turbine)
+def _of_air(air: Air, turbine: Turbine | None, model: Model, clock: Clock) -> _Part:
+    step = clock.load_step_s
+    aero = None if turbine is None else aerodynamics(air, turbine)
     wind = wind_field(air, aero, duration=clock.total_s, step=step)
-    t = np.arange(wind.n_times, dtype=np.float64) * step
+    nothing = np.zeros((wind.n_times + 1, model.reduced.n))
+    part = _Part(model, nothing, nothing) if aero is None else _of_rotor(wind, air, aero, model, clock)
+    part = replace(part, signals={"wind_hub_x": _closed(wind.at_hub()[:, 0])})
+    tower = tower_points(model.assembly, air)
+    if tower is None:
+        return part
+    basis = model.reduced.basis
+    pushed = _closed(tower_loads(wind, tower, np.asarray(tower.N.T @ basis)))
+    drag = tower_damping(air, tower, basis)
+    return replace(
+        part,
+        model=part.model.with_forces_of_motion("rotor", damping=drag, stiffness=np.zeros_like(drag)),
+        repeating=part.repeating + pushed,
+        before=part.before + pushed,
+    )
+
+
+def _of_rotor(wind: RotorWind, air: Air, aero: Aerodynamics, model: Model, clock: Clock) -> _Part:
+    t = np.arange(wind.n_times, dtype=np.float64) * wind.step_s
     heading = air.heading(t - clock.discard_s) if air.yaw_path else None
     rotor = rotor_loads_in(wind, air, aero, heading=heading)
     resting = rotor if heading is None else rotor_loads_in(wind, air, aero, heading=float(heading[0]))
     known = rotor.mean_damping()
     model = with_aerodynamics(model, aero.mean._replace(damping=known))
     repeating, before = (_closed(loads.still) @ model.top for loads in (rotor, resting))
-    tower = tower_points(model.assembly, air)
-    if tower is not None:
-        pushed = _closed(tower_loads(wind, tower, np.asarray(tower.N.T @ basis)))
-        repeating, before = repeating + pushed, before + pushed
-        drag = tower_damping(air, tower, basis)
-        model = model.with_forces_of_motion("rotor", damping=drag, stiffness=np.zeros_like(drag))
-    signals = {"wind_hub_x": _closed(wind.at_hub()[:, 0])}
-    return _Part(model, repeating, before, signals, rotor=rotor, rotor_damping=known)
+    return _Part(model, repeating, before, rotor=rotor, rotor_damping=known)
 
 
 def _times(rows: FloatArray, clock: Clock) -> FloatArray:

@@ -16,6 +16,7 @@ from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.asset import build_asset
+from jackettwin.simulate.rotor_limits import check_clearance
 from jackettwin.simulate.scenario import Air, Clock, Instrument, Scenario, Sea, Turbine
 from jackettwin.simulate.schema import (
     RotorSchema,
@@ -63,7 +64,7 @@ def scenario_from(data: Any, path: Path) -> Scenario:
     schema = validate(ScenarioSchema, data, file=path)
     with located(file=path):
         asset = build_asset(schema, path.parent)
-        turbine = _turbine(schema)
+        turbine = _turbine(schema, path.parent)
         names = [s.channel for s in schema.sensors]
         if len(set(names)) != len(names):
             raise InputError(
@@ -83,27 +84,50 @@ def scenario_from(data: Any, path: Path) -> Scenario:
         )
 
 
-def _turbine(schema: ScenarioSchema) -> Turbine | None:
-    chosen = schema.rotor
-    if chosen is None:
-        if schema.wind is None:
-            return None
-        chosen = RotorSchema()
+def _turbine(schema: ScenarioSchema, folder: Path) -> Turbine | None:
+    if schema.rotor is None and schema.wind is None:
+        return None
+    chosen = schema.rotor or RotorSchema()
+    if chosen.data == "none":
+        _refuse_rotor_keys(chosen)
+        return None
     if chosen.state == "operating" and schema.wind is None:
         raise InputError("an operating turbine needs wind", field="wind", remedy="add wind: {speed_m_s: …}")
     with located(field="rotor.data"):
-        rotor, control = read_rotor(chosen.data)
-    return Turbine(rotor, control, chosen.state, radians(chosen.pitch_deg), radians(chosen.azimuth_deg))
+        rotor, control = read_rotor(chosen.data, folder=folder)
+    return Turbine(
+        rotor,
+        control,
+        chosen.state,
+        radians(chosen.pitch_deg),
+        radians(chosen.azimuth_deg),
+        name=chosen.data,
+        assumed=schema.rotor is None,
+    )
+
+
+def _refuse_rotor_keys(chosen: RotorSchema) -> None:
+    """Refuse what only a rotor has."""
+    for key in sorted(chosen.model_fields_set - {"data"}):
+        raise InputError(
+            "there is no rotor",
+            field=f"rotor.{key}",
+            value=getattr(chosen, key),
+            remedy="name its data, or take this out",
+        )
 
 
 def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) -> Air | None:
     w = schema.wind
-    if w is None or turbine is None:
+    if w is None:
         return None
     top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+    if turbine is not None:
+        check_clearance(turbine, top)
+    hub = 0.0 if turbine is None else turbine.rotor.hub_height
     turbulence = 0.0 if w.turbulence == "none" else w.turbulence
     with located(field="wind"):
-        wind = Wind(w.speed_m_s, top + turbine.rotor.hub_height, turbulence, w.shear)
+        wind = Wind(w.speed_m_s, top + hub, turbulence, w.shear)
     path = _yaw_path(w, schema.time.duration_s)
     return Air(
         wind=wind,

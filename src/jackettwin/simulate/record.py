@@ -107,6 +107,7 @@ def conditions(scenario: Scenario) -> dict[str, Any]:
         "wind_direction": "+x",
         "yaw_deg": 0.0 if air is None else degrees(air.yaw),
         "wind_seed": None if air is None else air.seed,
+        "rotor": None if turbine is None else turbine.name,
         "state": None if turbine is None else turbine.state,
         "pitch_deg": None if turbine is None or turbine.state == "operating" else degrees(turbine.pitch),
         "waves": None if sea is None else sea.waves,

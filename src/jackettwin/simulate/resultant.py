@@ -11,11 +11,12 @@ from jackettwin.errors import InputError
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.naming import in_words_of
-from jackettwin.simulate.scenario import Scenario
+from jackettwin.simulate.rotor_limits import rotor_notes
+from jackettwin.simulate.scenario import Air, Scenario
 from jackettwin.simulate.sea_limits import sea_warnings
 from jackettwin.simulate.water import is_regular, water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
-from jackettwin.structure import assemble
+from jackettwin.structure import Assembly, assemble
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,18 +57,8 @@ def _resultants(scenario: Scenario) -> dict[str, FloatArray]:
         )
         if water is not None:
             parts["water"] = water.series.loads
-    if scenario.air is not None and scenario.turbine is not None:
-        air, aero = scenario.air, aerodynamics(scenario.air, scenario.turbine)
-        field = wind_field(air, aero, duration=total_s, step=scenario.clock.load_step_s)
-        t = np.arange(field.n_times, dtype=np.float64) * field.step_s - scenario.clock.discard_s
-        still = rotor_loads_in(field, air, aero, heading=air.heading(t) if air.yaw_path else None).still
-        top = np.array(assembly.structure.nodes[assembly.structure.top_node])
-        arm = top - [0.0, 0.0, assembly.structure.sea_level_z_m]
-        total = np.hstack([still[:, :3], still[:, 3:] + np.cross(arm, still[:, :3])])
-        tower = tower_points(assembly, air)
-        if tower is not None:
-            total = total + tower_loads(field, tower, resultant_columns(tower.points))
-        parts["wind"] = total
+    if scenario.air is not None:
+        parts["wind"] = _of_wind(scenario, scenario.air, assembly)
     if not parts:
         raise InputError(
             "nothing loads the asset",
@@ -76,6 +67,21 @@ def _resultants(scenario: Scenario) -> dict[str, FloatArray]:
             remedy="add waves, current or wind",
         )
     return parts
+
+
+def _of_wind(scenario: Scenario, air: Air, assembly: Assembly) -> FloatArray:
+    """Return what the wind does to rotor and tower, (n_times, 6)."""
+    aero = None if scenario.turbine is None else aerodynamics(air, scenario.turbine)
+    field = wind_field(air, aero, duration=scenario.clock.total_s, step=scenario.clock.load_step_s)
+    total = np.zeros((field.n_times, 6))
+    if aero is not None:
+        t = np.arange(field.n_times, dtype=np.float64) * field.step_s - scenario.clock.discard_s
+        still = rotor_loads_in(field, air, aero, heading=air.heading(t) if air.yaw_path else None).still
+        top = np.array(assembly.structure.nodes[assembly.structure.top_node])
+        arm = top - [0.0, 0.0, assembly.structure.sea_level_z_m]
+        total += np.hstack([still[:, :3], still[:, 3:] + np.cross(arm, still[:, :3])])
+    tower = tower_points(assembly, air)
+    return total if tower is None else total + tower_loads(field, tower, resultant_columns(tower.points))
 
 
 def loads_document(scenario: Scenario) -> dict[str, Any]:
@@ -91,7 +97,10 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
         "reference_point_m": [0.0, 0.0, sea_level],
         "phases": _phases(scenario, parts),
-        "warnings": [] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure),
+        "warnings": [
+            *([] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure)),
+            *rotor_notes(scenario),
+        ],
     }
 
 

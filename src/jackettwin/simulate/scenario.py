@@ -114,6 +114,9 @@ class Turbine:
     state: str = "parked"
     pitch: float = 0.5 * pi
     azimuth: float = 0.0
+    name: str = ""
+    assumed: bool = False
+    """Whether nobody chose the rotor."""
 
 
 @dataclass(frozen=True)

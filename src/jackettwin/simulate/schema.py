@@ -104,7 +104,7 @@ class WindSchema(Schema):
 
 
 class RotorSchema(Schema):
-    """``rotor``: a shipped windIO turbine or a file."""
+    """``rotor``: a shipped windIO turbine, a file, or ``none``."""
 
     data: str = "iea15"
     state: Literal["parked", "idling", "operating"] = "parked"

@@ -78,16 +78,15 @@ class RotorLoads:
         return np.asarray((turn @ damping @ turn.swapaxes(1, 2)).mean(axis=0))
 
 
-def wind_field(air: Air, aero: Aerodynamics, *, duration: float, step: float) -> RotorWind:
-    """Return turbulent wind that repeats after ``duration`` [s]."""
-    turbine = aero.turbine
+def wind_field(air: Air, aero: Aerodynamics | None, *, duration: float, step: float) -> RotorWind:
+    """Return turbulent wind that repeats after ``duration`` [s], on the tower alone without a rotor."""
     return rotor_wind(
         air.wind,
-        turbine.rotor,
+        None if aero is None else aero.turbine.rotor,
         duration=duration,
         step=step,
         seed=air.seed,
-        azimuth=None if aero.turns else turbine.azimuth,
+        azimuth=None if aero is None or aero.turns else aero.turbine.azimuth,
         coherent=air.coherent,
         piece=air.piece_m,
     )

@@ -1,0 +1,94 @@
+"""Rotors that fit the asset, rotors that do not, and none."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.loads import read_rotor
+from jackettwin.simulate import loads_document, read_scenario, simulate
+from jackettwin.simulate.rotor_limits import lowest_tip
+
+WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
+BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[[str], Path]:
+    def write(text: str) -> Path:
+        path = tmp_path / "scenario.yaml"
+        path.write_text(WIND + BRIEF + text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_the_lowest_tip_of_a_turn_is_the_lowest_of_all_stands() -> None:
+    """And without tilt, cone and prebend it is one radius under the hub."""
+    rotor, _ = read_rotor("iea15")
+    stands = [lowest_tip(rotor, np.pi / 2, azimuth=float(psi)) for psi in np.linspace(0.0, 2.0, 2001)]
+    # 1e-3 rad of azimuth are 120 m · (1e-3)²/2 of height
+    assert lowest_tip(rotor, np.pi / 2, azimuth=None) == pytest.approx(min(stands), abs=1e-3)
+    straight = replace(
+        rotor, tilt=0.0, cone=0.0, blade=replace(rotor.blade, prebend=np.zeros_like(rotor.blade.z))
+    )
+    assert lowest_tip(straight, 0.0, azimuth=None) == pytest.approx(rotor.hub_height - straight.radius)
+    assert lowest_tip(straight, 0.0, azimuth=np.pi) == pytest.approx(rotor.hub_height - straight.radius)
+    assert lowest_tip(straight, 0.0, azimuth=0.0) == pytest.approx(rotor.hub_height - 0.5 * straight.radius)
+
+
+@pytest.mark.parametrize("rotor", ["azimuth_deg: 60", "state: idling", "state: operating"])
+def test_tips_in_the_water_are_refused(written: Callable[[str], Path], rotor: str) -> None:
+    """A turbine of 107 m under a rotor of 120 m; parked with one blade up it just stands clear."""
+    path = written(f"rotor: {{data: iea15, {rotor}}}\n")
+    low = path.with_name("low.yaml")
+    low.write_text(LOW, encoding="utf-8")
+    path.write_text(path.read_text().replace("jacket15", "low.yaml"), encoding="utf-8")
+    with pytest.raises(InputError, match="a blade tip touches the water"):
+        read_scenario(path)
+    path.write_text(path.read_text().replace(rotor, "azimuth_deg: 0"), encoding="utf-8")
+    assert read_scenario(path).turbine is not None
+
+
+def test_wind_on_the_tower_alone(written: Callable[[str], Path]) -> None:
+    """Drag of a steady wind on a cylinder of mean diameter: ½ρ C_D D L u² (within the taper's share)."""
+    path = written("rotor: {data: none}\n")
+    scenario = read_scenario(path)
+    assert scenario.turbine is None
+    assert scenario.air is not None
+    assert scenario.air.wind.hub_height_m == pytest.approx(144.0)
+    document = loads_document(scenario)
+    assert document["warnings"] == []
+    tower = [m for m in scenario.asset.structure.members if m.part == "tower"]
+    nodes = scenario.asset.structure.nodes
+    area = sum(
+        0.5
+        * (m.section_start.outer_diameter_m + m.section_end.outer_diameter_m)
+        * (nodes[m.end][2] - nodes[m.start][2])
+        for m in tower
+    )
+    assert document["force_n"]["x"]["mean"] == pytest.approx(0.5 * 1.225 * 0.65 * area * 12.0**2, rel=0.01)
+    record = simulate(scenario).record
+    assert record.conditions["rotor"] is None
+    assert np.isfinite(record.data).all()
+
+
+def test_a_rotor_nobody_chose_is_named(written: Callable[[str], Path]) -> None:
+    assert "the wind blows on iea15, parked" in loads_document(read_scenario(written("")))["warnings"][0]
+    assert loads_document(read_scenario(written("rotor: {data: iea15}\n")))["warnings"] == []
+
+
+def test_no_rotor_has_no_state(written: Callable[[str], Path]) -> None:
+    with pytest.raises(InputError, match=r"rotor\.state: there is no rotor"):
+        read_scenario(written("rotor: {data: none, state: operating}\n"))
+
+
+LOW = """
+sections: {tube: {outer_diameter_m: 6.0, thickness_m: 0.06}}
+nodes: {a: [0, 0, -20], b: [0, 0, 105]}
+members: [{nodes: [a, b], section: tube, part: tower}]
+reaction_nodes: [a]
+"""
