@@ -53,10 +53,7 @@ def test_velocity_is_raschiis_and_acceleration_its_total_derivative(theory: str)
     np.testing.assert_allclose(a, follow, atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("height", "period", "depth"),
-    [(5.0, 20.0, 10.0), (7.5, 20.0, 12.0), (2.0, 12.0, 5.0), (20.0, 14.0, 50.0)],
-)
+@pytest.mark.parametrize(("height", "period", "depth"), [(2.0, 12.0, 5.0), (20.0, 14.0, 50.0)])
 def test_long_waves_have_harmonics_enough(height: float, period: float, depth: float) -> None:
     """H within 0.1 %, and water that neither vanishes nor spins."""
     wave = regular_wave("stream-function", height=height, period=period, depth=depth, direction=0.7)

@@ -22,7 +22,7 @@ from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.kernels import morison
 from jackettwin.loads.waves import Waves
-from jackettwin.structure import Assembly, beam
+from jackettwin.structure import Assembly, Structure, beam
 from jackettwin.structure.mesh import Mesh
 
 FloatArray = npt.NDArray[np.float64]
@@ -92,15 +92,7 @@ def morison_points(
     ends = mesh.coordinates - [0.0, 0.0, structure.sea_level_z_m]
     z0, z1 = ends[mesh.start, 2], ends[mesh.end, 2]
     reaches = (np.minimum(z0, z1) <= highest_z) & (np.maximum(z0, z1) >= lowest_z)
-    wanted = [
-        e for e in np.flatnonzero(reaches) if structure.members[mesh.member[e]].part not in exclude_parts
-    ]
-    if not wanted:
-        raise InputError(
-            "no member reaches into the water or the heights asked for",
-            field="sea_level_z_m",
-            value=structure.sea_level_z_m,
-        )
+    wanted = _of_parts(structure, mesh, reaches, exclude_parts)
     pieces = [_gauss(float(mesh.properties.L[e]), spacing) for e in wanted]
     element = np.repeat(wanted, [weight.size for _, _, weight in pieces])
     at, middle, length = (np.concatenate(part) for part in zip(*pieces, strict=True))
@@ -129,6 +121,20 @@ def morison_points(
         N=_distribution(assembly, element, at),
         density_kg_m3=coefficients.density_kg_m3,
     )
+
+
+def _of_parts(
+    structure: Structure, mesh: Mesh, reaches: npt.NDArray[np.bool_], exclude: tuple[str, ...]
+) -> list[np.intp]:
+    """Return the elements that reach there and are of no excluded part."""
+    wanted = [e for e in np.flatnonzero(reaches) if structure.members[mesh.member[e]].part not in exclude]
+    if not wanted:
+        raise InputError(
+            "no member reaches into the water or the heights asked for",
+            field="sea_level_z_m",
+            value=structure.sea_level_z_m,
+        )
+    return wanted
 
 
 def _diameters(assembly: Assembly, member: IntArray, points: FloatArray) -> tuple[FloatArray, FloatArray]:
