@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 import pytest
 
 from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate, identify
+from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, assess
 from jackettwin.response.labels import mode_kinds, mode_labels
@@ -78,7 +79,8 @@ def record() -> Record:
 
 @pytest.fixture(scope="session")
 def observation(record: Record) -> Observation:
-    return Observation(record, assess(record), identify(record))
+    found = identify(record)
+    return Observation(record, assess(record), found, compare_methods(record, found))
 
 
 def _certain(mode: ModalEstimate) -> ModalEstimate:

@@ -12,9 +12,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jackettwin.identification import ModalEstimate
+from jackettwin.identification.comparison import Comparison
 from jackettwin.records import Channel
 from jackettwin.report.figures_measured import Places, measured_shapes_3d
 from jackettwin.report.identification_page import build_identification_page, mode_names
+from jackettwin.report.numbers import UNKNOWN
+from jackettwin.report.tables_records import method_table
 from jackettwin.twin import Observation
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
@@ -68,6 +71,21 @@ def test_the_page_is_whole(page: str) -> None:
 
 
 def test_a_record_without_modes_has_a_page(observation: Observation, tmp_path: Path) -> None:
-    none = replace(observation, identification=replace(observation.identification, modes=()))
+    found = replace(observation.identification, modes=())
+    none = replace(observation, identification=found, comparison=None)
     text = build_identification_page(none, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "measured_shapes" not in text
+
+
+def test_methods_stand_side_by_side_with_what_is_known_of_them(observation: Observation) -> None:
+    found = observation.identification
+    uncertain = replace(found.modes[0], damping_ratio=0.01, damping_ratio_std=0.002)
+    silent = replace(found.modes[0], damping_ratio=0.012, damping_ratio_std=None)
+    modes = {"ssi-cov": (uncertain,), "plscf": (silent,), "efdd": (None,)}
+    compared = Comparison(replace(found, modes=found.modes[:1]), modes, {"ssi-dat": "too many gaps"})
+    table = method_table(compared, ["mode_1"])
+    (row,) = table.rows
+    assert row[2].endswith("/ 1.00 ± 0.20")
+    assert row[3].endswith("/ 1.20")
+    assert row[4] == UNKNOWN
+    assert "SSI-dat not applied: too many gaps." in table.caption

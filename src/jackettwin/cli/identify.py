@@ -16,14 +16,12 @@ from jackettwin.cli.console import messages, number, output, print_json, progres
 from jackettwin.errors import InputError, located
 from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.table import Unsaid
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import observation_document, observe
-from jackettwin.twin.document import comparison_document
 from jackettwin.twin.export import WRITERS, export_modes
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -133,14 +131,10 @@ def _one(
     compare: bool,
     report: Path | None,
 ) -> dict[str, Any]:
-    with progress(1 + compare + (report is not None), "identify") as step:
+    with progress(1 + (report is not None), "identify") as step:
         step(f"identify {file.name}")
-        seen = observe(file, settings, **how)
+        seen = observe(file, settings, compare=compare or report is not None, **how)
         document = observation_document(seen)
-        if compare:
-            step("by every method")
-            compared = compare_methods(seen.record, seen.identification, settings)
-            document["methods"] = comparison_document(compared)
         if report is not None:
             step("write the report")
             build_identification_page(seen, report)

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.identification import Identification
-from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.spectral_fit import modal_fit
 from jackettwin.records.yaw import knows_yaw
 from jackettwin.report import figures_measured, figures_record, section_records
@@ -79,8 +78,8 @@ def _record(seen: Observation, names: tuple[str, ...]) -> list[Block]:
 def _modes(seen: Observation, names: tuple[str, ...]) -> list[Block]:
     found = seen.identification
     blocks: list[Block] = [tables.identified_table(found, names)]
-    if found.modes:
-        blocks.append(tables.method_table(compare_methods(seen.record, found), names))
+    if seen.comparison is not None:
+        blocks.append(tables.method_table(seen.comparison, names))
     if len(found.stabilisation.order):
         blocks += section_records.diagrams(found, names)
     if found.rejected:

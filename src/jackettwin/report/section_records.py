@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from jackettwin.identification import FusedMode, Identification, fuse
-from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.convergence import convergence
 from jackettwin.identification.spectral_fit import modal_fit
 from jackettwin.report import figures_identification, figures_likeness, figures_record
@@ -46,8 +45,8 @@ def what_was_identified(result: TwinResult) -> list[Block]:
         blocks.append(tables.identified_table(found, names, folded=i > 0))
     if result.identifications:
         first = result.identifications[0]
-        if first.modes and result.record is not None:
-            compared = compare_methods(result.record, first)
+        compared = result.observations[0].comparison
+        if compared is not None:
             blocks.append(tables.method_table(compared, result.names[0]))
         if first.rejected:
             blocks.append(tables.rejected_table(first))

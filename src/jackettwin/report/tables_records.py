@@ -47,7 +47,11 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     titles = {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}
 
     def said(mode: ModalEstimate | None) -> str:
-        return UNKNOWN if mode is None else f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}"
+        if mode is None:
+            return UNKNOWN
+        known = mode.damping_ratio_std
+        spread = "" if known is None else f" ± {percent(known)}"
+        return f"{frequency(mode.frequency_hz)} / {percent(mode.damping_ratio)}{spread}"
 
     rows = [
         (
@@ -59,7 +63,8 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     ]
     caption = (
         f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, none "
-        "refined. Dash: not found. EFDD finds one mode of a close pair and lends light modes damping."
+        "refined. ±: standard deviation of ζ; SSI-dat, pLSCF and EFDD state none. "
+        "Dash: not found. EFDD finds one mode of a close pair and lends light modes damping."
     )
     caption += "".join(f" {titles[method]} not applied: {why}." for method, why in compared.refused.items())
     columns = ("mode", "reported", *(titles[method] for method in compared.modes))

@@ -243,7 +243,8 @@ def observation_document(seen: Observation, labels: tuple[str, ...] | None = Non
     if labels is not None:
         for mode, label in zip(document["modes"], labels, strict=True):
             mode["label"] = label or None
-    return document | {"conditions": dict(seen.record.conditions)}
+    methods = {} if seen.comparison is None else {"methods": comparison_document(seen.comparison)}
+    return document | methods | {"conditions": dict(seen.record.conditions)}
 
 
 def identification_document(found: Identification, quality: dict[str, Any]) -> dict[str, Any]:

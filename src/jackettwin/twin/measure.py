@@ -57,6 +57,7 @@ def measure(
     assembly: Assembly,
     numbered: UndampedModes,
     *,
+    compare: bool = False,
     step: Callable[[str], None],
 ) -> Measured:
     """Return the measured modes of every record of a twin, paired with the numbered modes of its model.
@@ -67,9 +68,16 @@ def measure(
         If a record cannot be read or identified, or a sensor and a channel disagree; names file and field.
     """
     observations = []
-    for path in config.records:
+    for i, path in enumerate(config.records):
         step(f"identify {path.name}")
-        observations.append(observe(path, config.identification, sensors=config.sensors, picks=config.picks))
+        seen = observe(
+            path,
+            config.identification,
+            sensors=config.sensors,
+            picks=config.picks,
+            compare=compare and i == 0,
+        )
+        observations.append(seen)
     sightings: dict[int, list[Sighting]] = {}
     numbers = []
     for seen in observations:

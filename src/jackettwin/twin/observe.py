@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.identification import Identification, IdentificationSettings, identify
+from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
@@ -35,11 +36,14 @@ class Observation:
         As it was identified.
     quality : Quality
         Of the record as it was read.
+    comparison : Comparison or None
+        The same modes by every method, if it was asked for.
     """
 
     record: Record
     quality: Quality
     identification: Identification
+    comparison: Comparison | None = None
 
 
 def observe(
@@ -50,6 +54,7 @@ def observe(
     drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
     unsaid: Unsaid | None = None,
+    compare: bool = False,
 ) -> Observation:
     """Read, judge, repair, turn to the rotor's axes and identify one record.
 
@@ -63,6 +68,8 @@ def observe(
         Poles to take instead of the automatic selection, for the records they name.
     unsaid : Unsaid, optional
         Rate and unit, for a file that does not say them.
+    compare : bool
+        Identify by every method as well.
 
     Raises
     ------
@@ -83,7 +90,9 @@ def observe(
         found = _beside_orders(identify(ready, settings, picks=picks), orders)
         if knows_yaw(record) or record.metadata.get("axes") == "rotor":
             found = along_axes(found)
-        return Observation(ready, quality, replace(found, warnings=(*notes, *found.warnings)))
+        found = replace(found, warnings=(*notes, *found.warnings))
+        compared = compare_methods(ready, found, settings) if compare and found.modes else None
+        return Observation(ready, quality, found, compared)
 
 
 def _beside_orders(found: Identification, orders: tuple[RotorOrder, ...]) -> Identification:

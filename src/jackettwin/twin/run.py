@@ -25,6 +25,7 @@ def run_twin(
     config: TwinConfig,
     *,
     laws: tuple[str, ...] | None = None,
+    compare: bool = False,
     step: Callable[[str], None] = lambda _: None,
 ) -> TwinResult:
     """Identify the records of a twin (or take its targets) and update its supports under each law.
@@ -33,6 +34,8 @@ def run_twin(
     ----------
     laws : tuple of str, optional
         Instead of the twin file's.
+    compare : bool
+        Identify the first record by every method, to set side by side.
     step : callable
         Told what is being done, once a step; ``count_steps`` says how many there are.
 
@@ -48,7 +51,7 @@ def run_twin(
     number = max([_PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
     numbered = numbered_modes(assembly, number)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
-    found = measure(config, assembly, numbered, step=step) if config.records else None
+    found = measure(config, assembly, numbered, compare=compare, step=step) if config.records else None
     measured = (
         target_modes(config, labels, highest_hz=float(numbered.frequency_hz.max()))
         if found is None
