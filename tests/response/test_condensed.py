@@ -55,7 +55,7 @@ def test_shapes_are_those_of_the_full_model(jacket15) -> None:
 
 def test_f_is_the_schur_complement_of_the_full_one(jacket15) -> None:
     """Static condensation is the case s = 0; a general s holds every term of the series."""
-    from jackettwin.response.condensed_matrix import fill
+    from jackettwin.response.condensed_kernels import fill
 
     system = build_system(jacket15, on_translations(jacket15.structure, LAWS["maxwell-3"]), rayleigh=RAYLEIGH)
     condensed = condense(system, below_hz=0.95)

@@ -107,7 +107,7 @@ class Condensed:
         return tuple(int(np.linalg.matrix_rank(group.S)) for group in self.pencil.groups)
 
     def arrays(self) -> tuple[Any, ...]:
-        """Return what :mod:`jackettwin.response.condensed_matrix` calls ``model``."""
+        """Return what :mod:`jackettwin.response.condensed_kernels` calls ``model``."""
         n_moments = self.terms.shape[0] - self.mid.size
         return (self.terms, n_moments, self.mid, self.P, self.w2, *self.entries)
 
