@@ -115,7 +115,7 @@ STAMPED = ("time," + HEAD, "s," + UNITS)
 TEXTS: dict[str, tuple[Callable[[list[str]], str], str]] = {
     "words": (lambda r: "\n".join([HEAD, UNITS, *r[:50], "a,b", *r[50:]]), "line 53, channel top_x"),
     "no rate": (lambda r: "\n".join([HEAD, UNITS, *r]), "sample_rate_hz"),
-    "no header": (lambda r: "\n".join(r), "line 1"),
+    "no header": (lambda r: "\n".join(r), "--sample-rate"),
     "a header alone": (lambda r: "# fs: 20\n" + HEAD, "no samples"),
     "twice one name": (lambda r: "\n".join(["# fs: 20", "top_x,top_x", UNITS, *r]), "given twice"),
     "zero rate": (lambda r: "\n".join(["# fs: 0", HEAD, UNITS, *r]), "fs"),

@@ -203,10 +203,10 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
     if schema.support.law:
         with located(field="support"):
             family(schema.support.law)
-    with located(field="support"):
-        _check_ties(schema.support, schema.update)
     with located(field="update"):
         _check_update(schema.update)
+    with located(field="support"):
+        _check_ties(schema.support, schema.update)
     damping = schema.damping.rayleigh if schema.damping is not None else None
     structure = _structure(schema, path.parent)
     return TwinConfig(
