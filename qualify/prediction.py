@@ -6,9 +6,11 @@ Usage: python qualify/prediction.py [n_truths]
 from __future__ import annotations
 
 import sys
-from pathlib import Path
+import time
 
 import numpy as np
+from common.cases import Result, cases
+from common.page import percent, write_page
 from scipy.stats import binomtest
 
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
@@ -16,7 +18,6 @@ from jackettwin.updating import Residuals, Target, family, single, support_model
 from jackettwin.updating.posterior import sample_posterior
 from jackettwin.updating.solutions import search
 
-OUT = Path(__file__).parents[1] / "docs" / "verification" / "prediction.md"
 MODES = (1, 2, 4)
 STEEL = Rayleigh.minimum(0.0055, 0.1832)
 LAWS = ("maxwell-3", "kelvin-voigt", "zener")
@@ -60,42 +61,48 @@ def covered(assembly: Assembly, f: np.ndarray, zeta: np.ndarray, rng: np.random.
     return bool(low <= zeta[2] <= high)
 
 
+def truth(assembly: Assembly, case: int) -> Result:
+    """Return each law's error of ζ4, and whether the default law's interval from one record holds it."""
+    start = time.process_time()
+    rng = np.random.default_rng((11, case))
+    k, loss_factor = np.exp(rng.uniform(np.log([5e8, 0.01]), np.log([3e10, 0.5])))
+    poles = truth_poles(assembly, k, loss_factor)
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    return {
+        "errors": {law: fit(assembly, law, f, zeta) / zeta[2] - 1.0 for law in LAWS},
+        "inside": covered(assembly, f, zeta, rng, case),
+        "cpu_s": time.process_time() - start,
+    }
+
+
 def main() -> None:
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 50
     assembly = assemble(read_structure("jacket15"))
-    errors: dict[str, list[float]] = {law: [] for law in LAWS}
-    hits = 0
-    for i in range(number):
-        rng = np.random.default_rng((11, i))
-        k, loss_factor = np.exp(rng.uniform(np.log([5e8, 0.01]), np.log([3e10, 0.5])))
-        poles = truth_poles(assembly, k, loss_factor)
-        f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-        for law in LAWS:
-            errors[law].append(fit(assembly, law, f, zeta) / zeta[2] - 1.0)
-        hits += covered(assembly, f, zeta, rng, i)
-        print(i, {law: f"{100 * e[-1]:+.1f} %" for law, e in errors.items()}, hits, flush=True)
+    found = cases("prediction", number, lambda case: truth(assembly, case))
+    hits = sum(r["inside"] for r in found)
     limits = binomtest(hits, number).proportion_ci(0.95)
-    lines = [
-        "# Blind prediction of ζ4",
-        "",
-        f"`python qualify/prediction.py {number}`: {number} truths on springpots, k 5e8 to 3e10 N/m,",
-        "loss factor 0.01 to 0.5 at every frequency; f1, f2, f4 and ζ1 fitted, ζ4 predicted.",
-        "",
-        "| law | median error | median size of error | worst |",
-        "|---|---|---|---|",
-    ]
-    for law, e in errors.items():
-        size = 100 * np.abs(e)
-        lines.append(
-            f"| {law} | {100 * np.median(e):+.1f} % | {np.median(size):.1f} % | {size.max():.1f} % |"
+    rows = []
+    for law in LAWS:
+        e = 100 * np.array([r["errors"][law] for r in found])
+        rows.append(
+            f"| {law} | {np.median(e):+.1f} % | {np.median(np.abs(e)):.1f} % | {np.abs(e).max():.1f} % |"
         )
-    lines += [
-        "",
-        f"With the covariances of a {SECONDS:.0f} s record the default law's 90 % interval contains",
-        f"ζ4 in {hits} of {number} cases (95 % limits {100 * limits.low:.0f} to {100 * limits.high:.0f} %).",
-    ]
-    OUT.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    print("\n".join(lines))
+    write_page(
+        "prediction",
+        [
+            "# Blind prediction of ζ4",
+            "",
+            f"`python qualify/prediction.py {number}`: {number} truths on springpots, k 5e8 to 3e10 N/m,",
+            "loss factor 0.01 to 0.5 at every frequency; f1, f2, f4 and ζ1 fitted, ζ4 predicted.",
+            "",
+            "| law | median error | median size of error | worst |",
+            "|---|---|---|---|",
+            *rows,
+            "",
+            f"With the covariances of a {SECONDS:.0f} s record the default law's 90 % interval contains",
+            f"ζ4 in {hits} of {number} cases (95 % limits {percent(limits.low, limits.high, 0)}).",
+        ],
+    )
 
 
 if __name__ == "__main__":

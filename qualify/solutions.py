@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
+from common.cases import Result, cases
+from common.page import write_page
 
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.solutions import LOCKED_DAMPER, Search, search
 
-OUT = Path(__file__).parents[1] / "docs" / "verification" / "solutions.md"
 MODES = (1, 2, 4)
 SEEDS = range(5)
 LAWS = {
@@ -68,48 +68,54 @@ def unflagged(model: SupportModel, found: Search) -> int:
     return wrong
 
 
+def planted_problem(models: dict[str, SupportModel], case: int) -> Result:
+    """Return what the search makes of one problem from every seed."""
+    law, which = ORDER[case % 4], case // 4 % 3
+    rng = np.random.default_rng((2026, case))
+    truth = np.exp(rng.uniform(*np.log(LAWS[law])))
+    poles = models[law].predict(truth, MODES).poles
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    problem = single(models[law], Residuals(targets(which, f, zeta), relative=True))
+    found, seconds = [], []
+    for seed in SEEDS:
+        start = time.process_time()
+        found.append(search(problem, seed=seed))
+        seconds.append(time.process_time() - start)
+    row = (
+        law,
+        ("f1 f2 f4 ζ1", "f1 f2 f4", "f1 f4 ζ1 ζ4")[which],
+        len(found[0].solutions),
+        sum(s.locked_damper for s in found[0].solutions),
+        sum(planted(f, truth) for f in found),
+        sum(same(found[0], f) for f in found),
+        sum(unflagged(models[law], f) for f in found),
+        f"{max(seconds):.0f} s",
+    )
+    return {"row": row, "slowest": max(seconds), "cpu_s": sum(seconds)}
+
+
 def main() -> None:
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 20
     assembly = assemble(read_structure("jacket15"))
     steel = Rayleigh.minimum(0.0055, 0.1832)
     models = {law: support_model(assembly, family=family(law), rayleigh=steel) for law in LAWS}
-    rows, slowest = [], 0.0
-    for case in range(number):
-        law, which = ORDER[case % 4], case // 4 % 3
-        rng = np.random.default_rng((2026, case))
-        truth = np.exp(rng.uniform(*np.log(LAWS[law])))
-        poles = models[law].predict(truth, MODES).poles
-        f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
-        problem = single(models[law], Residuals(targets(which, f, zeta), relative=True))
-        found = []
-        for seed in SEEDS:
-            start = time.process_time()
-            found.append(search(problem, seed=seed))
-            slowest = max(slowest, time.process_time() - start)
-        rows.append(
-            (
-                law,
-                ("f1 f2 f4 ζ1", "f1 f2 f4", "f1 f4 ζ1 ζ4")[which],
-                len(found[0].solutions),
-                sum(s.locked_damper for s in found[0].solutions),
-                sum(planted(f, truth) for f in found),
-                sum(same(found[0], f) for f in found),
-                sum(unflagged(models[law], f) for f in found),
-            )
-        )
-        print(case, rows[-1], f"{slowest:.1f} s", flush=True)
-    lines = [
-        "# Every solution",
-        "",
-        f"`python qualify/solutions.py {number}`: a truth drawn at random, its modes as targets (relative",
-        "cost), the search from five seeds with its default settings.",
-        f"Slowest search: {slowest:.1f} CPU-s.",
-        "",
-        "| law | targets | solutions | locked | truth listed, of 5 | same list, of 5 | unflagged, wrong |",
-        "|---|---|---|---|---|---|---|",
-        *("| " + " | ".join(map(str, row)) + " |" for row in rows),
-    ]
-    OUT.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    found = cases("solutions", number, lambda case: planted_problem(models, case))
+    write_page(
+        "solutions",
+        [
+            "# Every solution",
+            "",
+            f"`python qualify/solutions.py {number}`: a truth drawn at random, its modes as targets",
+            "(relative cost), the search from five seeds with its default settings.",
+            f"A search takes {np.mean([r['cpu_s'] for r in found]) / len(SEEDS):.1f} CPU-s in the mean,",
+            f"{max(r['slowest'] for r in found):.1f} CPU-s at most.",
+            "",
+            "| law | targets | solutions | locked | truth listed, of 5 | same list, of 5 | unflagged, wrong "
+            "| slowest search |",
+            "|---|---|---|---|---|---|---|---|",
+            *("| " + " | ".join(map(str, r["row"])) + " |" for r in found),
+        ],
+    )
 
 
 if __name__ == "__main__":

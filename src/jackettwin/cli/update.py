@@ -105,7 +105,7 @@ def _measured(value: float | None, std: float | None, decimals: int, fitted: boo
 def _unexplained(e: DampingExcess) -> str:
     points = f"{100 * abs(e.excess):.2f} % of critical"
     if e.excess < 0.0:
-        return f"{points} less than the model has: its steel damping is too high there"
+        return f"{points} less than steel and soil have in the model"
     if e.carried:
         return f"{points} that no support can explain: the rotor's dashpot carries it ({100 * e.rotor:.2f} %)"
     part = f", {100 * e.rotor:.2f} % of it the rotor's" if e.rotor > 0.1 * e.excess else ""
