@@ -91,6 +91,56 @@ def test_acceleration_and_drag_at_an_end() -> None:
     np.testing.assert_allclose(force, 0.25 * SEA_WATER_KG_M3 * 0.8 * np.pi * R**2 * u**2, rtol=1e-9)
 
 
+def test_bodies_are_closed() -> None:
+    """Σ A = 0 of what lies under water, cones and bands of growth included; the ring of a cone by hand."""
+    nodes = {"a": (0.0, 0.0, -40.0), "b": (1.0, 0.0, -25.0), "c": (2.0, 3.0, -10.0)}
+    wide, narrow = Section(3.0, 0.05), Section(1.0, 0.05)
+    structure = Structure(
+        "cone",
+        nodes,
+        (Member("lower", "a", "b", wide, wide, STEEL), Member("upper", "b", "c", wide, narrow, STEEL)),
+        sea_level_z_m=0.0,
+    )
+    for growth in ((), (GrowthBand(0.0, -20.0, 0.1), GrowthBand(-20.0, -30.0, 0.1, 0.0))):
+        ends = member_ends(
+            assemble(structure, subdivide=3),
+            EndCoefficients(1.0, 1.0, 1.0),
+            Coefficients(growth=growth),
+            highest_z=0.0,
+            lowest_z=-DEPTH,
+        )
+        np.testing.assert_allclose(ends.area.sum(axis=0), 0.0, atol=1e-9)
+    cone = ends.points[3:, 2] > -20.0  # the joints come first; above the change of growth
+    assert cone.any() and (ends.area[3:][cone, 2] > 0.0).all()  # what narrows upwards looks up
+
+
+def test_waves_on_a_cone_do_work_where_it_stands() -> None:
+    """Loads of rings go to the nodes of their element: force kept, moment as at the ring."""
+    structure = Structure(
+        "cone",
+        {"a": (0.0, 0.0, -30.0), "b": (0.0, 0.0, -5.0)},
+        (Member("m", "a", "b", Section(4.0, 0.05), Section(2.0, 0.05), STEEL),),
+        sea_level_z_m=0.0,
+    )
+    assembly = assemble(structure, subdivide=2)
+    ends = member_ends(
+        assembly, EndCoefficients(pressure=1.0), Coefficients(), highest_z=0.0, lowest_z=-DEPTH
+    )
+    forces = end_forces(ends, WAVE, TIMES)
+    lift = np.tile([0, 0, 1.0, 0, 0, 0], assembly.n_dof // 6)
+    nodal = (ends.N @ forces.reshape(TIMES.size, -1).T).T
+    np.testing.assert_allclose(nodal @ lift, forces[..., 2].sum(axis=1), atol=1e-6)
+    # −∫p n dA by hand: p down the cone, its bottom and its top
+    k = float(WAVE.k[0])
+    z = np.linspace(-30.0, -5.0, 2001)
+    p = SEA_WATER_KG_M3 * 9.80665 * 2.0 * np.cosh(k * (z + DEPTH)) / np.cosh(k * DEPTH)
+    R = 2.0 - (z + 30.0) / 25.0
+    wanted = p[0] * np.pi * R[0] ** 2 - p[-1] * np.pi * R[-1] ** 2
+    wanted += np.trapezoid(p * 2.0 * np.pi * R * np.gradient(R, z), z)
+    # rings of half a metre
+    assert forces[0, :, 2].sum() == pytest.approx(wanted, rel=1e-3)
+
+
 def test_joints_above_the_surface_are_dry() -> None:
     ends = ends_of(((0.0, 0.0, -5.0), (0.0, 0.0, 5.0)), pressure=1.0)
     assert ends.points.shape == (1, 3)

@@ -118,6 +118,19 @@ def test_force_and_moment_are_hydrodyns(tripod, end_loads) -> None:
         np.testing.assert_allclose(ours, theirs, atol=rtol * np.abs(theirs).max())
 
 
+def test_vertical_force_is_hydrodyns_but_for_buoyancy(end_loads) -> None:
+    """The column widens from 3.4 to 5.7 m: pressure on its cone is 0.4 MN of what the waves lift.
+
+    HydroDyn prints buoyancy with it, which stands still; its own sum for this tripod is 8.852 MN, and 0.1 m
+    deeper, as it stood, some 40 kN more.
+    """
+    waves = lumped(1.0, as_printed=True)[:, 2] + end_loads[:, 2]
+    buoyancy = np.array(TOTAL["force_z_n"]) - waves
+    assert buoyancy.mean() == pytest.approx(8.852e6 + 40e3, rel=2e-3)
+    # 2.8 % of the range of the waves' part, 0.26 MN; without the cone's pressure it would be twice that range
+    assert np.ptp(buoyancy) < 0.03 * np.ptp(waves)
+
+
 @pytest.mark.parametrize("spacing", [0.25, 0.5, 1.0])
 def test_integration_needs_no_lumping(tripod, spacing: float) -> None:
     """Our Gauss points against the lumping done right, 5 cm apart: 0.1 % of force and moment."""

@@ -5,14 +5,18 @@ At a joint, with the outward normals n of all member ends there,
 .. math:: F = -C_{p} p A + \rho C_{a} \frac{V V^T}{|V|} \dot u + \frac{\rho C_{d}}{4|A|^2} |u·A| (u·A) A,
           \qquad A = \sum πR^2 n, \quad V = \sum \tfrac{2π}{3}R^3 n
 
-as in OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison), R with marine growth. Where legs
-run through, their ends cancel; those of braces count as if they stood free in the water: C_p = 1 is an upper
-bound on a jacket. All are 0 by default.
+and the same over every ring of a member that widens, where A = −π(R_2² − R_1²) k, V = ⅔π|R_2³ − R_1³| k
+and k points from R_1 to R_2: so the pressure acts on closed bodies. R is with marine growth.
+
+As in OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison). Where legs run through, their
+ends cancel; those of braces count as if they stood free in the water: C_p = 1 is an upper bound on a jacket.
+All are 0 by default.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +25,14 @@ import scipy.sparse as sp
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
+from jackettwin.loads.morison import distribution
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly
 
 FloatArray = npt.NDArray[np.float64]
+
+_RING_M = 0.5
+"""Length of a ring of a member that widens."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +57,7 @@ class EndCoefficients:
 
 @dataclass(frozen=True)
 class Ends:
-    """The joints with ends in the water.
+    """The joints with ends in the water, then the rings of members that widen.
 
     Attributes
     ----------
@@ -98,14 +106,59 @@ def member_ends(
     names = [n for n in area if lowest_z - 0.01 <= structure.nodes[n][2] - sea[2] <= highest_z]
     rows = [assembly.expand[assembly.mesh.node_dofs(name)[:3]] for name in names]
     blank = sp.csr_array((0, assembly.n_dof))
+    rings = _rings(assembly, water, exclude_parts)
+    here = (rings.points[:, 2] >= lowest_z) & (rings.points[:, 2] <= highest_z)
+    at_rings = distribution(assembly, rings.element[here], rings.xi[here])
+    at_joints = sp.csr_array((sp.vstack(rows) if rows else blank).T)
     return Ends(
-        points=np.array([structure.nodes[name] for name in names]).reshape(-1, 3) - sea,
-        area=np.array([area[name] for name in names]).reshape(-1, 3),
-        volume=np.array([volume[name] for name in names]).reshape(-1, 3),
-        N=sp.csr_array((sp.vstack(rows) if rows else blank).T),
+        points=np.vstack([*(np.subtract(structure.nodes[n], sea) for n in names), rings.points[here]]),
+        area=np.vstack([*(area[n] for n in names), rings.area[here]]),
+        volume=np.vstack([*(volume[n] for n in names), rings.volume[here]]),
+        N=sp.csr_array(sp.hstack([at_joints, at_rings])),
         coefficients=coefficients,
         density_kg_m3=water.density_kg_m3,
     )
+
+
+class _Rings(NamedTuple):
+    """Short pieces of members whose radius changes: middles, A, V, and where along which element they lie."""
+
+    points: FloatArray
+    area: FloatArray
+    volume: FloatArray
+    element: npt.NDArray[np.intp]
+    xi: FloatArray
+
+
+def _rings(assembly: Assembly, water: Coefficients, exclude_parts: tuple[str, ...]) -> _Rings:
+    structure, mesh = assembly.structure, assembly.mesh
+    none = np.zeros((0, 3))
+    found = [_Rings(none, none, none, np.zeros(0, dtype=np.intp), np.zeros(0))]
+    for index, member in enumerate(structure.members):
+        if member.part in exclude_parts:
+            continue
+        first, last = (np.array(structure.nodes[node]) for node in (member.start, member.end))
+        first, last = (end - [0.0, 0.0, structure.sea_level_z_m] for end in (first, last))
+        length = float(np.linalg.norm(last - first))
+        s = np.linspace(0.0, 1.0, int(np.ceil(length / _RING_M)) + 1)
+        D0, D1 = (x.outer_diameter_m for x in (member.section_start, member.section_end))
+        R = 0.5 * (D0 + s * (D1 - D0)) + water.thickness(first[2] + s * (last[2] - first[2]))
+        middle, wider = 0.5 * (s[:-1] + s[1:]), np.pi * np.diff(R**2)
+        kept = np.abs(wider) > 1e-9
+        along, middle = (last - first) / length, middle[kept]
+        elements = np.flatnonzero(mesh.member == index)
+        place = middle * elements.size
+        at = np.minimum(place.astype(np.intp), elements.size - 1)
+        found.append(
+            _Rings(
+                first + middle[:, None] * (last - first),
+                -wider[kept, None] * along,
+                2.0 * np.pi / 3.0 * np.abs(np.diff(R**3))[kept, None] * along,
+                elements[at],
+                place - at,
+            )
+        )
+    return _Rings(*(np.concatenate(part) for part in zip(*found, strict=True)))
 
 
 def end_forces(ends: Ends, waves: Waves, t: FloatArray, *, current: Current | None = None) -> FloatArray:

@@ -118,7 +118,7 @@ def morison_points(
         xi=at,
         member=member,
         normal=np.eye(3) - axis[:, :, None] * axis[:, None, :],
-        N=_distribution(assembly, element, at),
+        N=distribution(assembly, element, at),
         density_kg_m3=coefficients.density_kg_m3,
     )
 
@@ -155,7 +155,7 @@ def _diameters(assembly: Assembly, member: IntArray, points: FloatArray) -> tupl
     return outer, bore
 
 
-def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.csr_array:
+def distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.csr_array:
     """Return N: forces at ``xi`` along elements to loads on the assembly's DOFs."""
     mesh = assembly.mesh
     dofs = mesh.element_dofs()[element]
@@ -170,7 +170,8 @@ def _distribution(assembly: Assembly, element: IntArray, xi: FloatArray) -> sp.c
 def _shapes(mesh: Mesh, element: IntArray, xi: FloatArray) -> FloatArray:
     """Return the local translation at points on elements from their end displacements, (n, 3, 12)."""
     L = mesh.properties.L[element]
-    return np.array([beam.translation_shape(float(x), float(l_e)) for x, l_e in zip(xi, L, strict=True)])
+    shapes = [beam.translation_shape(float(x), float(l_e)) for x, l_e in zip(xi, L, strict=True)]
+    return np.array(shapes).reshape(-1, 3, 12)
 
 
 def loads_along(assembly: Assembly, grid: MorisonPoints) -> sp.csr_array:
