@@ -175,12 +175,12 @@ def test_laws_are_values() -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: kelvin_voigt(-1.0, 1.0), "k0: .*feed energy in .got -1.0."),
+        (lambda: kelvin_voigt(-1.0, 1.0), "k: .*feed energy in .got -1.0."),
         (lambda: kelvin_voigt(1.0, np.nan), "^c: .*got nan"),
         (lambda: zener(1.0, 1.0, 0.0), "k1: must be positive"),
         (lambda: maxwell(0.0, 1.0), "k: must be positive"),
         (lambda: Prony(1.0, 0.0, (1.0,), ()), "every branch needs k and tau"),
-        (lambda: kelvin_voigt(np.inf, 1.0), "k0: "),
+        (lambda: kelvin_voigt(np.inf, 1.0), "k: "),
         (lambda: Springpot(0.0, 0.1, 1.0), "k: must be positive"),
         (lambda: Springpot(1.0, 1.0, 1.0), "alpha: exponent out of range .got 1.0."),
         (lambda: Springpot(1.0, 0.1, 0.0), "omega0: must be positive"),

@@ -15,8 +15,9 @@ from jackettwin.report.follow_page import build_follow_page
 from jackettwin.structure import Assembly
 from jackettwin.twin import TwinConfig, read_twin
 from jackettwin.twin.assembled import assembled
-from jackettwin.twin.follow import Followed, RecordModes, follow_modes, follow_twin
+from jackettwin.twin.follow import follow_modes, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
+from jackettwin.twin.followed import Followed, RecordModes
 from jackettwin.twin.measure import Sighting
 from jackettwin.updating import family, support_model
 

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import pytest
 
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
@@ -23,6 +26,13 @@ def models(jacket15: Assembly, steel: Rayleigh) -> dict[str, SupportModel]:
         name: support_model(jacket15, family=family(name), rayleigh=steel)
         for name in ("kelvin-voigt", "zener", "maxwell-3", "springpot")
     }
+
+
+@pytest.fixture(scope="session")
+def maxwell_3(jacket15: Assembly) -> Callable[..., SupportModel]:
+    """Build a model with the default law on 0.55 % steel up to the second bending pair; takes options."""
+    steel = Rayleigh.minimum(0.0055, 0.1832)
+    return partial(support_model, jacket15, family=family("maxwell-3"), rayleigh=steel, highest_mode=5)
 
 
 @pytest.fixture(scope="session")

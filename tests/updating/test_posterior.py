@@ -1,12 +1,13 @@
 """The posterior against quadrature and Laplace; it refuses what has not converged."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.updating import Residuals, SupportModel, Target, single
 from jackettwin.updating.convergence import convergence
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.nested import sample_nested
@@ -17,14 +18,8 @@ MODES = (1, 2, 4)
 
 
 @pytest.fixture(scope="module")
-def model(jacket15: Assembly) -> SupportModel:
-    return support_model(
-        jacket15,
-        family=family("maxwell-3"),
-        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
-        bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6)},
-        highest_mode=5,
-    )
+def model(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
+    return maxwell_3(bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6)})
 
 
 def record_of(model: SupportModel, seconds: float) -> Residuals:

@@ -1,13 +1,13 @@
 """One cost for search and sampling: gradients, states that share parameters, priors."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, single, support_model
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint, single
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.joint import Growth
 from jackettwin.updating.posterior import sample_posterior
@@ -17,14 +17,10 @@ MODES = (1, 2, 4)
 
 
 @pytest.fixture(scope="module")
-def model(jacket15: Assembly) -> SupportModel:
-    return support_model(
-        jacket15,
-        family=family("maxwell-3"),
-        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+def model(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
+    return maxwell_3(
         bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6), "c_side_side": (1e3, 1e6)},
         priors={"loss_factor": (0.05, 1.0)},
-        highest_mode=5,
         extras=Extras(("c_side_side",)),
     )
 

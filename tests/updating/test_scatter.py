@@ -1,13 +1,14 @@
 """Legs that scatter about their mean: the prior's density, its scatter, and a planted weak leg."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.stats import chi2, kstest, multivariate_t, t
 
 from jackettwin.errors import InputError
 from jackettwin.response.sensors import Sensor, observation_matrix
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Residuals, SupportModel, Target, family, joint, support_model
+from jackettwin.updating import Residuals, SupportModel, Target, joint
 from jackettwin.updating.prior import BoxPrior
 from jackettwin.updating.scatter import FREEDOM, Legs, ScatteredPrior, leg_scatter
 from jackettwin.updating.shapes import ShapeTarget
@@ -71,15 +72,8 @@ def test_rows_are_the_density_and_its_gradient(normal: bool, size: float, rng: n
 
 
 @pytest.fixture(scope="module")
-def legs(jacket15: Assembly) -> SupportModel:
-    return support_model(
-        jacket15,
-        family=family("maxwell-3"),
-        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
-        tie="per-leg",
-        bounds={"k": (1e8, 3e10), "loss_factor": (0.01, 0.5)},
-        highest_mode=5,
-    )
+def legs(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
+    return maxwell_3(tie="per-leg", bounds={"k": (1e8, 3e10), "loss_factor": (0.01, 0.5)})
 
 
 def weak_third_leg(legs: SupportModel) -> np.ndarray:

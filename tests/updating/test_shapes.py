@@ -1,5 +1,6 @@
 """Mode shapes as data: the MAC of the full model, its gradient, and what it adds."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -7,8 +8,7 @@ import pytest
 
 from jackettwin.identification import mac
 from jackettwin.response.sensors import Sensor, observation_matrix
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, support_model
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint
 from jackettwin.updating.shapes import ShapeTarget
 
 TRUTH, MODES = np.array([6e8, 0.1]), (1, 2, 4)
@@ -20,10 +20,8 @@ SENSORS = tuple(
 
 
 @pytest.fixture(scope="module")
-def model(jacket15: Assembly) -> SupportModel:
-    return support_model(
-        jacket15, family=family("maxwell-3"), rayleigh=Rayleigh.minimum(0.0055, 0.1832), highest_mode=5
-    )
+def model(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
+    return maxwell_3()
 
 
 @pytest.fixture(scope="module")

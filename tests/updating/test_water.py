@@ -1,5 +1,7 @@
 """Water's mass and drag as parameters: the full model's poles, gradients, and a share of the damping."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -8,8 +10,8 @@ from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.drag_damping import sea_drag_damping
 from jackettwin.loads.morison import morison_points
 from jackettwin.loads.water import Water, water_mass
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.structure import Assembly
+from jackettwin.updating import SupportModel
 from jackettwin.updating.budget import SOURCES, damping_budget
 from jackettwin.updating.extras import Extras
 
@@ -18,15 +20,13 @@ TRUTH = np.array([3e9, 0.1, 2e4, 1.2, 1.5])
 
 
 @pytest.fixture(scope="module")
-def wet(jacket15: Assembly) -> SupportModel:
+def wet(jacket15: Assembly, maxwell_3: Callable[..., SupportModel]) -> SupportModel:
     grid = morison_points(jacket15, highest_z=0.0, lowest_z=-72.0, spacing=8.0)
     water = {
         "water_mass": water_mass(jacket15, grid, Water()),
         "water_damping": sea_drag_damping(grid, SeaState(3.0, 8.0), 72.0),
     }
-    extras = Extras(("c_side_side",), water=water)
-    steel = Rayleigh.minimum(0.0055, 0.1832)
-    return support_model(jacket15, family=family("maxwell-3"), rayleigh=steel, highest_mode=5, extras=extras)
+    return maxwell_3(extras=Extras(("c_side_side",), water=water))
 
 
 def test_factors_are_lognormal_around_one(wet: SupportModel) -> None:
@@ -43,14 +43,10 @@ def test_poles_are_those_of_the_full_model(wet: SupportModel) -> None:
     np.testing.assert_allclose(zeta, exact.damping_ratio, rtol=1e-3)
 
 
-def test_without_more_mass_and_without_drag_nothing_changes(wet: SupportModel, jacket15: Assembly) -> None:
-    dry = support_model(
-        jacket15,
-        family=family("maxwell-3"),
-        rayleigh=wet.rayleigh,
-        highest_mode=5,
-        extras=Extras(("c_side_side",)),
-    )
+def test_without_more_mass_and_without_drag_nothing_changes(
+    wet: SupportModel, maxwell_3: Callable[..., SupportModel]
+) -> None:
+    dry = maxwell_3(extras=Extras(("c_side_side",)))
     still = np.array([*TRUTH[:3], 1.0, 1e-12])
     poles = dry.predict(TRUTH[:3], MODES).poles
     np.testing.assert_allclose(wet.predict(still, MODES).poles, poles, rtol=1e-8)
@@ -77,12 +73,12 @@ def test_more_water_is_slower_by_the_modal_mass_it_adds(wet: SupportModel, jacke
     assert d_ln_f == pytest.approx(-0.5 * share, rel=0.02)
 
 
-def test_more_water_than_the_structure_weighs_is_refused(wet: SupportModel, jacket15: Assembly) -> None:
+def test_more_water_than_the_structure_weighs_is_refused(
+    jacket15: Assembly, maxwell_3: Callable[..., SupportModel]
+) -> None:
     heavy = {"water_mass": 2.1 * jacket15.mass}
     with pytest.raises(InputError, match="cannot hold that much water"):
-        support_model(
-            jacket15, family=wet.family, rayleigh=wet.rayleigh, highest_mode=5, extras=Extras((), water=heavy)
-        )
+        maxwell_3(extras=Extras((), water=heavy))
 
 
 def test_the_budget_has_a_share_of_water(wet: SupportModel) -> None:

@@ -11,8 +11,9 @@ from jackettwin.cli.console import output, print_json, progress
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.twin import read_twin
-from jackettwin.twin.follow import Each, Followed, follow_twin
+from jackettwin.twin.follow import Each, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
+from jackettwin.twin.followed import Followed
 
 
 @click.command("follow")

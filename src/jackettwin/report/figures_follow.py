@@ -8,7 +8,7 @@ from plotly.subplots import make_subplots
 
 from jackettwin.report import style
 from jackettwin.report.numbers import words
-from jackettwin.twin.follow import Followed
+from jackettwin.twin.followed import Followed
 
 
 def parameters_through_time(followed: Followed) -> go.Figure:

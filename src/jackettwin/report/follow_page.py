@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jackettwin.report.figures_follow import parameters_through_time
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
-from jackettwin.twin.follow import Followed
+from jackettwin.twin.followed import Followed
 from jackettwin.version import __version__
 
 

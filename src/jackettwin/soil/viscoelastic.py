@@ -75,16 +75,7 @@ class Prony:
     def __post_init__(self) -> None:
         for name, values in (("k0", (self.k0,)), ("c", (self.c,)), ("k", self.k), ("tau", self.tau)):
             for value in values:
-                if not 0.0 <= value <= _LARGEST:
-                    raise InputError(
-                        "must not be negative: the support would feed energy in"
-                        if value < 0.0
-                        else "out of range",
-                        field=name,
-                        value=value,
-                        allowed=f"0 to {_LARGEST:g}",
-                        remedy="check the number; SI units",
-                    )
+                require_passive(name, value)
         if len(self.k) != len(self.tau):
             raise InputError(
                 "every branch needs k and tau", field="branches", value=(len(self.k), len(self.tau))
@@ -216,20 +207,35 @@ def require_positive(field: str, value: float) -> None:
         raise InputError("must be positive", field=field, value=value, allowed=f"> 0, at most {_LARGEST:g}")
 
 
+def require_passive(field: str, value: float) -> None:
+    """Refuse a number that would make a support feed energy in, or that is no support's."""
+    if not 0.0 <= value <= _LARGEST:
+        raise InputError(
+            "must not be negative: the support would feed energy in" if value < 0.0 else "out of range",
+            field=field,
+            value=value,
+            allowed=f"0 to {_LARGEST:g}",
+            remedy="check the number; SI units",
+        )
+
+
 def kelvin_voigt(k: float, c: float) -> Prony:
     """Return D = k + c s, thesis (4.5)."""
+    require_passive("k", k)
     return Prony(k0=k, c=c)
 
 
 def maxwell(k: float, c: float) -> Prony:
     """Return a spring and a dashpot in series, thesis (4.3)."""
     require_positive("k", k)
+    require_passive("c", c)
     return Prony(k=(k,), tau=(c / k,))
 
 
 def zener(k0: float, c: float, k1: float) -> Prony:
     """Return k0 beside a Maxwell branch (k1, c), thesis (4.7) and (7.5)."""
     require_positive("k1", k1)
+    require_passive("c", c)
     return Prony(k0=k0, k=(k1,), tau=(c / k1,))
 
 
@@ -252,6 +258,7 @@ def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
         If the loss factor is beyond what the shape can give.
     """
     require_positive("f0", f0)
+    require_passive("k", k)
     w = np.array(MAXWELL_3_WEIGHTS)
     common, response = maxwell_3_scale(loss_factor)
     scale = float(common)

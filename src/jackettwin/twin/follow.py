@@ -7,9 +7,9 @@ posterior as the next day's prior comes to, without the loss of handing draws on
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import UTC
 from itertools import groupby
 from typing import Literal
 
@@ -22,7 +22,8 @@ from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
-from jackettwin.twin.measure import Measured, Sighting, measure
+from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Day, Followed, RecordModes, since_first
+from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.problem import Evidence, law_model, tied_problem
 from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Problem, SupportModel, numbered_modes
@@ -34,91 +35,9 @@ FloatArray = npt.NDArray[np.float64]
 
 Each = Literal["day", "record"]
 
-FEWEST_DAYS = 3
-"""Days with data before a drift is looked for."""
-_STIFFNESS = "N/m"
 _WHOLE_SPAN = 2.0
 """Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
 _PAIRED_MODES = 12
-
-
-@dataclass(frozen=True)
-class RecordModes:
-    """The model's modes seen in one record."""
-
-    name: str
-    time_utc: datetime
-    sightings: Mapping[int, Sighting]
-
-
-@dataclass(frozen=True)
-class Day:
-    """Records of one day, and what all records up to then say.
-
-    Attributes
-    ----------
-    median : {parameter: value}
-    interval_90 : {parameter: (low, high)}
-    """
-
-    records: tuple[RecordModes, ...]
-    median: Mapping[str, float]
-    interval_90: Mapping[str, tuple[float, float]]
-
-    @property
-    def time_utc(self) -> datetime:
-        """The middle of its records."""
-        times = [record.time_utc for record in self.records]
-        return min(times) + 0.5 * (max(times) - min(times))
-
-
-@dataclass(frozen=True)
-class Followed:
-    """A twin followed through time: what the next day starts from.
-
-    Attributes
-    ----------
-    reference_hz : float
-        The first frequency on pinned feet: it tells a changed structure.
-    wind_m_s : float or None
-        That nacelle dashpots are stated at.
-    units : {parameter: unit}
-    days : in the order of time
-    drift : Drift or None
-        Of all stiffness together, from the first day on; None before the third day.
-    warnings : sentences
-    """
-
-    name: str
-    law: str
-    reference_hz: float
-    wind_m_s: float | None
-    units: Mapping[str, str]
-    days: tuple[Day, ...]
-    drift: Drift | None
-    warnings: tuple[str, ...]
-
-    @property
-    def stiffness(self) -> tuple[str, ...]:
-        """Names of the stiffness parameters: those that may drift."""
-        return tuple(name for name, unit in self.units.items() if unit == _STIFFNESS)
-
-    @property
-    def days_since_first(self) -> FloatArray:
-        """Times of the days [d], (n_days,)."""
-        return _since_first(self.days)
-
-    @property
-    def statement(self) -> str:
-        """What is known of a drift, in a sentence."""
-        if self.drift is None:
-            return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
-        slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
-        found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
-        return (
-            f"{found}: {' and '.join(self.stiffness)} change by {slope:+.2g} % a day, 90 % interval "
-            f"{low:+.2g} to {high:+.2g} %, over {self.days_since_first[-1]:.3g} days."
-        )
 
 
 def follow_twin(
@@ -287,14 +206,14 @@ def _drift(
     if len(days) < FEWEST_DAYS:
         return None
     exact = replace(config, update=replace(config.update, model_errors=()))
-    at = _since_first(days)
+    at = since_first(days)
     states: States = {}
     times: dict[str, float] = {}
     for i, (day, t) in enumerate(zip(days, at, strict=True)):
         for name, (data, factors) in _states(exact, day.records, labels, wind).items():
             states[f"{i}: {name}"] = (data, factors or _usual(config, day, wind))
             times[f"{i}: {name}"] = float(t)
-    growing = tuple(p.name for p in model.parameters if p.unit == _STIFFNESS)
+    growing = tuple(p.name for p in model.parameters if p.unit == STIFFNESS)
     growth = Growth(growing, times, _WHOLE_SPAN / float(at[-1]))
     errors = _model_errors(config, labels)
     problem = tied_problem(config, model, states, errors=errors, growth=growth)
@@ -321,10 +240,6 @@ def _model_errors(config: TwinConfig, labels: tuple[str, ...]) -> dict[str, floa
         if error.damping > 0.0 and config.update.fits_damping(labels[mode - 1]):
             errors[f"ζ{mode}"] = error.damping
     return errors
-
-
-def _since_first(days: Sequence[Day]) -> FloatArray:
-    return np.array([(day.time_utc - days[0].time_utc).total_seconds() / 86400.0 for day in days])
 
 
 def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel, names: list[str]) -> None:

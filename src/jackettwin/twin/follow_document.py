@@ -13,7 +13,7 @@ from pydantic import AwareDatetime, Field
 from jackettwin.errors import InputError
 from jackettwin.files import Schema, validate
 from jackettwin.identification import ModalEstimate
-from jackettwin.twin.follow import Day, Followed, RecordModes
+from jackettwin.twin.followed import Day, Followed, RecordModes
 from jackettwin.twin.measure import Sighting
 from jackettwin.updating.drift import Drift
 from jackettwin.version import __version__

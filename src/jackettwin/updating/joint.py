@@ -113,12 +113,9 @@ def joint(
             weights[row, place.get(known, place.get(f"{known}@{state}", -1))] = 1.0
             if growth is not None and name in grown:
                 weights[row, place[GROWTH]] = growth.days.get(state, 0.0)
-        shared_errors = np.zeros((residuals.count, len(parameters)))
-        for row, datum in enumerate(residuals.names):
-            if datum in errors:
-                shared_errors[row, place[f"error_{datum}"]] = 1.0
         shifts = np.log([factors.get(name, 1.0) for name in names])
-        built.append(State(state, residuals, weights, shifts, shared_errors, () if i else shapes))
+        common = _common_errors(residuals.names, place)
+        built.append(State(state, residuals, weights, shifts, common, () if i else shapes))
     problem = Problem(model, tuple(built), parameters, _prior(model, parameters, scatter or {}))
     _no_priors_without_deviations(problem)
     return problem
@@ -133,6 +130,15 @@ def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...])
                 "the law has no such parameter", field="support", value=name, allowed=", ".join(law)
             )
     return {name + suffix: name for name in shared for suffix in model.feet.suffixes}
+
+
+def _common_errors(data: list[str], place: Mapping[str, int]) -> FloatArray:
+    """Return which error of the model enters which datum, (n_data, n_parameters)."""
+    errors = np.zeros((len(data), len(place)))
+    for row, datum in enumerate(data):
+        if f"error_{datum}" in place:
+            errors[row, place[f"error_{datum}"]] = 1.0
+    return errors
 
 
 def _prior(model: SupportModel, parameters: tuple[Parameter, ...], scatter: Mapping[str, float]) -> Prior:
