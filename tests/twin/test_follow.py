@@ -84,7 +84,7 @@ def test_the_drift_is_found_and_said(followed: Followed) -> None:
     assert followed.drift is not None and followed.drift.detected
     # a planted slope of ln 0.9 a day; three standard deviations are one in four hundred
     assert followed.drift.slope_per_day == pytest.approx(np.log(0.9), abs=3.0 * followed.drift.std_per_day)
-    assert followed.statement.startswith("Falling: k change by -")
+    assert followed.statement.startswith("Falling: k changes by -")
 
 
 def test_going_on_from_yesterday_is_the_same_as_all_at_once(
@@ -130,6 +130,6 @@ def test_a_file_that_is_no_prior(tmp_path: Path) -> None:
 
 def test_the_page_shows_parameters_and_the_statement(followed: Followed, tmp_path: Path) -> None:
     text = build_follow_page(followed, tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "Falling: k change by" in text
+    assert "Falling: k changes by" in text
     assert "2025-01-03" in text
     assert "parameters_through_time" in text
