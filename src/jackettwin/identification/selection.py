@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import ModalEstimate, Rejected
-from jackettwin.identification.harmonics import is_tone, swept_hz, without_unsteady_tone
+from jackettwin.identification.harmonics import drifting_tone, is_steady_tone, without_unsteady_tone
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.steady_tones import without_tones
 from jackettwin.identification.straying import long_data_limits
@@ -120,18 +120,20 @@ def find_tones(
         Divided by ``scale``.
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
-    at = {k: (sample_rate_hz, float(poles.frequency_hz[k]), poles.mode_shape[k] / scale) for k in likely}
+    f, zeta = poles.frequency_hz, poles.damping_ratio
+    shape = {k: poles.mode_shape[k] / scale for k in likely}
+    steady = {k for k in likely if is_steady_tone(y, sample_rate_hz, f[k], zeta[k], shape[k])}
+    tones = {k for k in likely if drifting_tone(y, sample_rate_hz, f[k], shape[k])} | steady
     clean, passed = y, []
-    tones = {k for k in likely if is_tone(y, *at[k])}
     for k in sorted(tones):
-        swept = swept_hz(clean, *at[k])
-        if swept is not None:
-            passed.append(swept)
-            clean = without_unsteady_tone(clean, *at[k])
-        elif is_tone(clean, *at[k]):
-            clean = without_tones(clean, sample_rate_hz, [at[k][1]])
-    tones |= {k for k in likely if any(low < at[k][1] < high for low, high in passed)}
-    return Tones({k: at[k][1] for k in sorted(tones)}, tuple(passed), clean)
+        sweep = drifting_tone(clean, sample_rate_hz, f[k], shape[k])
+        if sweep is not None:
+            passed.append((sweep.low_hz, sweep.high_hz))
+            clean = without_unsteady_tone(clean, sample_rate_hz, f[k], sweep.half_hz, shape[k])
+        elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], shape[k]):
+            clean = without_tones(clean, sample_rate_hz, [f[k]])
+    tones |= {k for k in likely if any(low < f[k] < high for low, high in passed)}
+    return Tones({k: float(f[k]) for k in sorted(tones)}, tuple(passed), clean)
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[float]) -> ModalEstimate:
