@@ -115,7 +115,7 @@ def test_a_tone_within_a_mode_flags_it_and_is_no_mode(rng, amplitude, half_bandw
 
 
 def test_modes_of_short_records_are_no_tones(tower):
-    """Three minutes, five half-bandwidth cycles: half the envelopes are steadier than those of long records."""
+    """Three minutes hold few independent values: some envelopes are as steady as those of a tone."""
     shapes = tower.mode_shapes / np.linalg.norm(tower.mode_shapes, axis=1, keepdims=True)
     taken, steady = 0, 0
     for seed in range(40):
