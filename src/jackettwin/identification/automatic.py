@@ -11,6 +11,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.identification.choice import chosen_modes
 from jackettwin.identification.clustering import clusters
+from jackettwin.identification.components import at_all_channels, components
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.fdd import fdd
@@ -106,7 +107,8 @@ def identify(
         settings = replace(settings, refine=False, min_order_share=share)
     say = progress or (lambda text: None)
     say("preparing")
-    ready = prepare(record, settings)
+    whole = prepare(record, settings)
+    ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
     poles = _poles(ready, settings)
@@ -130,7 +132,7 @@ def identify(
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number
-    return Identification(
+    identified = Identification(
         records=(record.name,),
         channels=ready.channels,
         modes=tuple(_named(mode, settings) for mode in chosen.modes),
@@ -143,6 +145,7 @@ def identify(
         real_poles=_relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
+    return identified if basis is None else at_all_channels(identified, whole, basis)
 
 
 def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:
