@@ -7,13 +7,19 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.conditions import SeaState
+from jackettwin.loads.water import Water
 from jackettwin.records import Channel, Record
 from jackettwin.twin import read_twin
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.fitted import residuals, target_modes
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.rotor import RotorDamping
-from jackettwin.twin.water import in_the_records_sea
+from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
+from jackettwin.updating import family, support_model
+from jackettwin.updating.budget import damping_budget
+from jackettwin.updating.extras import Extras
 
 TWIN = """
 structure: jacket15
@@ -69,3 +75,22 @@ def test_the_records_sea_is_the_mean_of_all(tmp_path: Path) -> None:
     assert (water.sea.Hs, water.sea.Tp) == (1.5, 8.0)
     silent = replace(records[0], conditions={})
     assert in_the_records_sea(config.water, [records[0], silent]) == config.water
+
+
+def test_the_share_of_water_is_that_of_the_simulated_record() -> None:
+    """`jackettwin simulate known_feet --json`, true_modes: drag in ten minutes of random waves."""
+    config = read_twin("simulated")
+    assembly = assembled(config)
+    water = WaterConfig(72.0, Coefficients(), Water(), adds_mass=False, sea=SeaState(2.0, 8.0))
+    drag = water_effects(water, assembly, ("water_damping",))
+    model = support_model(
+        assembly,
+        family=family("kelvin-voigt"),
+        rayleigh=config.rayleigh,
+        extras=Extras((), water=drag),
+        highest_mode=5,
+    )
+    budget = damping_budget(model, np.array([2.5e9, 7.6e8, 1.0]), (1, 2, 3, 4, 5))
+    # one random sea of ten minutes: 2 % of its velocity
+    simulated = [4.12e-6, 4.35e-6, 5.27e-5, 3.048e-4, 3.660e-4]
+    np.testing.assert_allclose(budget.damping_ratio[:, 3], simulated, rtol=0.05)
