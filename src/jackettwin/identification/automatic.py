@@ -114,7 +114,7 @@ def identify(
     poles = _poles(ready, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
-    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings)
+    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.swept_hz)
     if wanted:
         found = picked_clusters(poles, found, wanted)
     judged = candidates(

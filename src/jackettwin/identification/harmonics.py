@@ -35,6 +35,10 @@ SMOOTH_CYCLES = 4.0
 """Cycles over which the instantaneous frequency is averaged."""
 FOLLOWED_CYCLES = 30.0
 """Cycles over which the phase of a drifting tone is smoothed by a cubic."""
+FEWEST_WINDOWS = 6
+"""Windows of that smoothing in a record, at least: speeds that go up and down twice in it are followed."""
+SMOOTHED = 2
+"""Times it is smoothed: once lets 1 % of what is faster pass."""
 EDGE = 0.15
 """The range a tone sweeps is wider than where it is for 98 % of the time by this share on either side."""
 STEADY = 0.25
@@ -71,7 +75,7 @@ def envelope_variance(
     shape : (n_channels,) complex
     """
     half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES * sample_rate_hz / y.shape[1])
-    return _relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape))
+    return relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape))
 
 
 def least_variance(n: float) -> float:
@@ -113,7 +117,7 @@ def drifting_tone(
     for share in DRIFTS:
         half = share * frequency_hz
         a = _analytic(y, sample_rate_hz, frequency_hz, half, shape)
-        ratio = _relative_variance(a) / least_variance(_independent_values(a))
+        ratio = relative_variance(a) / least_variance(_independent_values(a))
         if ratio < clearest:
             low, high = _passed_hz(a, sample_rate_hz, frequency_hz)
             if low <= frequency_hz <= high:
@@ -159,6 +163,7 @@ def _analytic(
     return np.asarray(fft.ifft(np.where(np.abs(f - frequency_hz) <= half_hz, lines, 0.0)))
 
 
-def _relative_variance(analytic: ComplexArray) -> float:
+def relative_variance(analytic: ComplexArray) -> float:
+    """Return the relative variance of a squared envelope."""
     power = np.abs(analytic) ** 2
     return float(np.var(power) / np.mean(power) ** 2)

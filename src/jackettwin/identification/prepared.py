@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
+from jackettwin.identification.drifting_tones import drifting_tones
 from jackettwin.identification.gaps import fill
 from jackettwin.identification.resolve import EDGE_BELOW_PEAK, resolve, usable_channels
 from jackettwin.identification.spectra import lowest_peak_hz, welch
@@ -45,6 +46,8 @@ class Prepared:
     duration_s : float
     tones_hz : tuple of float
         Steady tones that were taken out.
+    swept_hz : tuple of (low, high)
+        Ranges of drifting tones that were taken out.
     warnings : tuple of str
     """
 
@@ -55,6 +58,7 @@ class Prepared:
     settings: ResolvedSettings
     duration_s: float
     tones_hz: tuple[float, ...]
+    swept_hz: tuple[tuple[float, float], ...]
     warnings: tuple[str, ...]
 
 
@@ -72,9 +76,10 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     usable, warnings = usable_channels(record)
     level = detrend(usable)
     tones, without = steady_tones(level.data, level.sample_rate_hz)
-    if tones:
+    swept, without = drifting_tones(without, level.sample_rate_hz)
+    if tones or swept:
         level = replace(level, data=without)
-        settings = _above_tones(level, settings, min(tones))
+        settings = _above_tones(level, settings, min([*tones, *(low for low, _ in swept)]))
     resolved, reduced = resolve(level, settings)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
@@ -93,6 +98,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         resolved,
         record.duration_s,
         tones,
+        swept,
         warnings,
     )
 

@@ -109,6 +109,7 @@ def find_tones(
     scale: FloatArray,
     sample_rate_hz: float,
     settings: IdentificationSettings,
+    swept: Iterable[tuple[float, float]] = (),
 ) -> Tones:
     """Return the tones among the clusters.
 
@@ -118,13 +119,15 @@ def find_tones(
     ----------
     y : (n_channels, n_samples)
         Divided by ``scale``.
+    swept : iterable of (low, high)
+        Ranges of drifting tones that were taken out already: what is left of them has poles as well.
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
     shape = {k: poles.mode_shape[k] / scale for k in likely}
     steady = {k for k in likely if is_steady_tone(y, sample_rate_hz, f[k], zeta[k], shape[k])}
     tones = {k for k in likely if drifting_tone(y, sample_rate_hz, f[k], shape[k])} | steady
-    clean, passed = y, []
+    clean, passed = y, list(swept)
     for k in sorted(tones):
         sweep = drifting_tone(clean, sample_rate_hz, f[k], shape[k])
         if sweep is not None:
@@ -136,13 +139,22 @@ def find_tones(
     return Tones({k: float(f[k]) for k in sorted(tones)}, tuple(passed), clean)
 
 
-def beside_tones(mode: ModalEstimate, tones_hz: Iterable[float]) -> ModalEstimate:
-    """Flag a mode near a tone, and widen what is said of it."""
-    reach = TONE_REACH * mode.damping_ratio * mode.frequency_hz
-    near = [f for f in tones_hz if abs(f - mode.frequency_hz) < reach]
+def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:
+    """Flag a mode near a tone, and widen what is said of it.
+
+    Parameters
+    ----------
+    tones_hz : iterable of (low, high)
+        Ranges of the tones; low and high of a steady one are equal.
+    """
+    f = mode.frequency_hz
+    reach = TONE_REACH * mode.damping_ratio * f
+    near = [(low, high) for low, high in tones_hz if low - reach < f < high + reach]
     if not near:
         return mode
-    mode = replace(mode, status=f"a steady tone at {near[0]:.4g} Hz is too near to trust the damping")
+    low, high = near[0]
+    tone = f"a steady tone at {low:.4g} Hz" if low == high else f"a tone between {low:.4g} and {high:.4g} Hz"
+    mode = replace(mode, status=f"{tone} is too near to trust the damping")
     if mode.log_covariance is None:
         return mode
     return with_covariance(mode, TONE_WIDENING**2 * mode.log_covariance)
