@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import fft, signal
 
-from jackettwin.identification.steady_tones import less_phase
+from jackettwin.records.tones import less_phase
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

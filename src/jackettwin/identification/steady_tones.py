@@ -25,6 +25,8 @@ import numpy.typing as npt
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
+from jackettwin.records.tones import less_phase
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -235,13 +237,3 @@ def _transform(y: FloatArray) -> ComplexArray:
 def _less(y: FloatArray, position: float) -> FloatArray:
     """Return samples less the least-squares sinusoid of a frequency, given in lines."""
     return less_phase(y, 2.0 * np.pi * position / y.shape[1] * np.arange(y.shape[1]))
-
-
-def less_phase(y: FloatArray, phase: FloatArray) -> FloatArray:
-    """Return samples less the least-squares combination of the cosine and the sine of a phase."""
-    basis = np.stack([np.cos(phase), np.sin(phase)])
-    out = y.copy()
-    for a, valid in enumerate(np.isfinite(y)):
-        there = basis[:, valid]
-        out[a, valid] -= np.linalg.solve(there @ there.T, there @ y[a, valid]) @ there
-    return out

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.filters import bridge
+from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
@@ -75,19 +76,15 @@ def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tup
         low, high = np.percentile(k * speed_rad_s, [1.0, 99.0]) / (2.0 * np.pi)
         if high >= nyquist:
             continue
-        basis = np.stack([np.cos(k * azimuth), np.sin(k * azimuth), np.ones_like(azimuth)])
-        share = max((_take(data[i], basis) for i in vibrating), default=0.0)
+        left = less_phase(data[vibrating], k * azimuth)
+        share = max(map(_share, data[vibrating], data[vibrating] - left), default=0.0)
+        data[vibrating] = left
         orders.append(RotorOrder(k, float(low), float(high), share))
     return replace(record, data=data), tuple(orders)
 
 
-def _take(y: FloatArray, basis: FloatArray) -> float:
-    """Subtract the least-squares tone from a channel in place; return its share of the power."""
+def _share(y: FloatArray, tone: FloatArray) -> float:
+    """Return the share of a channel's power that is the tone's."""
     there = np.isfinite(y)
-    if there.sum() < 10 * len(basis):
-        return 0.0
-    weights = np.linalg.lstsq(basis[:, there].T, y[there], rcond=None)[0]
-    tone = weights[:2] @ basis[:2]
-    power = float(np.var(y[there]))
-    y -= tone
+    power = float(np.var(y[there])) if there.any() else 0.0
     return float(np.var(tone[there])) / power if power > 0.0 else 0.0
