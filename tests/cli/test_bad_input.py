@@ -97,7 +97,7 @@ MISTAKES: dict[Callable[[Case], None], tuple[str, ...]] = {
     constant_channel: ("day.parquet", "channels.top_y", "constant"),
     no_sample_rate: ("day.json", "sample_rate_hz"),
     short_record: ("day.parquet", "short"),
-    unknown_law: ("twin.yaml", "update.laws", "did you mean 'kelvin-voigt'"),
+    unknown_law: ("twin.yaml", "update.laws.0:", "did you mean 'kelvin-voigt'"),
     bounds_reversed: ("twin.yaml", "update.bounds.k", "10000000000.0"),
     typo_in_key: ("twin.yaml", "update.metod", "did you mean 'method'"),
     typo_in_settings: ("twin.yaml", "lowest_freqency_hz", "did you mean 'lowest_frequency_hz'"),

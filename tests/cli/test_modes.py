@@ -53,6 +53,7 @@ def test_the_table_is_for_people() -> None:
     assert result.exit_code == 0
     assert "side_side_1" in result.stdout
     assert "0.1832" in result.stdout
+    assert "support: the structure's own: 4 nodes held in x, y, z" in result.stdout
 
 
 @pytest.mark.parametrize(

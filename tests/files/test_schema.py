@@ -23,6 +23,7 @@ class Home(Schema):
     area_m2: Annotated[float, Field(gt=0.0)]
     pets: list[Annotated[Cat | Dog, Field(discriminator="type")]] = []
     rooms: dict[str, Cat] = {}
+    glass_ratio: Annotated[float, Field(lt=1.0)] = 0.2
 
 
 @pytest.mark.parametrize(
@@ -30,6 +31,8 @@ class Home(Schema):
     [
         ({}, "area_m2: required key is missing; add 'area_m2'"),
         ({"area_m2": -1}, "area_m2: .*got -1.; allowed: > 0"),
+        ({"area_m2": -1}, "area_m2: .*; check the number and its unit"),
+        ({"area_m2": 1, "glass_ratio": 1.2}, "glass_ratio: .*; a ratio: 1.2 % is 0.012"),
         ({"area_m2": "big"}, "area_m2: .*got 'big'"),
         ({"area_m2": float("nan")}, "area_m2: .*finite"),
         ({"area": 1}, "area: unknown key .got 'area'.*did you mean 'area_m2'"),

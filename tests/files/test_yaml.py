@@ -24,6 +24,7 @@ def test_numbers_with_exponents_are_numbers(tmp_path: Path) -> None:
     [
         ("a: 1\na: 2\n", "line 2, column 1: key 'a' is given twice"),
         ("x: {b: 1, b: 2}\n", "key 'b' is given twice"),
+        ("x: {t: 0,018}\n", "line 1, column .*decimal comma. write 0.018"),
         ("a: [1, 2\n", "line"),
         ("- 1\n", "must be a mapping"),
         ("", "must be a mapping"),

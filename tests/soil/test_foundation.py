@@ -17,6 +17,7 @@ from jackettwin.structure import assemble, read_structure
 
 PILE = "pile: {length_m: 60, outer_diameter_m: 2.8, thickness_m: 0.06}\n"
 SAND = "soil: {layers: [{thickness_m: 60, effective_weight_n_m3: 1e4, sand: {friction_angle_deg: 35}}]}\n"
+CLAY = "soil: {layers: [{thickness_m: 60, effective_weight_n_m3: 9e3, clay: {strength_pa: [20e3, 30e3]}}]}\n"
 
 
 def test_the_shipped_foundation_meets_table_5_1_piled_and_lumped() -> None:
@@ -82,7 +83,10 @@ def test_scour_lowers_the_first_frequency(tmp_path: Path) -> None:
         (PILE.replace("0.06", "2.0") + "soil: {linear: {lateral_n_m3: 1e7, axial_n_m2: 1e8}}\n", "radius"),
         (PILE + "soil: {linear: {lateral_n_m3: 1e7, axail_n_m2: 1e8}}\n", "axial_n_m2"),
         (PILE + "soil: {layers: [{thickness_m: 9, effective_weight_n_m3: 1e4}]}\n", "sand or clay"),
-        (PILE + SAND.replace("35", "70"), "friction_angle_deg"),
+        (PILE + SAND.replace("35", "70"), r"soil.layers.0.sand.friction_angle_deg.*20 to 45 degrees"),
+        (PILE + CLAY.replace("20e3, 30e3", "20, 30"), r"soil.layers.0.clay.strength_pa.*20 kPa is 20e3"),
+        (PILE + CLAY.replace("9e3", "9"), r"soil.layers.0.effective_weight_n_m3.*9 kN/m³ is 9e3"),
+        (PILE.replace("length_m: ", "length_m: 9") + CLAY, r"pile.length_m.*≤ 300"),
     ],
 )
 def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:

@@ -54,6 +54,8 @@ def test_rigid_motion_stores_no_energy_with_rigid_links_too() -> None:
         (Section(7.0, 0.01), STEEL, "diameter over wall thickness"),
         (Section(50.0, 0.5), STEEL, "shorter than half the diameter"),
         (Section(7.0, 0.07), Material(210e9, 81e9, 0.0), "without mass"),
+        (Section(7.0, 0.07), Material(210e6, 81e6, 7850.0), "Young's modulus below 1 GPa"),
+        (Section(7.0, 0.07), Material(210e9, 81e9, 7.85), "density below 500"),
         (Section(7.0, 0.07), Material(210e9, 210e9, 7850.0), "Poisson's ratio outside 0 to 0.5"),
     ],
 )
@@ -74,3 +76,12 @@ def test_a_structure_without_mass_is_refused() -> None:
     weightless = replace(base, members=members, masses=(PointMass("n6", 0.0),))
     with pytest.raises(InputError, match="the structure has no mass"):
         check(assemble(weightless))
+
+
+def test_a_nacelle_in_tonnes_is_noticed() -> None:
+    """430 where kilograms belong: √(9e7/430) = 457 m, and nothing beside a jacket."""
+    structure = read_structure("jacket15")
+    light = PointMass(structure.top_node, 430.0, inertia_kg_m2=(9e7, 5e7, 5e7, 0.0, 0.0, 0.0))
+    first, second = check(assemble(structure.with_masses((light,)))).warnings
+    assert first.startswith("radius of gyration of 457 m")
+    assert "next to nothing" in second

@@ -93,3 +93,16 @@ def test_bad_decks_are_refused(tmp_path: Path, old: str, new: str, message: str)
     (tmp_path / "Jacket_Kzz.txt").write_text((DATA / "Jacket_Kzz.txt").read_text())
     with pytest.raises(InputError, match=message):
         read_structure(tmp_path / "bad.dat")
+
+
+def test_headings_of_another_spelling_do_not_matter(tmp_path: Path) -> None:
+    """SubDyn reads these tables by position."""
+    text = DECK.read_text()
+    for name in ("XsecD", "XsecT", "JointXss"):
+        assert name in text
+        text = text.replace(name, name.replace("X", "X_"))
+    path = tmp_path / DECK.name
+    path.write_text(text)
+    ssi = DECK.with_name("Jacket_Kzz.txt")
+    (tmp_path / ssi.name).write_bytes(ssi.read_bytes())
+    assert read_structure(path) == read_structure(DECK)

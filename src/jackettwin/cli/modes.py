@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 import numpy as np
+from rich.markup import escape
 from rich.table import Table
 
 from jackettwin.cli.console import output, print_json
@@ -17,6 +18,7 @@ from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support
+from jackettwin.soil.support import described
 from jackettwin.structure import Assembly, Rayleigh, assemble, check, read_structure
 from jackettwin.updating import numbered_modes
 
@@ -58,8 +60,10 @@ def modes_command(
     assembly = assemble(
         chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
     )
-    system = build_system(assembly, support_option(support, assembly), rayleigh=rayleigh_option(rayleigh))
-    document = _document(assembly, system, number)
+    held = support_option(support, assembly)
+    system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
+    own = f"the structure's own: {described(held)}"
+    document = {**_document(assembly, system, number), "support": own if support is None else support}
     if as_json:
         print_json(document)
     else:
@@ -129,6 +133,7 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
         "mass_kg": books.mass_kg,
         "center_of_mass_m": books.center_of_mass_m,
         "n_dof": system.pencil.n,
+        "warnings": books.warnings,
         "modes": rows[:number],
         "overdamped_poles": others,
         "real_poles_rad_s": damped.real_poles,
@@ -162,6 +167,9 @@ def _print(document: dict[str, Any]) -> None:
         f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m in the structure's frame, "
         f"{document['n_dof']} degrees of freedom"
     )
+    output.print(f"support: {escape(document['support'])}")
+    for warning in document["warnings"]:
+        output.print(f"warning: {escape(warning)}")
     table = Table("mode", "label", "f [Hz]", "ζ [%]", "undamped f [Hz]", "difference [%]")
     for row in document["modes"]:
         f, f0 = row["frequency_hz"], row["undamped_frequency_hz"]

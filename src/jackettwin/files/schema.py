@@ -64,7 +64,7 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
             field=field,
             value=location[-1],
             allowed=", ".join(known) or None,
-            remedy=did_you_mean(str(location[-1]), known),
+            remedy=did_you_mean(str(location[-1]), known) or "take it out, or use one of these",
         )
     if kind == "missing":
         return InputError("required key is missing", field=field, remedy=f"add {location[-1]!r}")
@@ -74,7 +74,15 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
     bounds = [f"{symbol} {context[key]}" for key, symbol in _BOUNDS.items() if key in context]
     allowed = bounds[0] if bounds else context.get("expected")
     problem, remedy = _PLAIN.get(kind, (error["msg"][0].lower() + error["msg"][1:], None))
+    if bounds and remedy is None:
+        remedy = _out_of_bounds(field, error["input"])
     return InputError(problem, field=field, value=error["input"], allowed=allowed, remedy=remedy)
+
+
+def _out_of_bounds(field: str, value: Any) -> str:
+    if "ratio" in field and isinstance(value, (int, float)) and value >= 1.0:
+        return f"a ratio: {value:g} % is {value / 100.0:g}"
+    return "check the number and its unit"
 
 
 def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:

@@ -28,6 +28,10 @@ def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False)
     mapping: dict[Any, Any] = {}
     for key_node, value_node in node.value:
         key = loader.construct_object(key_node, deep=True)
+        if isinstance(key, (int, float)) and isinstance(value_node, yaml.ScalarNode) and not value_node.value:
+            raise yaml.constructor.ConstructorError(
+                None, None, "a number stands alone: a decimal comma? write 0.018", key_node.start_mark
+            )
         if isinstance(key, (list, dict)):
             raise yaml.constructor.ConstructorError(None, None, "key is not a word", key_node.start_mark)
         if key in mapping:

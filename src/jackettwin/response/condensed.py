@@ -204,10 +204,12 @@ def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
     worst = float(rayleigh[:, 1].max(initial=0.0))
     if worst * radius > _STEEPEST:
         raise InputError(
-            "stiffness-proportional damping of the steel is too strong for the band",
+            "stiffness-proportional damping of the steel is too strong for the band of the modes asked for",
             field="damping.rayleigh",
             value=worst,
             allowed=f"β ≤ {_STEEPEST / radius:.3g} s",
+            remedy=f"leave the highest modes out: they take the band to {radius / (2.0 * np.pi):.3g} Hz; "
+            "or state less damping",
         )
 
 

@@ -12,6 +12,7 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.files.plausible import refuse_tiny
 from jackettwin.soil.cyclic import CyclicPile, cyclic_pile
 from jackettwin.soil.impedance import PileHead, lumped_head, on_pile_heads
 from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
@@ -90,7 +91,7 @@ class Foundation:
 class PileSchema(Schema):
     """A pile."""
 
-    length_m: Positive
+    length_m: Annotated[float, Field(gt=0.0, le=300.0)]
     outer_diameter_m: Positive
     thickness_m: Positive
     youngs_modulus_pa: Positive = 210e9
@@ -124,6 +125,13 @@ class SandSchema(Schema):
     limit_bearing_pa: float = 10e6
     modulus_n_m3: float | None = None
 
+    def build(self) -> Sand:
+        """Return the sand."""
+        with located(field="sand"):
+            refuse_tiny("limit_friction_pa", self.limit_friction_pa, least=1e3, remedy="Pa: 96 kPa is 96e3")
+            refuse_tiny("limit_bearing_pa", self.limit_bearing_pa, least=5e4, remedy="Pa: 10 MPa is 10e6")
+            return Sand(**self.model_dump())
+
 
 class ClaySchema(Schema):
     """``Clay``; strength at the layer's top and bottom."""
@@ -134,6 +142,13 @@ class ClaySchema(Schema):
     residual: float = 0.9
     stiff: bool = False
     free_water: bool = True
+
+    def build(self) -> Clay:
+        """Return the clay."""
+        top, bottom = self.strength_pa
+        with located(field="clay"):
+            refuse_tiny("strength_pa", max(top, bottom), least=500.0, remedy="Pa: 20 kPa is 20e3")
+            return Clay(top, bottom, **self.model_dump(exclude={"strength_pa"}))
 
 
 class LayerSchema(Schema):
@@ -148,13 +163,14 @@ class LayerSchema(Schema):
         """Return the layer."""
         if (self.sand is None) == (self.clay is None):
             raise InputError("a layer is either sand or clay", field="sand, clay", remedy="give one of them")
-        if self.clay is not None:
-            top, bottom = self.clay.strength_pa
-            soil: Sand | Clay = Clay(top, bottom, **self.clay.model_dump(exclude={"strength_pa"}))
-        else:
-            assert self.sand is not None
-            soil = Sand(**self.sand.model_dump())
-        return Layer(self.thickness_m, self.effective_weight_n_m3, soil)
+        weight = self.effective_weight_n_m3
+        refuse_tiny("effective_weight_n_m3", weight, least=1e3, remedy="N/m³: 9 kN/m³ is 9e3")
+        soil = self.clay.build() if self.clay is not None else self._sand()
+        return Layer(self.thickness_m, weight, soil)
+
+    def _sand(self) -> Sand:
+        assert self.sand is not None
+        return self.sand.build()
 
 
 class LinearSchema(Schema):
@@ -244,7 +260,11 @@ class FoundationSchema(Schema):
         if layers is None:
             return None
         scour = Scour(**self.scour.model_dump()) if self.scour is not None else Scour()
-        profile = SoilProfile(tuple(layer.build() for layer in layers), scour)
+        built = []
+        for i, layer in enumerate(layers):
+            with located(field=f"soil.layers.{i}"):
+                built.append(layer.build())
+        profile = SoilProfile(tuple(built), scour)
         return pile_curves(pile, profile, CurveOptions(**self.curves.model_dump()))
 
     def _linear(self, pile: Pile) -> PileSprings:

@@ -12,6 +12,8 @@ from jackettwin.soil.scour import NO_SCOUR, Scour
 
 FloatArray = npt.NDArray[np.float64]
 
+_UNITS = {"_deg": "degrees", "_pa": "Pa", "_n_m3": "N/m³", "_m": "m"}
+
 
 @dataclass(frozen=True)
 class Sand:
@@ -159,4 +161,11 @@ def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> fl
 
 def _check(field: str, value: float, low: float, high: float) -> None:
     if not (np.isfinite(value) and low <= value <= high):
-        raise InputError("out of range", field=field, value=value, allowed=f"{low:g} to {high:g}")
+        unit = next((unit for suffix, unit in _UNITS.items() if field.endswith(suffix)), None)
+        raise InputError(
+            "out of range",
+            field=field,
+            value=value,
+            allowed=f"{low:g} to {high:g}" + (f" {unit}" if unit else ""),
+            remedy="check the number and its unit",
+        )

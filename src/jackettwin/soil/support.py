@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,6 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)
+_DOF_NAMES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,22 @@ def own_support(structure: Structure) -> Support:
         if reaction.stiffness is not None:
             springs.append(Spring(reaction.node, np.array(reaction.stiffness)))
     return Support(tuple(springs), tuple(fixed))
+
+
+def described(support: Support) -> str:
+    """Return in words what holds a structure.
+
+    >>> described(Support(fixed=(("a", (0, 1, 2)), ("b", (0, 1, 2)))))
+    '2 nodes held in x, y, z'
+    """
+    kinds = Counter(dofs for _, dofs in support.fixed)
+    parts = [
+        f"{count} nodes held in {', '.join(_DOF_NAMES[dof] for dof in dofs)}" for dofs, count in kinds.items()
+    ]
+    sprung = len({spring.node for spring in support.springs})
+    if sprung:
+        parts.append(f"{sprung} nodes on springs")
+    return "; ".join(parts) or "nothing"
 
 
 def with_static_reactions(structure: Structure, support: Support) -> Structure:

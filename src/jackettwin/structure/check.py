@@ -19,6 +19,10 @@ FloatArray = npt.NDArray[np.float64]
 
 SLENDER_WALLS = (10.0, 300.0)
 """Diameter over wall of offshore tubes: thick-walled piles to thin towers."""
+_WIDEST_BODY_M = 100.0
+"""Radius of gyration; a rotor of 240 m has 20 m to 30 m about the tower top."""
+_LIGHTEST_TOP = 0.002
+"""Share of the whole mass; a rotor and nacelle have some hundredths at least."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,7 @@ def check(assembly: Assembly) -> ModelCheck:
         mass_kg=mass,
         center_of_mass_m=(float(centre[0]), float(centre[1]), float(centre[2])),
         rigid_body_modes=_rigid_body_modes(assembly),
-        warnings=tuple(_warnings(assembly.structure)),
+        warnings=(*_warnings(assembly.structure), *_bodies(assembly.structure, mass)),
     )
 
 
@@ -93,6 +97,11 @@ def _warnings(structure: Structure) -> Iterator[str]:
     oddities: tuple[tuple[str, Callable[[Member], bool]], ...] = (
         (f"diameter over wall thickness outside {low:g} to {high:g}", wall),
         ("shorter than half the diameter", stubby),
+        ("Young's modulus below 1 GPa (is it in Pa?)", lambda m: m.material.youngs_modulus_pa < 1e9),
+        (
+            "density below 500 kg/m³ (is it in kg/m³?)",
+            lambda m: 0.0 < m.material.density_kg_m3 < 500.0,
+        ),
         ("without mass", lambda m: m.material.density_kg_m3 == 0.0),
         ("Poisson's ratio outside 0 to 0.5", lambda m: not 0.0 <= m.material.poisson_ratio <= 0.5),
     )
@@ -100,6 +109,23 @@ def _warnings(structure: Structure) -> Iterator[str]:
         names = [member.name for member in structure.members if is_odd(member)]
         if names:
             yield f"{what}: {few(names)}"
+
+
+def _bodies(structure: Structure, mass_kg: float) -> Iterator[str]:
+    """Yield what is odd of rigid bodies: mostly masses in tonnes."""
+    for body in structure.masses:
+        gyration = float(np.sqrt(np.linalg.eigvalsh(body.inertia_tensor).max() / max(body.mass_kg, 1e-9)))
+        if body.mass_kg > 0.0 and gyration > _WIDEST_BODY_M:
+            yield (
+                f"radius of gyration of {gyration:.0f} m: the body of {body.mass_kg:g} kg on {body.node} "
+                "(is its mass in kg?)"
+            )
+    top = sum(body.mass_kg for body in structure.masses if body.node == structure.top_node)
+    if 0.0 < top < _LIGHTEST_TOP * mass_kg:
+        yield (
+            f"{top:g} kg on the highest node, {structure.top_node}, is next to nothing beside "
+            f"{mass_kg:.3g} kg in all (is it in kg?)"
+        )
 
 
 def few(names: Sequence[str], limit: int = 5) -> str:

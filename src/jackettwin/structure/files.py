@@ -9,6 +9,7 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.files.plausible import refuse_tiny
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
 from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.model import (
@@ -40,6 +41,7 @@ class MaterialSchema(Schema):
     def build(self, field: str) -> Material:
         """Return the material."""
         with located(field=field):
+            refuse_tiny("density_kg_m3", self.density_kg_m3, least=500.0, remedy="kg/m³: steel has 7850")
             if self.shear_modulus_pa is not None:
                 return Material(self.youngs_modulus_pa, self.shear_modulus_pa, self.density_kg_m3)
             return Material.isotropic(

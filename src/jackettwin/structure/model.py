@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 Vector = tuple[float, float, float]
+_LONGEST_M = 5e3
+"""No member of a structure is longer; one given in millimetres is."""
 Inertia = tuple[float, float, float, float, float, float]
 
 
@@ -206,7 +208,16 @@ class Structure:
             names.add(member.name)
             self._require(member.start, place)
             self._require(member.end, place)
-            if np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])) <= 1e-6:
+            length = float(np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])))
+            if length > _LONGEST_M:
+                raise InputError(
+                    "member is too long",
+                    field=place,
+                    value=length,
+                    allowed=f"up to {_LONGEST_M:g} m",
+                    remedy=f"check nodes {member.start} and {member.end}: coordinates are in metres",
+                )
+            if length <= 1e-6:
                 raise InputError(
                     "member has zero length",
                     field=place,

@@ -23,7 +23,7 @@ Ends = dict[str, tuple[str, str]]
 def read_joints(deck: Deck) -> dict[str, Vector]:
     """Return {joint: its place}."""
     nodes: dict[str, Vector] = {}
-    for row in deck.table("NJoints", required=True):
+    for row in deck.table("NJoints", required=True, columns=("jointid", "jointxss", "jointyss", "jointzss")):
         name = row["jointid"]
         if name in nodes:
             raise InputError("joint is given twice", file=deck.path, field="JointID", value=name)
@@ -40,7 +40,11 @@ def member_ends(deck: Deck, nodes: dict[str, Vector]) -> Ends:
         for joint in pair:
             if joint not in nodes:
                 raise InputError(
-                    "no such joint", file=deck.path, field=f"MemberID {row['memberid']}", value=joint
+                    "no such joint",
+                    file=deck.path,
+                    field=f"MemberID {row['memberid']}",
+                    value=joint,
+                    remedy="name a JointID of the table of joints, or add it there",
                 )
     return ends
 

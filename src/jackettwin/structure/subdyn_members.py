@@ -31,6 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 _TUBE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "2", "3", "4", "5"
 _BEAMS = (*_TUBE, _ARBITRARY)
 _REFUSED = {"1r": "rectangular section", "-1": "rectangular section"}
+_TUBE_KEYS = ("younge", "shearg", "matdens", "xsecd", "xsect")
 _SPRING_KEYS = tuple(f"k{i}{j}" for i in range(1, 7) for j in range(i, 7))
 
 
@@ -130,12 +131,12 @@ class _Tables:
 
 
 def _tables(deck: Deck) -> _Tables:
-    def rows(*keywords: str, key: str = "propsetid") -> dict[str, Row]:
-        return {row[key]: row for row in deck.table(*keywords)}
+    def rows(*keywords: str, key: str = "propsetid", columns: tuple[str, ...] = ()) -> dict[str, Row]:
+        return {row[key]: row for row in deck.table(*keywords, columns=columns)}
 
     return _Tables(
         deck,
-        tubes=rows("NPropSetsCyl", "NPropSets"),
+        tubes=rows("NPropSetsCyl", "NPropSets", columns=("propsetid", *_TUBE_KEYS)),
         arbitrary=rows("NXPropSets"),
         cables=rows("NCablePropSets"),
         rigid=rows("NRigidPropSets"),
@@ -171,7 +172,7 @@ def _add_tube(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pi
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
         properties = tables.find(tables.tubes, row, key)
-        E, G, rho, D, t = tables.values(properties, "younge", "shearg", "matdens", "xsecd", "xsect")
+        E, G, rho, D, t = tables.values(properties, *_TUBE_KEYS)
         with located(file=tables.deck.path, field=f"PropSetID {row[key]}"):
             # SubDyn takes a wall of zero as solid
             sections.append(Section(D, t or 0.5 * D))

@@ -51,7 +51,8 @@ class Deck:
     def table(self, *keywords: str, required: bool = False, columns: tuple[str, ...] = ()) -> tuple[Row, ...]:
         """Return the rows of the table whose count line has one of the keywords; keys are the header's.
 
-        ``columns`` are the keys where a header names the first column only.
+        ``columns`` are the first keys by position, for headers that name the first column only or name them
+        otherwise: SubDyn itself reads by position.
         """
         number = self.find(*keywords)
         if number is None:
@@ -66,6 +67,8 @@ class Deck:
         count = to_integer(self.lines[number].split()[0], self.path, keywords[0])
         header = self.lines[number + 1].lower().split() if number + 1 < len(self.lines) else []
         keys = header if len(header) > 1 else list(columns)
+        if len(header) >= len(columns) and not set(columns) <= set(header):
+            keys = [*columns, *header[len(columns) :]]
         return tuple(self._row(number + 3 + k, keys, keywords[0], count) for k in range(count))
 
     def _row(self, at: int, keys: list[str], keyword: str, count: int) -> Row:
@@ -89,7 +92,12 @@ def read_deck(path: Path) -> Deck:
 def number(row: Row, key: str, path: Path) -> float:
     """Return the number in a column of a row."""
     if key not in row:
-        raise InputError("column is missing", file=path, field=f"line {row['#']}.{key}")
+        raise InputError(
+            "column is missing",
+            file=path,
+            field=f"line {row['#']}.{key}",
+            remedy="give the row all its numbers and the table's header all its names",
+        )
     return to_float(row[key], path, f"line {row['#']}.{key}")
 
 

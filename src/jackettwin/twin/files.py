@@ -201,8 +201,11 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
             "a channel is given twice", field="sensors", value=[s.channel for s in schema.sensors]
         )
     if schema.support.law:
-        with located(field="support"):
+        with located(field="support.law"):
             family(schema.support.law)
+    for i, law in enumerate(schema.update.laws):
+        with located(field=f"update.laws.{i}"):
+            family(law)
     with located(field="update"):
         _check_update(schema.update)
     with located(field="support"):
@@ -278,9 +281,8 @@ def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
 
 
 def _check_update(update: UpdateSchema) -> None:
-    """Refuse unknown laws, bounds and priors now, not after the records have been identified."""
-    with located(field="laws"):
-        known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
+    """Refuse unknown bounds and priors now, not after the records have been identified."""
+    known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
     known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters} | set(update.water)
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:

@@ -182,7 +182,6 @@ def family(name: str) -> Family:
     if name not in FAMILIES:
         raise InputError(
             "unknown law",
-            field="law",
             value=name,
             allowed=", ".join(FAMILIES),
             remedy=did_you_mean(name, FAMILIES),
