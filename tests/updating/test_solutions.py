@@ -121,3 +121,12 @@ def test_a_valley_counts_once_and_names_its_locked_end(models: dict[str, Support
 def test_unknown_method(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
     with pytest.raises(InputError, match="unknown method"):
         search(single(models["zener"], table_6_1), method="newton")  # type: ignore[arg-type]
+
+
+def test_a_curve_ends_at_the_bounds(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
+    """Beyond them the law may not exist: three branches of fixed shape cannot lose more than they store."""
+    problem = single(models["maxwell-3"], table_6_1)
+    high = problem.parameters[1].high
+    factors, cost = sensitivity_curve(problem, np.array([3e9, high]), 1, n=5)
+    assert (factors[0], factors[-1]) == (0.5, 1.0)
+    assert np.isfinite(cost).all()

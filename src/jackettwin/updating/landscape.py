@@ -18,11 +18,12 @@ def sensitivity_curve(
     span: float = 0.5,
     n: int = 41,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return (factor, cost) as one parameter goes from 1 − span to 1 + span times its value.
+    """Return (factor, cost) as one parameter goes from 1 − span to 1 + span times its value, within bounds.
 
     These are the thesis's figures 8.5 and 8.6.
     """
-    factors = np.linspace(1.0 - span, 1.0 + span, n)
+    p, value = problem.parameters[parameter], theta[parameter]
+    factors = np.linspace(max(1.0 - span, p.low / value), min(1.0 + span, p.high / value), n)
     moved = np.tile(theta, (n, 1))
     moved[:, parameter] *= factors
     return factors, _costs(problem, theta, moved)
