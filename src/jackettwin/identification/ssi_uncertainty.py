@@ -27,7 +27,7 @@ from scipy import linalg
 
 from jackettwin.errors import InputError
 from jackettwin.identification.mac import normalised
-from jackettwin.identification.ssi_cov import OrderPoles, Subspace, hankel
+from jackettwin.identification.ssi_cov import Factors, OrderPoles, Subspace, hankel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -42,18 +42,13 @@ class Propagation:
     """Everything about the perturbed factorisation that all model orders share."""
 
     subspace: Subspace
-    left: FloatArray
-    """U, (n_rows, n_rows)."""
-    columns: FloatArray
-    """(n_rows, n_blocks, n_max): Uᵀ ΔH V₁."""
-    rows: FloatArray
-    """(n_rows, n_blocks, n_max): (U₁ᵀ ΔH V)ᵀ, zero-padded to n_rows."""
-    squares: tuple[FloatArray, FloatArray]
-    """σ_j (n_max,) and σ_k (n_rows,), zero-padded."""
-    low: FloatArray
-    """Qᵀ U↓, (n_max, n_rows)."""
-    up: FloatArray
-    """Qᵀ U↑, (n_max, n_rows)."""
+    outside: FloatArray
+    """(n_rows · n_blocks, n_max): D Σ₁^½, of which an order takes the rows beyond it and columns up to it."""
+    outside_turned: FloatArray
+    """(n_max · n_blocks, n_rows): the same, turned."""
+    n_blocks: int
+    seen: FloatArray
+    """(2 n_max + n_channels, n_rows): Qᵀ U↓, Qᵀ U↑ and the first block row of U."""
     residual_low: FloatArray
     """U↑ᵀ O↓, (n_rows, n_max)."""
     residual_up: FloatArray
@@ -122,28 +117,33 @@ def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propaga
             allowed="shift",
             remedy="set state_matrix to shift",
         )
-    u, v = subspace.factors.left, subspace.factors.right
-    n_max, n_channels = subspace.observability.shape[1], subspace.n_channels
-    n_rows = len(u)
-    columns, rows = [], []
-    for delta in deviations:
-        columns.append(u.T @ (delta @ v[:, :n_max]))
-        crossed = v.T @ (delta.T @ u[:, :n_max])
-        rows.append(np.pad(crossed[:n_rows], ((0, max(n_rows - len(crossed), 0)), (0, 0))))
-    s = subspace.factors.singular_values
-    sigma = np.pad(s, (0, n_rows - len(s)))
+    u, n_channels = subspace.factors.left, subspace.n_channels
     q, o = subspace.basis, subspace.observability
+    outside = np.stack([_outside(subspace.factors, delta, o.shape[1]) for delta in deviations], axis=1)
+    n_rows, n_blocks, n_max = outside.shape
     return Propagation(
         subspace=subspace,
-        left=u,
-        columns=np.stack(columns, axis=1),
-        rows=np.stack(rows, axis=1),
-        squares=(sigma[:n_max], sigma),
-        low=q.T @ u[n_channels:],
-        up=q.T @ u[:-n_channels],
+        outside=outside.reshape(n_rows * n_blocks, n_max),
+        outside_turned=np.ascontiguousarray(outside.transpose(2, 1, 0)).reshape(n_max * n_blocks, n_rows),
+        n_blocks=n_blocks,
+        seen=np.vstack([q.T @ u[n_channels:], q.T @ u[:-n_channels], u[:n_channels]]),
         residual_low=u[:-n_channels].T @ o[n_channels:],
         residual_up=u[:-n_channels].T @ o[:-n_channels],
     )
+
+
+def _outside(factors: Factors, delta: FloatArray, n_max: int) -> FloatArray:
+    """Return D Σ₁^½ of one deviation for all orders, (n_rows, n_max): it depends on no order."""
+    u, v, s = factors.left, factors.right, factors.singular_values
+    n_rows = len(u)
+    columns = u.T @ (delta @ v[:, :n_max])
+    crossed = (v.T @ (delta.T @ u[:, :n_max]))[:n_rows]
+    near, far = s[:n_max], np.pad(s, (0, n_rows - len(s)))[:, None]
+    beyond = np.arange(n_rows)[:, None] > np.arange(n_max)
+    root = np.sqrt(near) / np.where(beyond, near**2 - far**2, np.inf)
+    out = columns * (near * root)
+    out[: len(crossed)] += crossed * (far * root)[: len(crossed)]
+    return np.asarray(out)
 
 
 def order_poles_with_uncertainty(
@@ -181,28 +181,27 @@ def _one_order(
     chosen: npt.NDArray[np.intp],
 ) -> OrderPoles:
     """Propagate to the chosen poles of order n: ``e = Dψ``, then δAψ, then eigenvalue and shape."""
-    subspace = shared.subspace
-    n_channels, n_blocks = subspace.n_channels, shared.columns.shape[1]
+    subspace, n_blocks = shared.subspace, shared.n_blocks
     raw_shapes = subspace.output_matrix(n) @ vectors
     bare = OrderPoles(n, eigenvalues[chosen], normalised(np.asarray(raw_shapes[:, chosen].T)))
     if not len(chosen):
         return bare
     mu, psi = eigenvalues[chosen], vectors[:, chosen]
-    d = _outside(shared, n)
-    e = _real_times(d, psi)
+    n_max = shared.residual_low.shape[1]
+    e = _parts_of_product(shared.outside[n * n_blocks :, :n], psi).reshape(-1, n_blocks * 2 * len(chosen))
+    rows = np.r_[0:n, n_max : n_max + n, 2 * n_max : len(shared.seen)]
+    seen = _joined(shared.seen[rows, n:] @ e, n_blocks)
     residual = shared.residual_low[n:, :n] @ psi - mu * (shared.residual_up[n:, :n] @ psi)
-    t = np.moveaxis(_real_times(d.transpose(1, 2, 0), residual), 1, 0)
+    turned = _parts_of_product(shared.outside_turned[: n * n_blocks, n:], residual)
     upper = subspace.upper[:n, :n]
-    to_modes = np.asarray(np.linalg.inv(upper @ vectors), dtype=complex)
-    t = _real_stack_times(np.ascontiguousarray(linalg.inv(upper, check_finite=False).T), t)
-    t += _real_stack_times(shared.low[:n, n:], e) - mu * _real_stack_times(shared.up[:n, n:], e)
-    modal = _stack_times(to_modes, t)
+    t = _joined(linalg.inv(upper, check_finite=False).T @ turned.reshape(n, -1), n_blocks)
+    t += seen[:n] - mu * seen[n : 2 * n]
+    modal = _stack_times(np.asarray(np.linalg.inv(upper @ vectors), dtype=complex), t)
     index = np.arange(len(chosen))
     gap = mu - eigenvalues[:, None]
     gap[chosen, index] = np.inf
     delta_mu = modal[chosen, :, index].T
-    delta_shape = _real_stack_times(shared.left[:n_channels, n:], e)
-    delta_shape += _stack_times(np.asarray(raw_shapes, dtype=complex), modal / gap[:, None, :])
+    delta_shape = seen[2 * n :] + _stack_times(np.asarray(raw_shapes, dtype=complex), modal / gap[:, None, :])
     return replace(
         bare,
         eigenvalue_deviations=delta_mu.reshape(n_blocks, -1),
@@ -219,26 +218,16 @@ def _of_normalised(raw: ComplexArray, delta: ComplexArray) -> ComplexArray:
     return np.asarray(((delta - (raw / top)[:, None, :] * at_top) / top).transpose(1, 2, 0))
 
 
-def _outside(shared: Propagation, n: int) -> FloatArray:
-    """Return D Σ₁^{1/2} of order n for every block, (n_rows − n, n_blocks, n)."""
-    near, far = shared.squares[0][:n], shared.squares[1][n:, None]
-    root = np.sqrt(near) / (near**2 - far**2)
-    d = shared.columns[n:, :, :n] * (near * root)[:, None, :]
-    d += shared.rows[n:, :, :n] * (far * root)[:, None, :]
-    return np.asarray(d)
+def _parts_of_product(a: FloatArray, b: ComplexArray) -> FloatArray:
+    """Return real a (…, n) times the real and the imaginary parts of b (n, m), (…, 2m): one real product."""
+    return np.asarray(a @ np.hstack([b.real, b.imag]))
 
 
-def _real_times(a: FloatArray, b: ComplexArray) -> ComplexArray:
-    """Return a @ b with real a (…, n) and complex b (n, m), as one real product."""
-    m = b.shape[1]
-    both = a.reshape(-1, a.shape[-1]) @ np.hstack([b.real, b.imag])
-    return np.asarray(both[:, :m] + 1j * both[:, m:]).reshape(*a.shape[:-1], m)
-
-
-def _real_stack_times(a: FloatArray, b: ComplexArray) -> ComplexArray:
-    """Return real a (n, k) times complex b (k, n_blocks, n_poles), as one real product."""
-    flat = np.ascontiguousarray(b).view(np.float64).reshape(len(b), -1)
-    return np.asarray(a @ flat).view(np.complex128).reshape(len(a), *b.shape[1:])
+def _joined(parts: FloatArray, n_blocks: int) -> ComplexArray:
+    """Return complex (k, n_blocks, m) of real and imaginary parts (k, n_blocks · 2m)."""
+    both = parts.reshape(len(parts), n_blocks, -1)
+    m = both.shape[2] // 2
+    return np.asarray(both[:, :, :m] + 1j * both[:, :, m:])
 
 
 def _stack_times(a: ComplexArray, b: ComplexArray) -> ComplexArray:
