@@ -111,3 +111,16 @@ def test_mistakes_in_identification_are_named(tmp_path: Path, given: str, messag
 def test_missing_file() -> None:
     with pytest.raises(InputError, match=r"gone\.yaml: no such twin file"):
         read_twin("gone.yaml")
+
+
+def test_records_that_follow_need_not_be_named(tmp_path: Path) -> None:
+    """`run --simulate` brings its own records; both kinds of data at once stay a mistake."""
+    bare = tmp_path / "t.yaml"
+    bare.write_text(GOOD[: GOOD.index("targets")])
+    with pytest.raises(InputError, match="give records or targets"):
+        read_twin(bare)
+    config = read_twin(bare, records_follow=True)
+    assert (config.records, config.targets) == ((), ())
+    bare.write_text(GOOD + "records: [a.parquet]\n")
+    with pytest.raises(InputError, match="give records or targets"):
+        read_twin(bare, records_follow=True)

@@ -93,7 +93,7 @@ def test_the_prior_is_the_known_aerodynamic_damping(config: TwinConfig) -> None:
     assembly = assemble(config.structure, gravity=True)
     c, log_std = rotor_damping(config, assembly, numbered_modes(assembly, 2), 10.0).priors["c_side_side"]
     zeta = c / (2.0 * 1.12e6 * 2.0 * np.pi * 0.183)
-    # the closed form is 3.5 % high, this twin's mode slopes a little differently
+    # this twin's mode slopes a little differently
     assert zeta == pytest.approx(0.0242, rel=0.15)
     assert log_std == 0.4
 

@@ -34,7 +34,7 @@ def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: st
     records that OpenFAST produced) or thesis_table_6_1. With --simulate the records come from
     `jackettwin simulate-set`, by default those of a known asset; the report compares with its truth.
     """
-    config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN))
+    config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
     if simulate:
         config = replace(config, records=_simulated(set_file, folder / "records"), targets=())

@@ -175,8 +175,13 @@ def shipped_twins() -> tuple[str, ...]:
     return shipped("twins")
 
 
-def read_twin(source: str | Path) -> TwinConfig:
+def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig:
     """Read a twin: a shipped name or a YAML file.
+
+    Parameters
+    ----------
+    records_follow : bool
+        The records come from elsewhere: the file need not name any, nor targets.
 
     Raises
     ------
@@ -186,16 +191,17 @@ def read_twin(source: str | Path) -> TwinConfig:
     path = find_file(source, "twins")
     schema = validate(TwinSchema, read_yaml(path, what="twin file"), file=path)
     with located(file=path):
+        given = [key for key in ("records", "targets") if getattr(schema, key)]
+        if len(given) != 1 and not (records_follow and not given):
+            raise InputError(
+                "give records or targets",
+                field="records",
+                remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
+            )
         return _build(schema, path)
 
 
 def _build(schema: TwinSchema, path: Path) -> TwinConfig:
-    if bool(schema.records) == bool(schema.targets):
-        raise InputError(
-            "give records or targets",
-            field="records",
-            remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
-        )
     if len({s.channel for s in schema.sensors}) != len(schema.sensors):
         raise InputError(
             "a channel is given twice", field="sensors", value=[s.channel for s in schema.sensors]

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.loads import read_rotor
-from jackettwin.loads.rotor import parked_closed_form
+from jackettwin.loads.rotor import Rotor, linearise
 from jackettwin.response.modal import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
@@ -21,7 +21,9 @@ from jackettwin.updating.extras import DASHPOTS
 FloatArray = npt.NDArray[np.float64]
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
-"""How far the closed form may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
+"""How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
+_ANY_WIND_M_S = 10.0
+"""A parked rotor's damping is proportional to the wind."""
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
 """The tower top's DOFs that a rotor straight in the wind couples with each other."""
 
@@ -65,7 +67,7 @@ def rotor_damping(
     """
     if config.update.rotor is None:
         return RotorDamping({}, {})
-    per_wind = parked_closed_form(read_rotor(config.update.rotor)[0], 1.0, shaft=config.update.shaft)
+    per_wind = _per_wind(read_rotor(config.update.rotor)[0], config.update.shaft)
     top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
     patterns, priors = {}, {}
     for name in config.update.dashpots:
@@ -78,6 +80,16 @@ def rotor_damping(
         if wind is not None:
             priors[name] = (c * wind, _LOG_STD[name])
     return RotorDamping(patterns, priors)
+
+
+def _per_wind(rotor: Rotor, shaft: str) -> FloatArray:
+    """Return the damping (6, 6) of a feathered rotor for each m/s of wind: symmetric, averaged over azimuth.
+
+    Of the whole geometry: cone and prebend bring the blades upwind of the hub, which doubles what a pitching
+    or yawing tower top loses to straight blades.
+    """
+    C = linearise(rotor, _ANY_WIND_M_S, pitch=0.5 * np.pi, shaft=shaft).damping / _ANY_WIND_M_S
+    return np.asarray(0.5 * (C + C.T))
 
 
 def operating_states(
