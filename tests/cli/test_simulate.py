@@ -57,7 +57,9 @@ def test_loads_have_the_keys_of_the_contract(case: Path) -> None:
         assert set(document[key]) == {"x", "y", "z"}
         assert {"max", "min", "std"} <= set(document[key]["x"])
     shown = CliRunner().invoke(main, ["loads", str(case)]).stdout
-    assert "Fx" in shown and "at the bed, z = -72 m: base shear" in shown and "over one wave" in shown
+    assert "case: water and wind; M about (0, 0, 72) m" in shown
+    assert "water alone" in shown and "wind alone" in shown
+    assert "Fx [MN]" in shown and "at the bed, z = -72 m: base shear" in shown and "over one wave" in shown
     first = document["phases"][0]
     assert first["wave_elevation_m"] == pytest.approx(3.0)
     # M about the bed is M about still water + 72 m × F

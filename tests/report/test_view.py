@@ -72,6 +72,7 @@ def test_geometry_and_quantities(view: View) -> None:
     assert sum(found["flooded"]) == 2 * sum(m.part == "jacket" for m in structure.members)
     # the nacelle's mass hangs at its own centre of gravity
     assert found["masses"][0]["at"] == pytest.approx([-3.5, 0.0, 148.0])
+    assert found["masses"][0]["text"].endswith(" t, centre of mass")
 
 
 def test_motions_are_scaled_and_closed(view: View, system: System) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from rich.table import Table
 
-from jackettwin.cli.console import output, print_json
+from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
@@ -151,7 +151,7 @@ def _warnings(uses: tuple[MemberUse, ...]) -> list[str]:
 
 def _print(document: dict[str, Any]) -> None:
     shown, left_out = document["members"][:_SHOWN], len(document["members"]) - _SHOWN
-    use = Table("member", "part", "utilisation", "governed by", "K", "L [m]", title_justify="left")
+    use = Table("member", "part", "utilisation", "governed by", "K", r"L \[m]", title_justify="left")
     use.title = document["structure"]
     forces = Table(
         "member", "at", *_HEADINGS, title=r"section forces there \[kN, kN·m]", title_justify="left"
@@ -163,7 +163,9 @@ def _print(document: dict[str, Any]) -> None:
         )
         governing = row["governing"]
         forces.add_row(
-            row["member"], _place(governing["position"]), *(_kilo(governing[name]) for name in _COMPONENTS)
+            row["member"],
+            _place(governing["position"]),
+            *(fixed(governing[name] / 1e3, 1) for name in _COMPONENTS),
         )
     output.print(use)
     output.print(forces)
@@ -172,10 +174,6 @@ def _print(document: dict[str, Any]) -> None:
     output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
-
-
-def _kilo(value: float) -> str:
-    return f"{round(value / 1e3, 1) + 0.0:,.1f}"  # no minus before nothing
 
 
 def _place(position: float) -> str:

@@ -93,3 +93,12 @@ def print_json(document: object) -> None:
 def number(value: float | None, digits: int = 4) -> str:
     """Return a number for a table, a dash if it is not known."""
     return "–" if value is None or value != value else f"{value:.{digits}g}"
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals; what rounds to zero has no sign.
+
+    >>> fixed(-1e-9, 2)
+    '0.00'
+    """
+    return f"{round(value, decimals) + 0.0:,.{decimals}f}"

@@ -7,7 +7,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import output, print_json
+from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.simulate import loads_document, read_scenario
 
 
@@ -16,24 +16,25 @@ from jackettwin.simulate import loads_document, read_scenario
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def loads_command(scenario: str, as_json: bool) -> None:
     """Wave and wind loads of SCENARIO on an asset that stands still, about still water and about the bed."""
-    document = loads_document(read_scenario(scenario))
+    chosen = read_scenario(scenario)
+    document = loads_document(chosen)
     if as_json:
         print_json(document)
     else:
-        _print(document)
+        _print(chosen.name, document)
 
 
-def _print(document: dict[str, Any]) -> None:
-    table = Table("load", "max", "min", "mean", "std")
-    for key, unit, scale in (("force_n", "MN", 1e-6), ("moment_msl_n_m", "MN·m", 1e-6)):
-        for axis, row in document[key].items():
-            name = f"{'F' if key == 'force_n' else 'M'}{axis} [{unit}]"
-            table.add_row(name, *(f"{scale * row[what]:.4f}" for what in ("max", "min", "mean", "std")))
-    output.print(table)
+def _print(name: str, document: dict[str, Any]) -> None:
+    x, y, z = document["reference_point_m"]
+    about = f"M about ({x:g}, {y:g}, {z:g}) m of the structure's frame, at still water"
+    _print_loads(f"{name}: {' and '.join(document['parts'])}; {about}", document)
+    if len(document["parts"]) > 1:
+        for part, loads in document["parts"].items():
+            _print_loads(f"{part} alone", loads)
     mudline = document["mudline"]
     if mudline is not None:
         output.print(
-            f"M about still water; at the bed, z = {mudline['z_msl_m']:g} m: base shear "
+            f"at the bed, z = {mudline['z_msl_m']:g} m: base shear "
             f"{1e-6 * mudline['base_shear_n']:.4f} MN, overturning moment "
             f"{1e-6 * mudline['overturning_moment_n_m']:.3f} MN·m"
         )
@@ -43,12 +44,22 @@ def _print(document: dict[str, Any]) -> None:
         output.print(f"warning: {warning}")
 
 
+def _print_loads(title: str, loads: dict[str, Any]) -> None:
+    output.print(title, markup=False)
+    table = Table("load", "max", "min", "mean", "std")
+    for key, letter, unit in (("force_n", "F", "MN"), ("moment_msl_n_m", "M", "MN·m")):
+        for axis, row in loads[key].items():
+            shown = (fixed(1e-6 * row[what], 4) for what in ("max", "min", "mean", "std"))
+            table.add_row(rf"{letter}{axis} \[{unit}]", *shown)
+    output.print(table)
+
+
 def _print_phases(phases: list[dict[str, Any]]) -> None:
-    names = ("phase [°]", "η [m]", "Fx [MN]", "Fy [MN]", "Mx at the bed [MN·m]", "My at the bed [MN·m]")
+    names = ("phase [°]", r"η \[m]", "Fx [MN]", "Fy [MN]", "Mx at the bed [MN·m]", "My at the bed [MN·m]")
     table = Table(*names, title="water, over one wave", title_justify="left")
     for row in phases:
         scaled = [1e-6 * value for value in (*row["force_n"][:2], *row["moment_mudline_n_m"][:2])]
         table.add_row(
-            f"{row['phase_deg']:g}", f"{row['wave_elevation_m']:.2f}", *(f"{value:.4f}" for value in scaled)
+            f"{row['phase_deg']:g}", fixed(row["wave_elevation_m"], 2), *(fixed(value, 4) for value in scaled)
         )
     output.print(table)

@@ -11,7 +11,7 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
-from jackettwin.cli.console import output, print_json
+from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.errors import InputError
 from jackettwin.response.follow import follow
 from jackettwin.response.labels import mode_kinds, mode_labels
@@ -178,9 +178,9 @@ def _print(document: dict[str, Any]) -> None:
             str(row["mode"] or "–"),
             row["label"],
             f"{f:.4f}",
-            f"{_whole(100 * row['damping_ratio'], 3):.3f}",
+            fixed(100 * row["damping_ratio"], 3),
             "–" if f0 is None else f"{f0:.4f}",
-            "–" if apart is None else f"{_whole(apart, 3):.3f}",
+            "–" if apart is None else fixed(apart, 3),
         )
     output.print(table)
     if document["overdamped_poles"]:
@@ -194,8 +194,3 @@ def _print(document: dict[str, Any]) -> None:
             f"{slow.size} real poles (relaxation) from {slow.min():.3g} to {slow.max():.3g} rad/s; "
             f"slowest time constant {1.0 / slow.min():.3g} s ({slow.min() / (2 * pi):.3g} Hz)"
         )
-
-
-def _whole(value: float, decimals: int) -> float:
-    """Return the value as it is printed: rounding error is no damping, and zero has no sign."""
-    return round(value, decimals) + 0.0

@@ -115,7 +115,7 @@ def view_document(view: View) -> dict[str, Any]:
                     np.add(structure.nodes[m.node], m.cg_offset_m) - [0.0, 0.0, structure.sea_level_z_m], 3
                 ),
                 "node": mesh.node_names.index(m.node),
-                "text": f"{m.part or 'mass'}: {m.mass_kg / 1e3:,.0f} t",
+                "text": f"{m.part or 'mass'}: {m.mass_kg / 1e3:,.0f} t, centre of mass",
             }
             for m in structure.masses
         ],
