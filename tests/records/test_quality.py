@@ -166,6 +166,15 @@ def test_a_record_that_is_not_stationary_is_flagged(tower: SimpleNamespace) -> N
     assert "unsteady" not in {f.fault for f in assess(record).findings}
 
 
+def test_a_blow_that_rings_down_is_not_stationary(tower: SimpleNamespace) -> None:
+    """A ship's impact of twenty times the rms, in a mode that forgets it in ninety seconds."""
+    record = tower.record(15)
+    t = np.arange(12_000) / 20.0 - 200.0
+    ringing = np.where(t > 0.0, np.exp(-t / 90.0) * np.sin(2.0 * np.pi * 0.178 * t), 0.0)
+    struck = replace(record, data=record.data + 20.0 * record.data.std(axis=1, keepdims=True) * ringing)
+    assert {f.fault for f in assess(struck).findings} == {"unsteady"}
+
+
 def test_faults_lower_the_score(tower: SimpleNamespace) -> None:
     record = tower.record(14)
     row = record.data[0].copy()
