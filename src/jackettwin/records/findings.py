@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 DRIFT_RATIO = 3.0
 """Range of the slow part over the rms of the rest, beyond which it is drift."""
 UNSTEADY_RATIO = 4.0
-"""Rms of the loudest part over the median of all, beyond which a record is not stationary: a light tower under
-steady forces reaches 2, in turbulence as well."""
+"""Rms of the loudest part over the median of all, beyond which a record is not stationary: a light tower
+under steady forces reaches 2, in turbulence as well."""
 
 
 @dataclass(frozen=True)
