@@ -86,3 +86,38 @@ def test_a_fit_that_breaks_down_leaves_what_the_subspace_method_found(tower, rng
     result = identify(record)
     assert any("broke down" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}
+
+
+def test_a_short_record_says_what_it_is_too_short_for(tower, rng):
+    """Half a minute: nine cycles of the first pair, which no spectrum of it shows."""
+    record = simulate(tower, rng, duration_s=30.0, sample_rate_hz=10.0)
+    result = identify(record)
+    assert any("30 s hold" in text and "cycles" in text for text in result.warnings)
+    assert any("the band starts at" in text for text in result.warnings)
+    assert not [t for t in identify(simulate(tower, rng, sample_rate_hz=5.0)).warnings if "cycles" in t]
+
+
+def test_one_of_two_copies_is_used(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    data = record.data.copy()
+    data[3] = data[2]
+    result = identify(replace(record, data=data))
+    assert any("channel a3 left out: a copy of a2" in text for text in result.warnings)
+    assert [c.name for c in result.channels] == ["a0", "a1", "a2", "a4", "a5", "a6", "a7"]
+
+
+def test_a_pair_half_left_out_is_hinted_at(tower, rng):
+    from jackettwin.identification.choice import _hidden, _sorted
+    from jackettwin.identification.clustering import Cluster
+    from jackettwin.identification.selection import Candidate
+
+    settings = IdentificationSettings(refine=False)
+    result = identify(simulate(tower, rng, sample_rate_hz=5.0), settings)
+    cluster = Cluster(np.arange(3), np.arange(3), 0, 0.4, 1.3)
+    judged = [Candidate(cluster, mode, "in 40% of the model orders", None) for mode in result.modes]
+    whole = _sorted(judged, dict(enumerate(result.modes)), (), result.settings, settings, ())
+    assert _hidden(judged, whole) == []
+    half = dict(list(enumerate(result.modes))[1:])
+    hints = _hidden(judged, _sorted(judged, half, (), result.settings, settings, ()))
+    assert len(hints) == 1
+    assert f"beside {result.modes[1].frequency_hz:.4g} Hz" in hints[0]

@@ -116,3 +116,12 @@ def test_picks_of_which_none_concerns_the_records_are_a_mistake() -> None:
     refuse_strangers((), ["day_9"])
     with pytest.raises(InputError, match="no pick concerns .*day_1, day_2.*allowed: day_9"):
         refuse_strangers(picks, ["day_9"])
+
+
+def test_picks_that_leave_modes_out_say_so(tower, rng):
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    all_modes = identify(record)
+    some = identify(record, picks=all_modes.picks[:1])
+    (said,) = [text for text in some.warnings if "the picks leave out modes" in text]
+    assert f"{all_modes.modes[-1].unrefined.frequency_hz:.4g}" in said
+    assert not any("leave out" in t for t in identify(record, picks=all_modes.picks).warnings)

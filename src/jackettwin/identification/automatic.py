@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ from jackettwin.identification.components import at_all_channels, components
 from jackettwin.identification.covariances import block_covariances, covariances
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.fdd import fdd
-from jackettwin.identification.picked import picked_clusters, with_verdicts
+from jackettwin.identification.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.plscf import plscf_poles
 from jackettwin.identification.prepared import Prepared, prepare
@@ -115,18 +116,20 @@ def identify(
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
     tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.swept_hz)
-    if wanted:
-        found = picked_clusters(poles, found, wanted)
-    judged = candidates(
+    judge = partial(
+        candidates,
         poles,
-        found,
-        tones.frequency_hz,
-        settings,
+        tones=tones.frequency_hz,
+        settings=settings,
         duration_s=record.duration_s,
         n_orders=len(resolved.orders),
     )
+    judged = judge(found)
+    missing: tuple[str, ...] = ()
     if wanted:
-        judged = with_verdicts(wanted, judged)
+        picked = picked_clusters(poles, found, wanted)
+        missing = left_out(judged, picked)
+        judged = with_verdicts(wanted, judge(picked))
     say("refinement")
     chosen = chosen_modes(judged, tones, ready, settings)
     label = poles.cluster.copy()
@@ -141,7 +144,7 @@ def identify(
         spectrum=welch(y * scale[:, None], resolved.sample_rate_hz),
         settings=resolved,
         duration_s=record.duration_s,
-        warnings=(*ready.warnings, *chosen.warnings),
+        warnings=(*ready.warnings, *missing, *chosen.warnings),
         real_poles=_relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )

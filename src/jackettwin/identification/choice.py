@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jackettwin.identification.drifting_tones import disturbed_hz
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.fits import Start, believed_fits
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mac import mac, normalised
 from jackettwin.identification.periodogram import DERIVATIVES
 from jackettwin.identification.resolve import guarded_band_hz
 from jackettwin.identification.selection import beside_tones, with_covariance
@@ -35,6 +35,10 @@ MOST_MISSING = 0.01
 LEAST_SHARE = 0.8
 """Standard deviations over the long-data limits, at least. The ratios between many quiet channels tell more
 than the lines of a peak do: of ten modes in eight channels the Cramér-Rao bound is 0.79 of the limit."""
+HINT_ORDER_SHARE = 0.25
+"""Share of the model orders in which what may be a mode must appear to be worth a hint."""
+SAME_SHAPE = 0.8
+"""MAC from which a pole is the mode beside it."""
 TAKEN_LINES = 0.75
 """A line as far from a tone as this went with it."""
 
@@ -72,6 +76,9 @@ def chosen_modes(
     tones_hz = [(f, f) for f in (*tones.frequency_hz.values(), *ready.tones_hz)] + [*ready.swept_hz]
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
+    if settings.refine:
+        found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
+    return replace(found, rejected=(*found.rejected, *_tones(ready.tones_hz, resolved)))
 
 
 def _start(
@@ -169,6 +176,31 @@ def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
     found = [(f, steady) for f in ready.tones_hz] + [(0.5 * (a + b), drifting) for a, b in ready.swept_hz]
     return [Rejected(f, None, reason) for f, reason in sorted(found) if low < f < high]
+
+
+def _hidden(judged: Sequence[Candidate], found: Choice) -> list[str]:
+    """Say where what was left out may be the other mode of a close pair, beside the mode it is nearest to.
+
+    Only beside modes that no fit describes: where one does, the spectrum needs no other.
+    """
+    out: dict[float, str] = {}
+    for i, c in enumerate(judged):
+        near = [m for m in found.modes if _overlap(c.mode, m)]
+        alike = [float(mac(c.mode.mode_shape, m.mode_shape)) for m in near]
+        known = i in found.candidate or c.is_tone or c.cluster.order_share < HINT_ORDER_SHARE
+        if known or not near or max(alike) > SAME_SHAPE or any(m.unrefined is not None for m in near):
+            continue
+        mode = min(near, key=lambda m: abs(m.frequency_hz - c.mode.frequency_hz))
+        out[mode.frequency_hz] = (
+            f"a second mode may hide beside {mode.frequency_hz:.4g} Hz: poles of another shape at "
+            f"{c.mode.frequency_hz:.4g} Hz, within its bandwidth, were left out"
+        )
+    return list(out.values())
+
+
+def _overlap(a: ModalEstimate, b: ModalEstimate) -> bool:
+    half = a.damping_ratio * a.frequency_hz + b.damping_ratio * b.frequency_hz
+    return abs(a.frequency_hz - b.frequency_hz) < half
 
 
 def _late_objection(

@@ -161,7 +161,7 @@ def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: fl
         return _Tried(
             None,
             none,
-            f"the spectrum is not that of modes under smooth random forces "
+            f"the spectrum is not that of these modes under smooth random forces "
             f"(lack of fit {refined.lack_of_fit:.1f}, at most {most:g})",
         )
     lost = strayed(

@@ -61,6 +61,19 @@ def with_verdicts(picks: Sequence[Pick], judged: Sequence[Candidate]) -> list[Ca
     ]
 
 
+def left_out(judged: Sequence[Candidate], picked: Sequence[Cluster]) -> tuple[str, ...]:
+    """Say which modes would have been taken without picks and no pick means: a fit of the band lacks them."""
+    taken = {int(k) for cluster in picked for k in cluster.poles}
+    free = [c for c in judged if c.objection is None and c.doubt is None]
+    f = [c.mode.frequency_hz for c in free if not taken & {int(k) for k in c.cluster.poles}]
+    if not f:
+        return ()
+    return (
+        f"the picks leave out modes at {', '.join(f'{x:.4g}' for x in sorted(f))} Hz: what is fitted to the "
+        f"spectrum lacks them; pick them too, or narrow the band",
+    )
+
+
 def _pole(poles: Stabilisation, found: Sequence[Cluster], pick: Pick) -> int:
     """Return the position of the pole meant by a pick."""
     if pick.order is None:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.identification.drifting_tones import drifting_tones
 from jackettwin.identification.gaps import fill
-from jackettwin.identification.resolve import EDGE_BELOW_PEAK, resolve, usable_channels
+from jackettwin.identification.resolve import EDGE_BELOW_PEAK, resolve, shortness, usable_channels
 from jackettwin.identification.spectra import lowest_peak_hz, welch
 from jackettwin.identification.steady_tones import steady_tones
 from jackettwin.records import detrend
@@ -81,6 +81,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         level = replace(level, data=without)
         settings = _above_tones(level, settings, min([*tones, *(low for low, _ in swept)]))
     resolved, reduced = resolve(level, settings)
+    warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
     y = fill(reduced.data)
     filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
     for channel, share in zip(usable.channels, filled, strict=True):

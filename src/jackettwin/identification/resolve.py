@@ -11,10 +11,12 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
+from jackettwin.records.copies import copies
 from jackettwin.records.record import SMALLEST
 from jackettwin.records.repair import without_stuck
 
 if TYPE_CHECKING:
+    from jackettwin.identification.estimate import Spectrum
     from jackettwin.identification.settings import IdentificationSettings
 
 EDGE_BELOW_PEAK = 0.65
@@ -31,6 +33,10 @@ GUARD = 1.25
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
+FEW_CYCLES = 60.0
+"""With fewer cycles of its lowest mode a record is called short."""
+STRONG_BELOW = 0.1
+"""Largest singular value below the band, over that in it, which is worth saying."""
 FEWEST_SAMPLES = 64
 """Fewer make no spectrum."""
 DEAD = 1e-9
@@ -60,6 +66,9 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
             warnings.append(f"channel {channel.name} left out: constant")
         else:
             alive.append(channel.name)
+    twins = copies(record.select(alive).data) if alive else {}
+    warnings += [f"channel {alive[i]} left out: a copy of {alive[j]}" for i, j in twins.items()]
+    alive = [name for i, name in enumerate(alive) if i not in twins]
     if not alive:
         raise InputError(
             "no usable vibration channel" + "".join(f"; {text}" for text in warnings),
@@ -87,6 +96,42 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
         range(min(settings.order_step, 2) if settings.order_step < 2 else 2, top + 1, settings.order_step)
     )
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[str, ...]:
+    """Say what a record is too short for.
+
+    Parameters
+    ----------
+    reduced : Record
+        At the rate of the identification, zero mean.
+    chosen : bool
+        Whether the lower edge of the band was chosen here, not set by the user.
+    """
+    low, duration = resolved.lowest_frequency_hz, reduced.duration_s
+    first = low / EDGE_BELOW_PEAK if chosen else low
+    out: tuple[str, ...] = ()
+    if first * duration < FEW_CYCLES:
+        out += (
+            f"a short record: {duration:.3g} s hold {first * duration:.0f} cycles of {first:.3g} Hz; "
+            f"distrust modes so low, by hundreds of cycles they are known",
+        )
+    strongest = _strongest_below(welch(reduced.data, reduced.sample_rate_hz), low) if chosen else None
+    if strongest is not None and strongest * duration < FEW_CYCLES:
+        out += (
+            f"the band starts at {low:.3g} Hz, yet the record moves strongly near {strongest:.2g} Hz: too "
+            f"few cycles to tell a peak there; use a longer record, or state lowest_frequency_hz",
+        )
+    return out
+
+
+def _strongest_below(spectrum: Spectrum, low: float) -> float | None:
+    """Return the frequency below an edge at which a record moves as strongly as anywhere above."""
+    f, s = spectrum.frequencies_hz[1:], spectrum.singular_values[0, 1:]
+    below, above = f < low, f >= low
+    if not below.any() or s[below].max() < STRONG_BELOW * s[above].max():
+        return None
+    return float(f[below][np.argmax(s[below])])
 
 
 def guarded_band_hz(resolved: ResolvedSettings) -> tuple[float, float]:

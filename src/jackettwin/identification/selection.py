@@ -25,6 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 
 FEWEST_ORDERS = 5
 """A mode appears in at least so many model orders (or 0.4 of them, if there are few)."""
+A_TONE = "steady tone: its envelope does not wander as that of a mode"
 TONE_REACH = 6.0
 """A tone nearer than this many half bandwidths disturbs a mode …"""
 TONE_WIDENING = 2.0
@@ -68,6 +69,11 @@ class Candidate:
     doubt: str | None
 
     @property
+    def is_tone(self) -> bool:
+        """Whether its envelope is that of a tone."""
+        return self.objection == A_TONE
+
+    @property
     def rejected(self) -> Rejected:
         """The candidate with the reason it was left out."""
         reason = self.objection or self.doubt or ""
@@ -97,7 +103,7 @@ def candidates(
         mode = _mode(poles, cluster, duration_s)
         objection = _objection(cluster, mode, settings, fewest)
         if cluster.representative in steady:
-            objection = "steady tone: its envelope does not wander as that of a mode"
+            objection = A_TONE
         out.append(Candidate(cluster, mode, objection, _doubt(cluster, mode, settings)))
     return out
 
