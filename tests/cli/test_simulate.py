@@ -88,7 +88,7 @@ def test_bad_scenarios_end_with_two(case: Path) -> None:
     [
         ("period_s: 10.0", "period_s: 0.01", "waves.period_s: .*greater than or equal to 0.5"),
         ("period_s: 10.0", "period_s: 10.0, hs_m: 2", "waves.hs_m: does not belong"),
-        ("height_m: 6.0", "height_m: 90.0", "waves.height_m: out of range .got 90.0.; allowed: 0 to"),
+        ("height_m: 6.0", "height_m: 90.0", "waves.height_m: out of range .got 90.0..*check the number"),
         ("speed_m_s: 9.0", "speed_m_s: .nan", "wind.speed_m_s: not a finite number"),
         ("step_s: 0.05", "step_s: 1.0e-9", "time.step_s: .*greater than or equal to 0.0001"),
         ("30, step_s: 0.05", "86400, step_s: 0.0001", "time.step_s: too many samples.*longer steps"),

@@ -269,4 +269,10 @@ def _headings(rng: np.random.Generator, s: float, n: int) -> FloatArray:
 
 def _check(field: str, value: float, low: float, high: float) -> None:
     if not (np.isfinite(value) and low <= value <= high):
-        raise InputError("out of range", field=field, value=value, allowed=f"{low:g} to {high:g}")
+        raise InputError(
+            "out of range",
+            field=field,
+            value=value,
+            allowed=f"{low:g} to {high:g}",
+            remedy="check the number and its unit",
+        )
