@@ -30,8 +30,8 @@ def cases(name: str, number: int, run: Callable[[int], Result]) -> list[Result]:
                 known[case] = {"case": case} | run(case)
                 kept.write(json.dumps(known[case]) + "\n")
                 kept.flush()
-            sys.stderr.write(f"\r{name} {case + 1}/{number}")
-    sys.stderr.write("\n")
+            if sys.stderr.isatty():
+                sys.stderr.write(f"\r{name} {case + 1}/{number}")
     return [known[case] for case in range(number)]
 
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.updating import Residuals, SupportModel, Target, single
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.updating.descent import descend
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 from jackettwin.updating.solutions import search
 
@@ -130,3 +132,15 @@ def test_a_curve_ends_at_the_bounds(models: dict[str, SupportModel], table_6_1: 
     factors, cost = sensitivity_curve(problem, np.array([3e9, high]), 1, n=5)
     assert (factors[0], factors[-1]) == (0.5, 1.0)
     assert np.isfinite(cost).all()
+
+
+def test_a_slow_descent_goes_on_to_its_minimum(jacket15: Assembly) -> None:
+    """From here the pulled search runs out of steps in a narrow curved valley."""
+    model = support_model(jacket15, family=family("zener"), rayleigh=Rayleigh.minimum(0.0055, 0.1832))
+    truth = np.array([2.38248366e9, 3.56848728e9, 1.77810652e9])
+    poles = model.predict(truth, (1, 2, 4)).poles
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    targets = (Target(1, f[0], damping_ratio=zeta[0]), Target(2, f[1]), Target(4, f[2]))
+    end = descend(single(model, Residuals(targets, relative=True)), np.array([27.6, 22.7, 26.4]))
+    assert end.settled
+    np.testing.assert_allclose(end.z, np.log(truth), atol=1e-3)

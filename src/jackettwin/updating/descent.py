@@ -82,9 +82,12 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
         here = Path(problem).total(z)
         z = _least_squares(problem, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
     free = _least_squares(problem, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
-    if np.abs(free - z).max() < _POINT:
-        z = free
-    return _judged(problem, z)
+    back = z
+    if np.abs(free - z).max() >= _POINT:
+        # in a valley it slides back; from a point that the pulled search was too slow to reach it does not
+        pull = _pulled(problem, problem.allowance(Path(problem).total(free)))
+        back = _least_squares(problem, free, pull, tolerance=1e-8)
+    return _judged(problem, free if np.abs(free - back).max() < _POINT else z)
 
 
 def settle(problem: Problem, end: End) -> End:
