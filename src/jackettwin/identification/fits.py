@@ -131,6 +131,7 @@ def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, floa
     best: _Tried | None = None
     for background in (False, True):
         work = partial(refine, y, sample_rate_hz, band_hz, background=background, **_given(start))
+        work = partial(work, most_lack_of_fit=MOST_LACK_OF_FIT)
         tried = _tried(work, MOST_LACK_OF_FIT, start, y.shape[1] / sample_rate_hz)
         if best is None or _rank(tried, start) < _rank(best, start):
             best = tried

@@ -98,6 +98,7 @@ def refine(
     avoid_hz: Sequence[tuple[float, float]] = (),
     background: bool = False,
     local_dither_share: float | None = None,
+    most_lack_of_fit: float = np.inf,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
 
@@ -118,6 +119,8 @@ def refine(
         Whether shapes that follow their force are fitted too: the modes outside the band, or waves below it.
     local_dither_share : float, optional
         So much of the local median spectrum is added, given where the band holds some of the modes only.
+    most_lack_of_fit : float
+        A fit that lacks more is returned before modes are dropped from it: fewer fit no better.
     """
     data = periodogram(
         y,
@@ -136,7 +139,8 @@ def refine(
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
     climb = likelihood.climbed(data, climb.parameters)
-    climb, chosen = _thinned(data, climb, chosen)
+    if likelihood.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
+        climb, chosen = _thinned(data, climb, chosen)
     return _result(data, climb, chosen, gain)
 
 
