@@ -75,10 +75,9 @@ def chosen_modes(
                 modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
     tones_hz = [(f, f) for f in (*tones.frequency_hz.values(), *ready.tones_hz)] + [*ready.swept_hz]
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
-    return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
     if settings.refine:
         found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
-    return replace(found, rejected=(*found.rejected, *_tones(ready.tones_hz, resolved)))
+    return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
 
 
 def _start(
