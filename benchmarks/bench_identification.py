@@ -18,9 +18,9 @@ from time import process_time
 import numpy as np
 
 from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.covariances import block_covariances, covariances
-from jackettwin.identification.ssi_cov import frequency_and_damping, order_poles, ssi_cov
-from jackettwin.identification.ssi_uncertainty import (
+from jackettwin.identification.subspace.covariances import block_covariances, covariances
+from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
+from jackettwin.identification.subspace.ssi_uncertainty import (
     block_deviations,
     order_poles_with_uncertainty,
     propagation,

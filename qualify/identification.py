@@ -28,7 +28,7 @@ import numpy as np
 
 from jackettwin import identification
 from jackettwin.identification import FusedIdentification, Identification, fuse, identify, mac
-from jackettwin.identification.resolve import guarded_band_hz
+from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.identification.synthetic import ModalSystem, cramer_rao, simulate
 
@@ -144,7 +144,7 @@ def read_lines(file: Path) -> Iterator[dict]:
 
 def digest() -> str:
     """Return a name for the code that identifies."""
-    files = sorted(Path(identification.__file__).parent.glob("*.py"))
+    files = sorted(Path(identification.__file__).parent.rglob("*.py"))
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
 
 

@@ -13,8 +13,8 @@ import pytest
 
 from jackettwin.identification import IdentificationSettings, ModalEstimate, identify, mac
 from jackettwin.identification.comparison import Comparison, compare_methods, paired
-from jackettwin.identification.ssi_cov import frequency_and_damping, order_poles
-from jackettwin.identification.ssi_dat import ssi_dat
+from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles
+from jackettwin.identification.subspace.ssi_dat import ssi_dat
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 

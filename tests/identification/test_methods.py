@@ -7,10 +7,10 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.identification import IdentificationSettings, identify
+from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.mac import mac
-from jackettwin.identification.plscf import plscf_poles
-from jackettwin.identification.ssi_cov import frequency_and_damping, order_poles
-from jackettwin.identification.ssi_dat import ssi_dat
+from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles
+from jackettwin.identification.subspace.ssi_dat import ssi_dat
 from jackettwin.identification.synthetic import simulate
 
 RATE = 10.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import fuse
-from jackettwin.identification.convergence import convergence
+from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.report import figures_likeness as figures
 
 

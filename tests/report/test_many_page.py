@@ -9,9 +9,9 @@ import pytest
 
 from jackettwin.identification import fuse
 from jackettwin.identification.estimate import ModalEstimate
-from jackettwin.identification.fusion import FusedMode
-from jackettwin.identification.selection import with_covariance
-from jackettwin.identification.sightings import sightings
+from jackettwin.identification.many_records.fusion import FusedMode
+from jackettwin.identification.many_records.sightings import sightings
+from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin.many import Failed

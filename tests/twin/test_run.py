@@ -9,7 +9,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
-from jackettwin.identification.selection import with_covariance
+from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.fitted import residuals

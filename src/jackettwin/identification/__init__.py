@@ -8,11 +8,11 @@ from jackettwin.identification.estimate import (
     Spectrum,
     Stabilisation,
 )
-from jackettwin.identification.fdd import fdd
-from jackettwin.identification.fusion import FusedIdentification, FusedMode, fuse
+from jackettwin.identification.frequency_domain.fdd import fdd
 from jackettwin.identification.mac import mac
+from jackettwin.identification.many_records.fusion import FusedIdentification, FusedMode, fuse
 from jackettwin.identification.settings import IdentificationSettings
-from jackettwin.identification.ssi_cov import ssi_cov
+from jackettwin.identification.subspace.ssi_cov import ssi_cov
 
 __all__ = [
     "FusedIdentification",

@@ -10,35 +10,35 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.identification.choice import chosen_modes
-from jackettwin.identification.clustering import clusters
-from jackettwin.identification.components import at_all_channels, components
-from jackettwin.identification.covariances import block_covariances, covariances
-from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
-from jackettwin.identification.fdd import fdd
-from jackettwin.identification.picked import left_out, picked_clusters, with_verdicts
+from jackettwin.identification.estimate import Identification, ModalEstimate, RealPole, Stabilisation
+from jackettwin.identification.frequency_domain.fdd import fdd
+from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.picks import Pick, of_record
-from jackettwin.identification.plscf import plscf_poles
-from jackettwin.identification.prepared import Prepared, prepare
-from jackettwin.identification.real_poles import RealPole, real_poles
-from jackettwin.identification.resolve import guarded_band_hz
-from jackettwin.identification.selection import candidates, find_tones
+from jackettwin.identification.preparation.components import at_all_channels, components
+from jackettwin.identification.preparation.prepared import Prepared, prepare
+from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.selection.candidates import candidates, find_tones
+from jackettwin.identification.selection.choice import chosen_modes
+from jackettwin.identification.selection.clustering import clusters
+from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.settings import IdentificationSettings
-from jackettwin.identification.spectra import welch
-from jackettwin.identification.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
-from jackettwin.identification.ssi_dat import ssi_dat
-from jackettwin.identification.ssi_uncertainty import (
+from jackettwin.identification.subspace.covariances import block_covariances, covariances
+from jackettwin.identification.subspace.real_poles import real_poles
+from jackettwin.identification.subspace.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
+from jackettwin.identification.subspace.ssi_dat import ssi_dat
+from jackettwin.identification.subspace.ssi_uncertainty import (
     Propagation,
     block_deviations,
     order_poles_with_uncertainty,
     propagation,
 )
-from jackettwin.identification.stabilisation import admissible, stabilisation
+from jackettwin.identification.subspace.stabilisation import admissible, stabilisation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from jackettwin.identification.selection import Candidate
+    from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.records import Record
 
 FloatArray = npt.NDArray[np.float64]

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 if TYPE_CHECKING:
     from jackettwin.identification.picks import Pick
-    from jackettwin.identification.real_poles import RealPole
     from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
@@ -74,6 +73,35 @@ class ModalEstimate:
     unrefined: ModalEstimate | None = None
     cramer_rao_log_std: FloatArray | None = None
     mode_shape_unaligned: ComplexArray | None = None
+
+
+@dataclass(frozen=True)
+class RealPole:
+    """A relaxation exp(−a t).
+
+    Attributes
+    ----------
+    rate_rad_s : float
+        a = −λ [1/s]; a / 2π lies inside the band of the identification.
+    rate_std_rad_s : float
+    rate_interval_95 : (low, high)
+        On the logarithm of the rate.
+    mode_shape : (n_channels,) complex
+        In the units of the channels, 1 at the largest entry.
+    order_share : float
+        Share of the model orders in which it appears, from the first one on.
+    """
+
+    rate_rad_s: float
+    rate_std_rad_s: float
+    rate_interval_95: tuple[float, float]
+    mode_shape: ComplexArray
+    order_share: float
+
+    @property
+    def time_constant_s(self) -> float:
+        """1/a [s]."""
+        return 1.0 / self.rate_rad_s
 
 
 @dataclass(frozen=True)

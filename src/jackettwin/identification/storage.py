@@ -14,13 +14,13 @@ import numpy.typing as npt
 from jackettwin.identification.estimate import (
     Identification,
     ModalEstimate,
+    RealPole,
     Rejected,
     ResolvedSettings,
     Spectrum,
     Stabilisation,
 )
 from jackettwin.identification.picks import Pick, plain_picks
-from jackettwin.identification.real_poles import RealPole
 from jackettwin.records import Channel
 
 _ARRAYS = ("log_covariance", "mode_shape_std", "cramer_rao_log_std")

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.identification import likelihood
-from jackettwin.identification.periodogram import Periodogram, group_starts
-from jackettwin.identification.spectral_model import Parameters, coherent_pairs, expected
+from jackettwin.identification.maximum_likelihood import likelihood
+from jackettwin.identification.maximum_likelihood.periodogram import Periodogram, group_starts
+from jackettwin.identification.maximum_likelihood.spectral_model import Parameters, coherent_pairs, expected
 from jackettwin.records import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.identification import Identification, ModalEstimate, mac
-from jackettwin.identification.convergence import Step
+from jackettwin.identification.many_records.convergence import Step
 from jackettwin.report import style
 from jackettwin.report.numbers import words
 

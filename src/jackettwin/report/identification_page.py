@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.identification import Identification
-from jackettwin.identification.spectral_fit import modal_fit
+from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
 from jackettwin.records.yaw import knows_yaw
 from jackettwin.report import figures_measured, figures_record, section_records
 from jackettwin.report import tables_records as tables

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from jackettwin.identification import FusedIdentification, FusedMode
-from jackettwin.identification.convergence import convergence
+from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.report.figures_likeness import interval_history
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words

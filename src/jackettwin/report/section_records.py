@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from jackettwin.identification import FusedMode, Identification, fuse
-from jackettwin.identification.convergence import convergence
-from jackettwin.identification.spectral_fit import modal_fit
+from jackettwin.identification.many_records.convergence import convergence
+from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
 from jackettwin.report import figures_identification, figures_likeness, figures_record
 from jackettwin.report import tables_records as tables
 from jackettwin.report.page import Block, Plot

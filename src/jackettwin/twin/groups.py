@@ -8,8 +8,8 @@ from math import floor
 from typing import Any
 
 from jackettwin.identification import FusedIdentification
-from jackettwin.identification.fusion import fused_records
-from jackettwin.identification.tracking import Followed
+from jackettwin.identification.many_records.fusion import fused_records
+from jackettwin.identification.many_records.tracking import Followed
 
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""

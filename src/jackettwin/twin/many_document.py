@@ -8,7 +8,7 @@ from typing import Any
 
 from jackettwin.files import Streamed
 from jackettwin.identification import FusedIdentification, FusedMode
-from jackettwin.identification.convergence import convergence
+from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.document import identification_document
 from jackettwin.twin.groups import Group

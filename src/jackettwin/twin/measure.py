@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from jackettwin.errors import located
 from jackettwin.identification import ModalEstimate
-from jackettwin.identification.fusion import average
-from jackettwin.identification.sightings import sightings as columns
+from jackettwin.identification.many_records.fusion import average
+from jackettwin.identification.many_records.sightings import sightings as columns
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix

@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.errors import InputError, located
 from jackettwin.identification import Identification, IdentificationSettings, identify
 from jackettwin.identification.comparison import Comparison, compare_methods
-from jackettwin.identification.pairs import along_axes
+from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions

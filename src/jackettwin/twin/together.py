@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from jackettwin.errors import InputError
 from jackettwin.identification import FusedIdentification
-from jackettwin.identification.fusion import fused_records
-from jackettwin.identification.tracking import follow
+from jackettwin.identification.many_records.fusion import fused_records
+from jackettwin.identification.many_records.tracking import follow
 from jackettwin.twin.groups import Group, group_key, grouped
 from jackettwin.twin.many import Batch
 

@@ -1,0 +1,256 @@
+r"""One estimate from many records.
+
+Modes are tracked across records by shape and frequency, then averaged. Weights hold the uncertainty of each
+record and the scatter between records (random effects; DerSimonian & Laird 1986):
+
+.. math:: \hat\theta = \frac{\sum w_r \theta_r}{\sum w_r}, \quad w_r = \frac{1}{s_r^2 + \tau^2}
+
+θ is ln f, and ζ itself: estimates of a record are unbiased in ζ, so their logarithms are not, and the mean
+of many records would inherit it. The variance s_r² is taken at the *fused* damping: an estimate that
+happens to be high also claims to be sharp, and weights of its own would pull the mean up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.many_records.setups import WEAK_TIE, tie
+from jackettwin.identification.many_records.tracking import Followed, Track, follow
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Iterable, Sequence
+
+    from jackettwin.identification.estimate import Identification
+    from jackettwin.identification.many_records.sightings import Sightings
+    from jackettwin.records import Channel
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+FEWEST_SHARE = 0.3
+"""A fused mode must be found in this share of the records."""
+
+
+@dataclass(frozen=True)
+class Average:
+    """Frequency and damping of one mode over records.
+
+    Attributes
+    ----------
+    log_std : (of ln f, of ln ζ)
+        Of the mean.
+    scatter : (of ln f, of ln ζ)
+        Between records, beyond their own uncertainty.
+    correlation : float
+        Of ln f and ln ζ of the mean; what scatters between records counts as independent.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    log_std: tuple[float, float]
+    scatter: tuple[float, float]
+    correlation: float = 0.0
+
+    @property
+    def log_covariance(self) -> FloatArray:
+        """Covariance (2, 2) of (ln f, ln ζ)."""
+        std = np.array(self.log_std)
+        return np.asarray(np.outer(std, std) * np.array([[1.0, self.correlation], [self.correlation, 1.0]]))
+
+    @property
+    def frequency_interval_95(self) -> tuple[float, float]:
+        """On the logarithm of f."""
+        return _interval(self.frequency_hz, self.log_std[0])
+
+    @property
+    def damping_ratio_interval_95(self) -> tuple[float, float]:
+        """On the logarithm of ζ."""
+        return _interval(self.damping_ratio, self.log_std[1])
+
+
+@dataclass(frozen=True)
+class FusedMode:
+    """A mode followed through several records.
+
+    Attributes
+    ----------
+    frequency_hz, damping_ratio : float
+    frequency_std_hz, damping_ratio_std : float
+        Of the mean.
+    frequency_interval_95, damping_ratio_interval_95 : (low, high)
+    log_covariance : (2, 2)
+        Of (ln f, ln ζ).
+    mode_shape : (n_channels,) complex
+        NaN at a channel that no record with this mode has.
+    scatter_frequency, scatter_damping_ratio : float
+        Between-record standard deviations of f and ζ, relative, beyond what the records' own uncertainty
+        explains: wind, tide and temperature show here.
+    sightings : Sightings
+        The mode in each record that holds it.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    frequency_std_hz: float
+    damping_ratio_std: float
+    frequency_interval_95: tuple[float, float]
+    damping_ratio_interval_95: tuple[float, float]
+    log_covariance: FloatArray
+    mode_shape: ComplexArray
+    scatter_frequency: float
+    scatter_damping_ratio: float
+    sightings: Sightings
+
+
+@dataclass(frozen=True)
+class FusedIdentification:
+    """Modes of many records, sorted by frequency."""
+
+    records: tuple[str, ...]
+    channels: tuple[Channel, ...]
+    modes: tuple[FusedMode, ...]
+    duration_s: float
+    warnings: tuple[str, ...]
+
+
+def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
+    """Fuse the modes of several records, each met once and not kept.
+
+    Modes are followed in the order of the records (``tracking``); shapes hold every channel (``setups``).
+
+    Raises
+    ------
+    InputError
+        If there is no record, records share no channel, or one name stands for different sensors.
+    """
+    return fused_records(follow((found, None) for found in identifications))
+
+
+def fused_records(followed: Followed, key: Hashable = None) -> FusedIdentification:
+    """Return the modes of records that were followed, over those of one key; over all if it is None.
+
+    A mode counts if it is found in ``FEWEST_SHARE`` of them.
+    """
+    mine = np.array([key is None or own == key for own in followed.keys])
+    keys = dict.fromkeys(followed.keys if key is None else [key])
+    at_least = max(1, round(FEWEST_SHARE * int(mine.sum())))
+    parts = ((track, track.sightings()) for track in followed.tracks)
+    kept = [(track, seen.at(mine[seen.record])) for track, seen in parts]
+    modes = [_fused_mode(track, seen, keys, followed) for track, seen in kept if len(seen) >= at_least]
+    return FusedIdentification(
+        records=tuple(name for name, own in zip(followed.records, mine, strict=True) if own),
+        channels=followed.channels,
+        modes=tuple(sorted(modes, key=lambda mode: mode.frequency_hz)),
+        duration_s=float(followed.duration_s[mine].sum()),
+        warnings=_warnings(followed, modes),
+    )
+
+
+def random_effects(values: FloatArray, variances: FloatArray) -> tuple[float, float, float]:
+    """Return mean, variance of the mean and between-record variance τ² of independent estimates.
+
+    DerSimonian & Laird 1986; the variance of the mean follows Hartung & Knapp 2001, which keeps its
+    coverage with few records and is never taken below the fixed-effects variance.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> mean, variance, between = random_effects(np.array([1.0, 1.2]), np.array([0.02, 0.02]))
+    >>> round(mean, 6), round(variance, 6), round(between, 6)
+    (1.1, 0.01, 0.0)
+    """
+    n = len(values)
+    weight = 1.0 / variances
+    if n == 1:
+        return float(values[0]), float(variances[0]), 0.0
+    mean = weight @ values / weight.sum()
+    excess = weight @ (values - mean) ** 2 - (n - 1)
+    between = max(0.0, float(excess / (weight.sum() - weight @ weight / weight.sum())))
+    weight = 1.0 / (variances + between)
+    mean = weight @ values / weight.sum()
+    fixed = 1.0 / weight.sum()
+    spread = weight @ (values - mean) ** 2 / (n - 1) * fixed
+    return float(mean), float(max(spread, fixed)), between
+
+
+def average(seen: Sightings) -> Average:
+    """Return the mean of one mode over records: ln f and ζ, with random effects.
+
+    A record that does not know its variance takes the long-data limits.
+    """
+    zeta = float(np.mean(seen.damping_ratio))
+    for _ in range(3):
+        relative = random_effects(seen.damping_ratio / zeta, _variances(seen, 1, zeta))
+        zeta *= relative[0]
+    own_f, own = (_variances(seen, which, zeta) for which in (0, 1))
+    mean_f, variance_f, between_f = random_effects(np.log(seen.frequency_hz), own_f)
+    within = 1.0 / np.sqrt(np.sum(1.0 / own_f) * np.sum(1.0 / own))
+    return Average(
+        frequency_hz=float(np.exp(mean_f)),
+        damping_ratio=zeta,
+        log_std=(float(np.sqrt(variance_f)), float(np.sqrt(relative[1]))),
+        scatter=(float(np.sqrt(between_f)), float(np.sqrt(relative[2]))),
+        correlation=_correlation(seen) * float(within / np.sqrt(variance_f * relative[1])),
+    )
+
+
+def _correlation(seen: Sightings) -> float:
+    """Return the correlation of ln f and ln ζ inside a record: the median over those that state it."""
+    c = seen.log_covariance
+    known = (c[:, 0, 1] / np.sqrt(c[:, 0, 0] * c[:, 1, 1]))[np.isfinite(c[:, 0, 0])]
+    return float(np.median(known)) if len(known) else 0.0
+
+
+def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followed: Followed) -> FusedMode:
+    mean = average(seen)
+    f, zeta = mean.frequency_hz, mean.damping_ratio
+    return FusedMode(
+        frequency_hz=f,
+        damping_ratio=zeta,
+        frequency_std_hz=float(f * mean.log_std[0]),
+        damping_ratio_std=float(zeta * mean.log_std[1]),
+        frequency_interval_95=mean.frequency_interval_95,
+        damping_ratio_interval_95=mean.damping_ratio_interval_95,
+        log_covariance=mean.log_covariance,
+        mode_shape=track.shape(keys, len(followed.channels)),
+        scatter_frequency=mean.scatter[0],
+        scatter_damping_ratio=mean.scatter[1],
+        sightings=seen,
+    )
+
+
+def _interval(value: float, log_std: float) -> tuple[float, float]:
+    return value * float(np.exp(-1.96 * log_std)), value * float(np.exp(1.96 * log_std))
+
+
+def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
+    """Return the variance of ln f (0) or ln ζ (1) of each record, were its damping the common one.
+
+    The information limit at the common damping, inflated by the median ratio of claimed variance to limit.
+    """
+    cycles = 2.0 * np.pi * seen.frequency_hz * seen.duration_s
+    limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
+    own_zeta = seen.damping_ratio
+    own_limit = own_zeta / cycles if which == 0 else 1.0 / (own_zeta * cycles)
+    claimed = seen.log_covariance[:, which, which] / own_limit
+    claimed = claimed[np.isfinite(claimed)]
+    return np.asarray(limit * (np.median(claimed) if len(claimed) else 1.0))
+
+
+def _warnings(followed: Followed, modes: Sequence[FusedMode]) -> tuple[str, ...]:
+    """Say so if records hold different channels, and where those they share hardly move."""
+    names = [c.name for c in followed.channels]
+    if len(followed.shared) == len(names):
+        return ()
+    if not followed.shared:
+        return ("not every record has every channel, and none is in all: shapes are tied record by record",)
+    at = np.array([names.index(name) for name in followed.shared], dtype=np.int64)
+    loose = [mode.frequency_hz for mode in modes if tie(mode.mode_shape, at) < WEAK_TIE]
+    return (
+        f"not every record has every channel: shapes are tied by {', '.join(followed.shared)}",
+        *(f"{f:.4g} Hz: the shared sensors hardly move; the parts of the shape may not fit" for f in loose),
+    )

@@ -1,0 +1,1 @@
+"""Maximum-likelihood refinement of selected modes on the periodogram."""

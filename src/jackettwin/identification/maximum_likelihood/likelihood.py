@@ -1,0 +1,305 @@
+r"""Maximum-likelihood refinement of all modes of a band together (Bayesian FFT identification).
+
+The Whittle log-likelihood of the spectral matrices :math:`\hat S_k` of groups of :math:`n_k` lines,
+
+.. math:: \ell = -\sum_k n_k\left[\ln\det E_k + \mathrm{tr}\,E_k^{-1}\hat S_k\right]
+
+is climbed by damped Fisher scoring. A known share of the local median spectrum is added to model **and**
+data, which keeps E regular where the record has less noise than the model can follow; the covariance of
+the estimate is therefore the sandwich.
+
+Whittle 1953; Au 2011 and 2017 (Bayesian FFT, its uncertainty laws); Sykulski et al. 2019 (de-biased
+Whittle likelihood).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
+from jackettwin.identification.maximum_likelihood.spectral_model import (
+    Expected,
+    Parameters,
+    coherent_pairs,
+    derivative_factors,
+    expected,
+    gram,
+)
+
+if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+QUIET = 0.3
+"""Noise at the start, as a share of the lowest local median."""
+COHERENCE_PRIOR = 1.0
+"""Weight of ln det Γ: coherences stay inside the unit circle."""
+COLOUR_PRIOR = 3.0
+"""Standard deviation of the exponents of the force spectra about white."""
+NOISE_PRIOR = (2.0, 1.0)
+"""Standard deviations of the logarithm of the noise about its start, and of its exponent."""
+COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
+"""Exponents of the force spectrum tried at the start."""
+MAX_ITERATIONS = 40
+TOLERANCE = 0.02
+"""Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
+LEAST_GAIN = 0.01
+"""… or the log-likelihood gains less than this."""
+KEPT_SHARE = 1e-4
+"""Share of the added power kept in the Cramér-Rao bound, against rounding."""
+LEAST_SHARE = 1e-12
+"""Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
+across, and the inverse must exist."""
+FIT_BLOCKS = 40
+"""Blocks of lines over which the misfit is summed."""
+ZETA_RANGE = (1e-5, 0.5)
+HELD = 1e-4
+"""Standard deviation of the prior on ln f and ln ζ of a background, which are no parameters."""
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Centre and precision of the Gaussian prior of every parameter."""
+
+    centre: FloatArray
+    precision: FloatArray
+
+
+@dataclass(frozen=True)
+class Climb:
+    """Where a climb ended."""
+
+    parameters: Parameters
+    value: float
+    converged: bool
+
+
+def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Climb:
+    """Climb to the maximum of the posterior by damped Fisher scoring, in at most so many steps."""
+    prior = prior_of(data, p)
+    value, lift = objective(data, prior, p), 1e-3
+    if not np.isfinite(value):
+        return Climb(p, value, False)
+    for _ in range(most):
+        score, fisher = scoring(data, prior, p)
+        trial_value = -np.inf
+        while trial_value < value and lift < 1e7:
+            step = _shortened(p, _solved(fisher, score, lift))
+            trial = p.moved(step)
+            trial_value = objective(data, prior, trial)
+            lift *= 6.0
+        if trial_value < value:
+            return Climb(p, value, False)
+        n = 2 * len(p.log_f)
+        small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
+        gain = trial_value - value
+        p, value, lift = trial, trial_value, max(lift / 60.0, 1e-6)
+        if bool(np.all(small < TOLERANCE)) or gain < LEAST_GAIN:
+            return Climb(p, value, True)
+    return Climb(p, value, False)
+
+
+def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray) -> Parameters:
+    """Return first parameters: shapes scaled to the power of their peaks, incoherent white forces."""
+    zeta = np.clip(zeta, 1e-3, 0.3)
+    scaled = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
+    for i, phi in enumerate(scaled):
+        away = np.abs(data.omega / (2.0 * np.pi) - f[i])
+        near = away <= max(1.5 * f[i] * zeta[i], 1.5 / data.duration_s, float(away.min()))
+        power = np.real(phi @ data.density[near] @ phi)
+        lam = poles(f[i : i + 1], zeta[i : i + 1])
+        response = kernel(data.omega[near], data.duration_s, lam, lam)[:, 0, 0].real
+        scaled[i] = phi * np.sqrt(max(np.mean(power / response), 1e-30))
+    n = len(f)
+    pairs = coherent_pairs(np.log(f))
+    none = np.zeros(len(pairs), dtype=complex)
+    noise = np.stack([_noise_level(data), np.zeros(data.floor.shape[1])])
+    first = [
+        Parameters(np.log(f), np.log(zeta), np.full(n, colour), scaled, none, noise, pairs)
+        for colour in COLOURS
+    ]
+    return max(first, key=lambda p: objective(data, prior_of(data, p), p))
+
+
+def _noise_level(data: Periodogram) -> FloatArray:
+    return np.asarray(np.log(QUIET * data.floor.min(axis=0)))
+
+
+def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray]:
+    r"""Return the sandwich covariance of the parameters and their Cramér-Rao standard deviations.
+
+    .. math:: F^{-1} V F^{-1}, \quad V_{pq} = \sum_k n_k \mathrm{tr}(E^{-1}\partial_p E\,E^{-1}E_0\,
+              E^{-1}\partial_q E\,E^{-1}E_0)
+
+    with :math:`E_0` the model without the dither, which does not scatter; the bound is that of :math:`E_0`.
+    """
+    prior = prior_of(data, p)
+    model = expected(data, p)
+    white = _inverse_root(model.matrix)
+    share = np.einsum("kab,kb,kcb->kac", white, data.dither, white.conj(), optimize=True)
+    # E0 whitened is R Rᴴ, singular but for the noise; V is the inner product of Rᴴ G R
+    values, vectors = np.linalg.eigh(np.eye(white.shape[1]) - share)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+    middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
+    bread = _inverse(scoring(data, prior, p)[1])
+    bare = expected(data, p, KEPT_SHARE)
+    clear = _information(data, p, bare, _inverse_root(bare.matrix))
+    clear[np.diag_indices(len(clear))] += prior.precision
+    _add_coherence_prior(p, np.zeros(len(clear)), clear)
+    return np.asarray(bread @ middle @ bread), np.sqrt(np.diag(_inverse(clear)))
+
+
+def _inverse(information: FloatArray) -> FloatArray:
+    unit = 1.0 / np.sqrt(np.diag(information))
+    scaled = information * np.outer(unit, unit) + LEAST_SHARE * np.eye(len(unit))
+    return np.asarray(linalg.inv(scaled) * np.outer(unit, unit))
+
+
+def _information(data: Periodogram, p: Parameters, model: Expected, white: ComplexArray) -> FloatArray:
+    """Return Σ_k n_k ⟨G_p, G_q⟩ of the derivatives of E between two factors ``white``."""
+    u, w = derivative_factors(data, p, model, white)
+    return gram(np.asarray(u * np.sqrt(data.count)), w)[1]
+
+
+def prior_of(data: Periodogram, p: Parameters) -> Prior:
+    """Return the prior: weak on colours and noise, none on the modes, backgrounds held."""
+    level = _noise_level(data)
+    blank = p.moved(-p.vector)
+    held = (np.arange(len(p.log_f)) < p.background).astype(float)
+    centre = replace(
+        blank,
+        log_f=p.log_f * held,
+        log_zeta=p.log_zeta * held,
+        noise=np.stack([level, np.zeros_like(level)]),
+    )
+    std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)
+    precision = replace(
+        blank,
+        log_f=held * HELD**-2,
+        log_zeta=held * HELD**-2,
+        colour=np.full(len(p.colour), COLOUR_PRIOR**-2),
+        noise=std**-2.0,
+    )
+    return Prior(centre.vector, precision.vector)
+
+
+def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
+    """Return the log-posterior up to a constant; −∞ outside the admissible region."""
+    low, high = np.log(ZETA_RANGE)
+    if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
+        return -np.inf
+    try:
+        root = np.linalg.cholesky(p.gamma)
+        with np.errstate(over="ignore", invalid="ignore"):
+            factor = np.linalg.cholesky(expected(data, p).matrix)
+    except np.linalg.LinAlgError:
+        return -np.inf
+    log_det = 2.0 * np.log(np.einsum("kaa->ka", factor).real).sum(axis=1)
+    white = np.linalg.inv(factor)
+    trace = np.einsum("kab,kbc,kac->k", white, _dithered(data), white.conj(), optimize=True).real
+    value = -np.sum(data.count * (log_det + trace))
+    value -= 0.5 * np.sum(prior.precision * (p.vector - prior.centre) ** 2)
+    return float(value + COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real)))
+
+
+def scoring(data: Periodogram, prior: Prior, p: Parameters) -> tuple[FloatArray, FloatArray]:
+    """Return the score and the Fisher information, prior included."""
+    model = expected(data, p)
+    white, misfit = _whitened(data, model)
+    u, w = derivative_factors(data, p, model, white)
+    weight = np.sqrt(data.count)
+    score, fisher = gram(np.asarray(u * weight), w, np.asarray(misfit.transpose(1, 2, 0) * weight))
+    score -= prior.precision * (p.vector - prior.centre)
+    fisher[np.diag_indices(len(score))] += prior.precision
+    _add_coherence_prior(p, score, fisher)
+    return score, fisher
+
+
+def _add_coherence_prior(p: Parameters, score: FloatArray, fisher: FloatArray) -> None:
+    """Add slope and curvature of ln det Γ."""
+    i, j = p.pairs.T
+    if not len(i):
+        return
+    inverse = np.linalg.inv(p.gamma)
+    first = 3 * len(p.log_f) + p.shapes.size
+    at = slice(first, first + 2 * len(i))
+    slope = inverse[j, i]
+    score[at] += 2.0 * COHERENCE_PRIOR * np.concatenate([slope.real, -slope.imag])
+    # tr(Γ⁻¹ dΓ_p Γ⁻¹ dΓ_q), dΓ = e_i e_jᵀ d + h.c.
+    a = inverse[np.ix_(j, i)]
+    b = inverse[np.ix_(j, j)] * inverse[np.ix_(i, i)].T
+    direct, cross = a * a.T, b
+    rr = 2.0 * (direct + cross).real
+    ii = 2.0 * (cross - direct).real
+    ri = 2.0 * (-direct.imag + cross.imag)
+    fisher[at, at] += COHERENCE_PRIOR * np.block([[rr, ri], [ri.T, ii]])
+
+
+def lack_of_fit(data: Periodogram, p: Parameters) -> float:
+    r"""Return the mean square of the whitened misfit of blocks of lines over its expectation.
+
+    .. math:: \frac1B\sum_b \frac{\|\sum_{k\in b} n_k(W_k\hat S_kW_k^H - I)\|_F^2}
+              {\sum_{k\in b} n_k (\mathrm{tr}\,W_kE_{0k}W_k^H)^2}
+
+    Near 1 (a little below, as parameters were fitted) where the record is what the model says.
+    """
+    white, misfit = _whitened(data, expected(data, p))
+    share = np.einsum("kab,kb,kab->k", white, data.dither, white.conj(), optimize=True).real
+    variance = data.count * (white.shape[1] - share) ** 2
+    passed = np.cumsum(data.count)
+    first = np.flatnonzero(np.diff(np.ceil(passed / passed[-1] * FIT_BLOCKS), prepend=0.0))
+    total = np.add.reduceat(data.count[:, None, None] * misfit, first, axis=0)
+    size = np.sum(np.abs(total) ** 2, axis=(1, 2))
+    return float(np.mean(size / np.add.reduceat(variance, first)))
+
+
+def _whitened(data: Periodogram, model: Expected) -> tuple[ComplexArray, ComplexArray]:
+    """Return W = (chol E)⁻¹ and the misfit W Ŝ Wᴴ − I."""
+    white = _inverse_root(model.matrix)
+    misfit = white @ _dithered(data) @ white.conj().transpose(0, 2, 1)
+    return white, np.asarray(misfit - np.eye(white.shape[1]))
+
+
+def _inverse_root(matrices: ComplexArray) -> ComplexArray:
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(matrices)))
+
+
+def _dithered(data: Periodogram) -> ComplexArray:
+    out = data.density.copy()
+    channel = np.arange(out.shape[1])
+    out[:, channel, channel] += data.dither
+    return out
+
+
+def _shortened(p: Parameters, step: FloatArray) -> FloatArray:
+    """Shorten a step that leaves the neighbourhood in which the model is nearly linear."""
+    n, n_pairs = len(p.log_f), len(p.coherence)
+    size = np.linalg.norm(p.shapes, axis=1, keepdims=True)
+    reach = np.concatenate(
+        [
+            0.5 * np.exp(p.log_zeta),
+            np.full(n, 0.5),
+            np.full(n, 2.0),
+            np.broadcast_to(0.5 * size, p.shapes.shape).ravel(),
+            np.full(2 * n_pairs, 1.0),
+            np.full(p.noise.size, 2.0),
+        ]
+    )
+    return np.asarray(step / max(1.0, float(np.max(np.abs(step) / reach))))
+
+
+def _solved(fisher: FloatArray, score: FloatArray, lift: float) -> FloatArray:
+    """Solve the damped scoring equation, every parameter in units of its own information."""
+    unit = 1.0 / np.sqrt(np.diag(fisher))
+    scaled = fisher * np.outer(unit, unit) + lift * np.eye(len(unit))
+    try:
+        return np.asarray(unit * linalg.solve(scaled, unit * score, assume_a="pos"))
+    except linalg.LinAlgError:
+        return np.asarray(unit * linalg.lstsq(scaled, unit * score)[0])

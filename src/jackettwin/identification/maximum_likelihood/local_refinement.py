@@ -1,0 +1,111 @@
+"""Refinement in narrow bands, where the spectrum of the whole band is not that of the model.
+
+Over a wide band the model asks that force spectra be powers of frequency and that no mode outside act in it.
+Turbulence on a rotor keeps neither. Around one group of close modes every smooth spectrum is a power of
+frequency, and the modes outside are a background (``background.py``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.maximum_likelihood.refinement import Refined, refine
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+REACH = 1.35
+"""Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
+
+DITHER_SHARES = (3.0, 10.0)
+"""Share of the local median spectrum added; the next one where a fit with the one before does not describe
+the lines. One force moves all channels, and between the peaks their ratios would fix the damping more sharply
+than the record allows, if the model were exact; the more is added, the less they count."""
+
+FEW_LINES = 1.5
+"""The covariance is multiplied by this: a narrow band holds few lines for its many parameters."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Neighbouring modes, the candidates among them, and the band they are fitted in.
+
+    Attributes
+    ----------
+    members : (n_candidates,) bool
+    band_hz : (low, high)
+    """
+
+    members: BoolArray
+    band_hz: tuple[float, float]
+
+
+def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, float]) -> list[Group]:
+    """Part the sure candidates where neighbours are farther apart than the reach.
+
+    Doubtful ones join the group in whose band they lie. Bands of neighbouring groups meet halfway.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> f = np.array([0.18, 0.19, 0.7, 0.72])
+    >>> [g.members.sum() for g in groups(f, np.array([True, True, True, False]), (0.1, 2.0))]
+    [np.int64(2), np.int64(2)]
+    """
+    f = np.sort(frequency_hz[sure])
+    parts = np.split(f, np.flatnonzero(f[1:] / f[:-1] > REACH) + 1)
+    low, high = (np.array([edge(part) for part in parts]) for edge in (np.min, np.max))
+    middle = np.sqrt(high[:-1] * low[1:])
+    lower = np.maximum(low / REACH, np.append(band_hz[0], middle))
+    upper = np.minimum(high * REACH, np.append(middle, band_hz[1]))
+    return [
+        Group((frequency_hz > a) & (frequency_hz < b), (float(a), float(b)))
+        for a, b in zip(lower, upper, strict=True)
+    ]
+
+
+def refine_group(
+    y: FloatArray,
+    sample_rate_hz: float,
+    group: Group,
+    *,
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    shapes: FloatArray,
+    sure: BoolArray,
+    derivatives: Sequence[int],
+    avoid_hz: Sequence[tuple[float, float]] = (),
+    dither_share: float = DITHER_SHARES[0],
+) -> Refined:
+    """Fit one group; parameters as of ``refine``, candidates counted as there.
+
+    What the lack of fit exceeds 1 by multiplies the covariance.
+    """
+    among = np.flatnonzero(group.members)
+    fit = refine(
+        y,
+        sample_rate_hz,
+        group.band_hz,
+        frequency_hz=frequency_hz[among],
+        damping_ratio=damping_ratio[among],
+        shapes=shapes[among],
+        sure=sure[among],
+        derivatives=derivatives,
+        avoid_hz=avoid_hz,
+        background=True,
+        local_dither_share=dither_share,
+    )
+    wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
+    return replace(
+        fit,
+        candidate=among[fit.candidate],
+        covariance=wider * fit.covariance,
+        shape_covariance=wider * fit.shape_covariance,
+    )

@@ -1,0 +1,137 @@
+r"""The spectrum that the identified modes would have, to lay over the measured one.
+
+Frequencies, damping and shapes are taken as identified; the densities S of white modal forces and N of noise
+are the most likely ones by the lines near the modes, found by minorisation (Zhou, Hu, Zhou & Lange 2019):
+
+.. math:: E(f) = \sum_{ij} S_{ij}\, \phi_i \phi_j^H\, \overline{h_i h_j^*} + N, \quad
+          h_i = \frac{-f^2}{f_i^2 - f^2 + 2 i \zeta_i f_i f}
+
+The bar is the average over the lines that Welch's window mixes: a light mode is as blunt in E as it is in the
+measured spectrum. What E misses, no mode explains.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.estimate import Spectrum
+from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
+from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.preparation.spectra import SEGMENTS, spectral_matrix
+from jackettwin.identification.settings import IdentificationSettings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.estimate import Identification, ModalEstimate
+    from jackettwin.records import Record
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+REACH_LINES = 2.0
+"""Lines to either side that a Hann window mixes in …"""
+SAMPLES = 81
+"""… and the number of points at which the average is taken."""
+NEAR, NEAR_LINES = 3.0, 2.0
+"""Half bandwidths, and lines, to either side of a mode at which S and N are fitted."""
+KNOWN = 0.3
+"""Share of the measured densities added to both sides: else the smallest singular values decide alone."""
+ROUNDS = 100
+LEAST_NOISE = 1e-3
+"""Share of a channel's mean density from which the noise starts."""
+
+
+def modal_fit(record: Record, found: Identification) -> Spectrum | None:
+    """Return the fitted spectrum in the band, to compare with ``found.spectrum``; None without modes.
+
+    Parameters
+    ----------
+    record : Record
+        The one the modes were identified from.
+    """
+    if not found.modes:
+        return None
+    s = found.settings
+    settings = IdentificationSettings(
+        lowest_frequency_hz=s.lowest_frequency_hz,
+        highest_frequency_hz=s.highest_frequency_hz,
+        sample_rate_hz=s.sample_rate_hz,
+    )
+    ready = prepare(record, settings)
+    length = max(ready.y.shape[1] // SEGMENTS, 16)
+    f, measured = spectral_matrix(ready.y, s.sample_rate_hz, length)
+    band = (f > s.lowest_frequency_hz) & (f < s.highest_frequency_hz)
+    derivatives = np.array([DERIVATIVES[c.quantity] for c in ready.channels])
+    motion = _motion(found.modes, f[band], f[1], derivatives, ready.scale)
+    near = _near(found.modes, f[band], f[1])
+    fitted = _fitted(measured[band], motion, near)
+    density = np.einsum("faa->af", fitted).real * ready.scale[:, None] ** 2
+    singular = np.linalg.svd(fitted, compute_uv=False).T.astype(np.float64)
+    return Spectrum(f[band], np.asarray(density), singular)
+
+
+def _motion(
+    modes: Sequence[ModalEstimate], f: FloatArray, step: float, derivatives: FloatArray, scale: FloatArray
+) -> ComplexArray:
+    """Return the motion of the channels per unit modal force around each line.
+
+    Returns
+    -------
+    (n_frequencies, SAMPLES, n_modes, n_channels), times the root of the window's weight of each point
+    """
+    bins = np.linspace(-REACH_LINES, REACH_LINES, SAMPLES)
+    weight = np.sinc(bins) ** 2 / np.where(np.abs(np.abs(bins) - 1.0) < 1e-9, np.inf, 1.0 - bins**2) ** 2
+    weight[np.abs(np.abs(bins) - 1.0) < 1e-9] = 0.25
+    fine = np.maximum(f[:, None] + step * bins, 0.1 * step)[:, :, None]
+    f_i = np.array([m.frequency_hz for m in modes])
+    zeta = np.array([m.damping_ratio for m in modes])
+    h = -(fine**2) / (f_i**2 - fine**2 + 2j * zeta * f_i * fine)
+    shapes = np.array([m.mode_shape for m in modes]) / scale
+    of_quantity = (f_i / fine)[..., None] ** derivatives
+    return np.asarray(h[..., None] * shapes * of_quantity * np.sqrt(weight / weight.sum())[:, None, None])
+
+
+def _near(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> npt.NDArray[np.bool_]:
+    """Return the lines near a mode: there the modes are, elsewhere much else."""
+    reach = np.array([NEAR * m.damping_ratio * m.frequency_hz + NEAR_LINES * step for m in modes])
+    return np.asarray((np.abs(f[:, None] - [m.frequency_hz for m in modes]) < reach).any(axis=1))
+
+
+def _fitted(measured: ComplexArray, motion: ComplexArray, near: npt.NDArray[np.bool_]) -> ComplexArray:
+    """Return E at the S and N most likely by the lines near the modes; every round raises the likelihood."""
+    everywhere = np.einsum("fsia,fsjb->ijfab", motion, motion.conj(), optimize=True)
+    measured, products = measured[near], everywhere[:, :, near]
+    known = KNOWN * np.einsum("faa->fa", measured).real[:, :, None] * np.eye(measured.shape[1])
+    power = np.einsum("faa->f", measured).real
+    force = np.diag(power.max() / np.einsum("iifaa->if", products).real.max(axis=1)).astype(complex)
+    noise = LEAST_NOISE * np.einsum("faa->a", measured).real / len(measured)
+    fitted = _spectrum(force, noise, products) + known
+    for _ in range(ROUNDS):
+        inverse = np.linalg.inv(fitted)
+        twice = inverse @ (measured + known) @ inverse
+        gain = np.einsum("fba,ijfab->ji", twice, products, optimize=True)
+        loss = np.einsum("fba,ijfab->ji", inverse, products, optimize=True)
+        force = _middle(loss, force @ gain @ force)
+        noise = noise * np.sqrt(np.einsum("faa->a", twice).real / np.einsum("faa->a", inverse).real)
+        fitted = _spectrum(force, noise, products) + known
+    return _spectrum(force, noise, everywhere)
+
+
+def _spectrum(force: ComplexArray, noise: FloatArray, products: ComplexArray) -> ComplexArray:
+    return np.asarray(np.einsum("ij,ijfab->fab", force, products, optimize=True) + np.diag(noise))
+
+
+def _middle(b: ComplexArray, c: ComplexArray) -> ComplexArray:
+    """Return the positive semi-definite X with X B X = C."""
+    root = _root(b)
+    inverse = np.linalg.inv(root)
+    return np.asarray(inverse @ _root(root @ c @ root) @ inverse)
+
+
+def _root(matrix: ComplexArray) -> ComplexArray:
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.conj().T))
+    return np.asarray((vectors * np.sqrt(np.maximum(values, 1e-30 * values[-1]))) @ vectors.conj().T)

@@ -1,0 +1,265 @@
+r"""Spectral matrix of modes of real shapes, driven by coloured forces, with sensor noise.
+
+At a group k of Fourier lines
+
+.. math:: E_k = \Phi^T\,(\Gamma\circ K_k\circ c_k c_k^T)\,\Phi + N_k, \qquad
+          c_{ki} = (f_k/f_i)^{-\alpha_i/2}, \quad N_k = \mathrm{diag}\,e^{a + b\ln(f_k/f_0)}
+
+with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces, K the
+closed-form expected periodogram of unit forces (``modal_spectrum.kernel``: no bias from the finite record),
+α the exponents of the force spectra. Every parameter changes E by a matrix :math:`u w^H + w u^H`, of
+which all derivatives are made.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import blas
+
+from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
+
+if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
+
+MOST_PAIRS = 91
+"""Coherences fitted at most: those of all pairs of fourteen modes."""
+STEP = 1e-5
+"""Relative step of the central differences of the kernel, whose error is its square."""
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of the spectral model; ``vector`` holds them in this order.
+
+    Attributes
+    ----------
+    log_f, log_zeta, colour : (n_modes,)
+    shapes : (n_modes, n_channels)
+        Real, scaled by the root of the force density at the mode's frequency.
+    coherence : (n_pairs,) complex
+        Of the modal forces.
+    noise : (2, n_channels)
+        Logarithm of the noise density at the middle of the band, and its exponent.
+    pairs : (n_pairs, 2) int
+        Modes i < j whose forces may be coherent; not a parameter.
+    background : int
+        So many of the first modes are backgrounds: far below the band, so that they follow their force.
+        They stand for the modes outside the band.
+    """
+
+    log_f: FloatArray
+    log_zeta: FloatArray
+    colour: FloatArray
+    shapes: FloatArray
+    coherence: ComplexArray
+    noise: FloatArray
+    pairs: IntArray
+    background: int = 0
+
+    @cached_property
+    def gamma(self) -> ComplexArray:
+        """Hermitian matrix of the coherences, (n_modes, n_modes)."""
+        out = np.eye(len(self.log_f), dtype=complex)
+        i, j = self.pairs.T
+        out[i, j], out[j, i] = self.coherence, self.coherence.conj()
+        return out
+
+    @property
+    def vector(self) -> FloatArray:
+        """All parameters, (n_parameters,)."""
+        modal = (self.log_f, self.log_zeta, self.colour, self.shapes)
+        rest = (self.coherence.real, self.coherence.imag, self.noise)
+        return np.concatenate([np.ravel(part) for part in (*modal, *rest)])
+
+    def moved(self, step: FloatArray) -> Parameters:
+        """Return the parameters after a step of their vector."""
+        n, n_pairs = len(self.log_f), len(self.coherence)
+        cuts = np.cumsum([n, n, n, self.shapes.size, n_pairs, n_pairs])
+        f, zeta, colour, shape, re, im, noise = np.split(self.vector + step, cuts)
+        return Parameters(
+            f,
+            zeta,
+            colour,
+            shape.reshape(self.shapes.shape),
+            re + 1j * im,
+            noise.reshape(self.noise.shape),
+            self.pairs,
+            self.background,
+        )
+
+    def without(self, mode: int) -> Parameters:
+        """Return the parameters of the other modes."""
+        kept = ~np.any(self.pairs == mode, axis=1)
+        f, zeta, colour = (np.delete(x, mode) for x in (self.log_f, self.log_zeta, self.colour))
+        pairs = self.pairs[kept]
+        return replace(
+            self,
+            log_f=f,
+            log_zeta=zeta,
+            colour=colour,
+            shapes=np.delete(self.shapes, mode, axis=0),
+            coherence=self.coherence[kept],
+            pairs=pairs - (pairs > mode),
+        )
+
+    def joined(self, log_f: float, log_zeta: float, shape: FloatArray) -> Parameters:
+        """Return the parameters with one more mode, last, driven independently of the others."""
+        n = len(self.log_f)
+        f = np.append(self.log_f, log_f)
+        pairs = coherent_pairs(f)
+        gamma = np.eye(n + 1, dtype=complex)
+        gamma[:n, :n] = self.gamma
+        return replace(
+            self,
+            log_f=f,
+            log_zeta=np.append(self.log_zeta, log_zeta),
+            colour=np.append(self.colour, np.median(self.colour[self.background :])),
+            shapes=np.vstack([self.shapes, shape]),
+            coherence=gamma[pairs[:, 0], pairs[:, 1]],
+            pairs=pairs,
+        )
+
+
+@dataclass(frozen=True)
+class Expected:
+    """The model at one set of parameters.
+
+    Attributes
+    ----------
+    coloured : (n_groups, n_modes, n_modes)
+        K with colours.
+    modal : (n_groups, n_modes, n_modes)
+        Γ∘K with colours.
+    matrix : (n_groups, n_channels, n_channels)
+        E.
+    """
+
+    coloured: ComplexArray
+    modal: ComplexArray
+    matrix: ComplexArray
+
+
+def coherent_pairs(log_f: FloatArray) -> IntArray:
+    """Return the pairs of modes whose forces may be coherent, (n_pairs, 2): the nearest neighbours."""
+    i, j = np.triu_indices(len(log_f), 1)
+    nearest = np.argsort(np.abs(log_f[i] - log_f[j]), kind="stable")[:MOST_PAIRS]
+    return np.stack([i, j], axis=1)[np.sort(nearest)].astype(np.int64)
+
+
+def log_distance(data: Periodogram, p: Parameters) -> FloatArray:
+    """Return ln(f_k/f_i), (n_groups, n_modes)."""
+    return np.asarray(np.log(data.omega / (2.0 * np.pi))[:, None] - p.log_f)
+
+
+def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
+    """Return N_k, (n_groups, n_channels)."""
+    return np.asarray(np.exp(p.noise[0] + p.noise[1] * data.log_position[:, None]))
+
+
+def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
+    """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
+    lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
+    colour = np.exp(-0.5 * p.colour * log_distance(data, p))
+    coloured = kernel(data.omega, data.duration_s, lam, lam) * (colour[:, :, None] * colour[:, None, :])
+    modal = p.gamma * coloured
+    matrix = p.shapes.T @ modal @ p.shapes
+    channel = np.arange(p.shapes.shape[1])
+    matrix[:, channel, channel] += noise_density(data, p) + share * data.dither
+    return Expected(np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
+
+
+def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[ComplexArray, ...]:
+    """Return the derivatives of Γ∘K by ln f, ln ζ and α of the mode of the first index."""
+    f, zeta = np.exp(p.log_f), np.exp(p.log_zeta)
+    lam = poles(f, zeta)
+    away = log_distance(data, p)
+    colour = np.exp(-0.5 * p.colour * away)
+    factor = p.gamma * (colour[:, :, None] * colour[:, None, :])
+
+    def slope(ahead: ComplexArray, behind: ComplexArray) -> ComplexArray:
+        change = kernel(data.omega, data.duration_s, ahead, lam)
+        change -= kernel(data.omega, data.duration_s, behind, lam)
+        return np.asarray(change * (factor / (2.0 * STEP)))
+
+    by_f = slope(poles(f * np.exp(STEP), zeta), poles(f * np.exp(-STEP), zeta))
+    by_f += (0.5 * p.colour)[:, None] * model.modal
+    by_zeta = slope(poles(f, zeta * np.exp(STEP)), poles(f, zeta * np.exp(-STEP)))
+    by_colour = model.modal * (-0.5 * away)[:, :, None]
+    return by_f, by_zeta, by_colour
+
+
+def derivative_factors(
+    data: Periodogram, p: Parameters, model: Expected, white: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return u and w of every parameter, multiplied by ``white`` (n_groups, n_channels, n_channels).
+
+    Returns
+    -------
+    u, w : (n_channels, n_parameters, n_groups)
+    """
+    n_modes, n_channels = p.shapes.shape
+    n_groups = len(data.omega)
+    i, j = p.pairs.T
+    shapes = white @ p.shapes.T
+    u, w = [], []
+    for slope in modal_slopes(data, p, model):
+        u.append(shapes)
+        w.append(shapes @ slope.conj().transpose(0, 2, 1))
+    rows = shapes @ model.modal.conj().transpose(0, 2, 1)
+    size = (n_groups, n_channels, n_modes, n_channels)
+    u.append(np.broadcast_to(white[:, :, None, :], size).reshape(n_groups, n_channels, -1))
+    w.append(np.broadcast_to(rows[:, :, :, None], size).reshape(n_groups, n_channels, -1))
+    across = shapes[:, :, j] * model.coloured[:, None, i, j].conj()
+    u += [shapes[:, :, i], shapes[:, :, i]]
+    w += [across, -1j * across]
+    half = 0.5 * noise_density(data, p)[:, None, :]
+    u += [white, white]
+    w += [white * half, white * half * data.log_position[:, None, None]]
+    return _stacked(u), _stacked(w)
+
+
+def gram(
+    u: ComplexArray, w: ComplexArray, misfit: ComplexArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    r"""Return the inner products of :math:`G_p = u_p w_p^H + w_p u_p^H` with a matrix and with each other.
+
+    One pair of channels at a time, so that nothing large is formed.
+
+    Parameters
+    ----------
+    u, w : (n_channels, n_parameters, n_groups)
+    misfit : (n_channels, n_channels, n_groups), optional
+        Hermitian.
+
+    Returns
+    -------
+    (n_parameters,), (n_parameters, n_parameters)
+    """
+    n_channels, n_parameters, _ = u.shape
+    first = np.zeros(n_parameters)
+    second = np.zeros((n_parameters, n_parameters), order="F")
+    w_conj, u_conj = w.conj(), u.conj()
+    for a in range(n_channels):
+        for b in range(a, n_channels):
+            g = u[a] * w_conj[b]
+            g += w[a] * u_conj[b]
+            flat = np.ascontiguousarray(g.real) if a == b else g.view(np.float64)
+            twice = 1.0 if a == b else 2.0
+            second = blas.dsyrk(twice, flat.T, beta=1.0, c=second, trans=1, lower=1, overwrite_c=1)
+            if misfit is not None:
+                m = np.ascontiguousarray(misfit[a, b])
+                first += twice * (flat @ (m.real if a == b else m.view(np.float64)))
+    return first, np.asarray(second + np.tril(second, -1).T)
+
+
+def _stacked(factors: list[ComplexArray]) -> ComplexArray:
+    return np.ascontiguousarray(np.concatenate(factors, axis=2).transpose(1, 2, 0))

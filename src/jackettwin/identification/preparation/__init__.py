@@ -1,0 +1,1 @@
+"""From a record to what every method starts from: band, gaps, components, spectra."""

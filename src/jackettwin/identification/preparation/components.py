@@ -1,0 +1,102 @@
+r"""Many channels by a few: what dozens of sensors say together fits into fewer signals.
+
+The work of a subspace method grows with the cube of the number of channels, its knowledge does not: a
+structure moves in few modes, and what the channels hold beyond is noise of their own. With the eigenvectors U
+of the channels' covariance that belong to the largest eigenvalues,
+
+.. math:: z(t) = U^T y(t), \qquad \phi = U \phi_z ,
+
+modes are identified from z, and their shapes hold all channels again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.mac import mpc, mpd_rad, normalised
+from jackettwin.identification.preparation.spectra import welch
+from jackettwin.records import Channel
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
+    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.settings import IdentificationSettings
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+MOST_CHANNELS = 24
+"""More channels of one kind are taken together."""
+COMPONENTS = 12
+"""Into so many."""
+
+
+def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepared, FloatArray | None]:
+    """Return what is identified from, and the matrix (n_channels, n_components) back to all channels.
+
+    The channels themselves and None if they are few or of several kinds, or references were chosen.
+    """
+    kinds = {channel.quantity for channel in ready.channels}
+    if len(ready.channels) <= MOST_CHANNELS or len(kinds) > 1 or settings.reference_channels is not None:
+        return ready, None
+    whole = np.asarray(np.isfinite(ready.y).all(axis=0))
+    there = ready.y[:, whole]
+    powers, vectors = np.linalg.eigh(there @ there.T)
+    U = vectors[:, -COMPONENTS:]
+    share = float(powers[-COMPONENTS:].sum() / powers.sum())
+    said = f"identified from {COMPONENTS} components of {len(U)} channels, {share:.1%} of their power"
+    fewer = replace(
+        ready,
+        channels=tuple(Channel(f"component {i}", kinds.copy().pop()) for i in range(COMPONENTS)),
+        y=np.where(whole, U.T @ np.where(whole, ready.y, 0.0), np.nan),
+        scale=np.ones(COMPONENTS),
+        references=list(range(COMPONENTS)),
+        warnings=(*ready.warnings, said),
+    )
+    return fewer, ready.scale[:, None] * U
+
+
+def at_all_channels(found: Identification, ready: Prepared, basis: FloatArray) -> Identification:
+    """Return what was identified from components with the shapes and spectra of all channels."""
+    return replace(
+        found,
+        channels=ready.channels,
+        modes=tuple(_mode(mode, basis) for mode in found.modes),
+        stabilisation=_poles(found.stabilisation, basis),
+        spectrum=welch(ready.y * ready.scale[:, None], found.settings.sample_rate_hz),
+        real_poles=tuple(
+            replace(pole, mode_shape=normalised(basis @ pole.mode_shape)) for pole in found.real_poles
+        ),
+    )
+
+
+def _mode(mode: ModalEstimate, basis: FloatArray) -> ModalEstimate:
+    shape = basis @ mode.mode_shape
+    return replace(
+        mode,
+        mode_shape=normalised(shape),
+        mode_shape_std=_std(mode.mode_shape_std, shape, basis),
+        mpc=float(mpc(shape)),
+        mpd_rad=float(mpd_rad(shape)),
+        unrefined=None if mode.unrefined is None else _mode(mode.unrefined, basis),
+    )
+
+
+def _poles(poles: Stabilisation, basis: FloatArray) -> Stabilisation:
+    if not len(poles.order):
+        return replace(poles, mode_shape=np.empty((0, len(basis)), dtype=complex))
+    shapes = poles.mode_shape @ basis.T
+    return replace(
+        poles, mode_shape=normalised(shapes), mode_shape_std=_std(poles.mode_shape_std, shapes, basis)
+    )
+
+
+def _std(std: FloatArray | None, shapes: ComplexArray, basis: FloatArray) -> FloatArray | None:
+    """Return standard deviations at all channels, the components' errors taken as independent."""
+    if std is None:
+        return None
+    return np.asarray(np.sqrt(std**2 @ (basis**2).T) / np.abs(shapes).max(axis=-1, keepdims=True))

@@ -1,0 +1,134 @@
+"""What every method of identification starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.identification.preparation.gaps import fill
+from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, resolve, shortness, usable_channels
+from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
+from jackettwin.identification.tones.drifting_tones import drifting_tones
+from jackettwin.identification.tones.steady_tones import steady_tones
+from jackettwin.records import detrend
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import ResolvedSettings
+    from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.records import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+
+FEWEST_DEGREES = 10
+"""pLSCF goes up to this degree at least."""
+WORTH_SAYING = 0.005
+"""Share of filled samples below which nothing is said."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The usable channels of a record at the rate of the identification.
+
+    Attributes
+    ----------
+    channels : tuple of Channel
+    y : (n_channels, n_samples)
+        Zero mean, unit variance; NaN where nothing is known.
+    scale : (n_channels,)
+        Standard deviations by which the channels were divided.
+    references : list of int
+        Rows of the reference channels.
+    settings : ResolvedSettings
+    duration_s : float
+    tones_hz : tuple of float
+        Steady tones that were taken out.
+    swept_hz : tuple of (low, high)
+        Ranges of drifting tones that were taken out.
+    warnings : tuple of str
+    """
+
+    channels: tuple[Channel, ...]
+    y: FloatArray
+    scale: FloatArray
+    references: list[int]
+    settings: ResolvedSettings
+    duration_s: float
+    tones_hz: tuple[float, ...]
+    swept_hz: tuple[tuple[float, float], ...]
+    warnings: tuple[str, ...]
+
+
+def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
+    """Keep the live vibration channels, detrend, take out tones, decimate, fill gaps, scale.
+
+    Channels are scaled to unit variance, else the loudest direction hides the other.
+
+    Raises
+    ------
+    InputError
+        If no usable channel is left, the band lies outside the record's, or the record is shorter than
+        its lag window needs.
+    """
+    usable, warnings = usable_channels(record)
+    level = detrend(usable)
+    tones, without = steady_tones(level.data, level.sample_rate_hz)
+    swept, without = drifting_tones(without, level.sample_rate_hz)
+    if tones or swept:
+        level = replace(level, data=without)
+        settings = _above_tones(level, settings, min([*tones, *(low for low, _ in swept)]))
+    resolved, reduced = resolve(level, settings)
+    warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
+    y = fill(reduced.data)
+    filled = np.mean(np.isnan(reduced.data) & np.isfinite(y), axis=1)
+    for channel, share in zip(usable.channels, filled, strict=True):
+        if share > WORTH_SAYING:
+            warnings += (f"channel {channel.name}: {share:.1%} missing, predicted from the other channels",)
+    scale = np.sqrt(np.nanmean(y**2, axis=1))
+    references = _references(record, usable, settings)
+    if settings.method == "plscf":
+        resolved = replace(resolved, orders=_degrees(settings, len(references)))
+    return Prepared(
+        usable.channels,
+        y / scale[:, None],
+        scale,
+        references,
+        resolved,
+        record.duration_s,
+        tones,
+        swept,
+        warnings,
+    )
+
+
+def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:
+    """Let the band start at the tones where nothing but tones stood out."""
+    if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
+        return settings
+    return replace(settings, lowest_frequency_hz=EDGE_BELOW_PEAK * lowest_hz)
+
+
+def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
+    """Return degrees of polynomials with as many poles as SSI's model orders, and twice that at most."""
+    top = max(2 * (settings.max_order or 60) // n_references, FEWEST_DEGREES)
+    return tuple(range(2, top + 1))
+
+
+def _references(record: Record, usable: Record, settings: IdentificationSettings) -> list[int]:
+    """Return the rows of the reference channels among the usable ones; all of them by default."""
+    if settings.reference_channels is None:
+        return list(range(len(usable.channels)))
+    record.select(settings.reference_channels)
+    names = [name for name in settings.reference_channels if name in usable.channel_names]
+    if not names:
+        raise InputError(
+            "no reference channel is usable",
+            file=record.name,
+            field="reference_channels",
+            value=settings.reference_channels,
+            allowed=", ".join(usable.channel_names),
+        )
+    return [usable.channel_names.index(name) for name in names]

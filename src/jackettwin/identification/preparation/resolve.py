@@ -1,0 +1,191 @@
+"""What an identification works on: usable channels, band, sample rate and lag window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.identification.estimate import ResolvedSettings
+from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records import Record, decimate
+from jackettwin.records.copies import copies
+from jackettwin.records.record import SMALLEST
+from jackettwin.records.repair import without_stuck
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import Spectrum
+    from jackettwin.identification.settings import IdentificationSettings
+
+EDGE_BELOW_PEAK = 0.65
+"""Lower edge of the band as a share of the lowest clear peak."""
+BAND_RATIO = 25.0
+"""Upper edge of the band over its lower edge."""
+SAMPLES_A_CYCLE = 2.5
+"""Sample rate over the upper edge of the band: the decimation filter passes up to 0.8 of Nyquist."""
+WINDOW_CYCLES = 1.0
+"""Block rows in cycles of the lower edge. Twice that is the lag window: long enough to tell a pair of
+frequencies a few per cent apart, short enough that the covariances are still determined."""
+GUARD = 1.25
+"""Poles are sought, and spectra fitted, up to this multiple of the band's upper edge if the sample rate
+allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
+WINDOW_SHARE = 0.2
+"""Largest lag window as a share of the record."""
+FEW_CYCLES = 60.0
+"""With fewer cycles of its lowest mode a record is called short."""
+STRONG_BELOW = 0.1
+"""Largest singular value below the band, over that in it, which is worth saying."""
+FEWEST_SAMPLES = 64
+"""Fewer make no spectrum."""
+DEAD = 1e-9
+"""A channel is dead when it moves less than this share of its largest value."""
+
+
+def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
+    """Return the vibration channels that are alive, and a sentence on each that is not.
+
+    A frozen reading is no reading: such stretches become missing samples.
+    """
+    vibration = [c.name for c in record.channels if c.quantity in VIBRATIONS]
+    alive: list[str] = []
+    warnings: list[str] = []
+    record, frozen = without_stuck(record)
+    for name, share in frozen.items():
+        warnings.append(f"channel {name}: reading frozen for {share:.1%} of the time; taken as missing")
+    for channel, y in zip(record.channels, record.data, strict=True):
+        if channel.name not in vibration:
+            continue
+        finite = y[np.isfinite(y)]
+        if len(finite) < 0.5 * len(y):
+            warnings.append(
+                f"channel {channel.name} left out: {1.0 - len(finite) / max(len(y), 1):.0%} missing"
+            )
+        elif np.ptp(finite) <= max(DEAD * np.abs(finite).max(), SMALLEST):
+            warnings.append(f"channel {channel.name} left out: constant")
+        else:
+            alive.append(channel.name)
+    twins = copies(record.select(alive).data) if alive else {}
+    warnings += [f"channel {alive[i]} left out: a copy of {alive[j]}" for i, j in twins.items()]
+    alive = [name for i, name in enumerate(alive) if i not in twins]
+    if not alive:
+        raise InputError(
+            "no usable vibration channel" + "".join(f"; {text}" for text in warnings),
+            field="channels",
+            value=list(record.channel_names),
+            allowed=f"at least one live channel of {', '.join(sorted(VIBRATIONS))}",
+            remedy="check the record's quantities and its data",
+        )
+    return record.select(alive), tuple(warnings)
+
+
+def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedSettings, Record]:
+    """Choose what the settings leave open, and decimate."""
+    _check_samples(record)
+    low, high = _band(record, settings)
+    rate = settings.sample_rate_hz
+    if rate is None:
+        rate = record.sample_rate_hz / max(int(record.sample_rate_hz / (SAMPLES_A_CYCLE * high)), 1)
+    window = settings.block_rows or max(int(np.ceil(WINDOW_CYCLES * rate / low)), 4)
+    _check_duration(record, low, 2.0 * window / rate)
+    reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
+    n_channels = len(record.channels)
+    top = min(settings.max_order or 60, (window - 1) * n_channels)
+    orders = tuple(
+        range(min(settings.order_step, 2) if settings.order_step < 2 else 2, top + 1, settings.order_step)
+    )
+    return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[str, ...]:
+    """Say what a record is too short for.
+
+    Parameters
+    ----------
+    reduced : Record
+        At the rate of the identification, zero mean.
+    chosen : bool
+        Whether the lower edge of the band was chosen here, not set by the user.
+    """
+    low, duration = resolved.lowest_frequency_hz, reduced.duration_s
+    first = low / EDGE_BELOW_PEAK if chosen else low
+    out: tuple[str, ...] = ()
+    if first * duration < FEW_CYCLES:
+        out += (
+            f"a short record: {duration:.3g} s hold {first * duration:.0f} cycles of {first:.3g} Hz; "
+            f"distrust modes so low, by hundreds of cycles they are known",
+        )
+    strongest = _strongest_below(welch(reduced.data, reduced.sample_rate_hz), low) if chosen else None
+    if strongest is not None and strongest * duration < FEW_CYCLES:
+        out += (
+            f"the band starts at {low:.3g} Hz, yet the record moves strongly near {strongest:.2g} Hz: too "
+            f"few cycles to tell a peak there; use a longer record, or state lowest_frequency_hz",
+        )
+    return out
+
+
+def _strongest_below(spectrum: Spectrum, low: float) -> float | None:
+    """Return the frequency below an edge at which a record moves as strongly as anywhere above."""
+    f, s = spectrum.frequencies_hz[1:], spectrum.singular_values[0, 1:]
+    below, above = f < low, f >= low
+    if not below.any() or s[below].max() < STRONG_BELOW * s[above].max():
+        return None
+    return float(f[below][np.argmax(s[below])])
+
+
+def guarded_band_hz(resolved: ResolvedSettings) -> tuple[float, float]:
+    """Return the band in which poles are sought: that of the modes and a guard above it."""
+    passed = resolved.sample_rate_hz / SAMPLES_A_CYCLE
+    high = max(min(GUARD * resolved.highest_frequency_hz, passed), resolved.highest_frequency_hz)
+    return resolved.lowest_frequency_hz, high
+
+
+def _band(record: Record, settings: IdentificationSettings) -> tuple[float, float]:
+    nyquist = 0.5 * record.sample_rate_hz
+    low = settings.lowest_frequency_hz
+    if low is None:
+        peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
+        if peak is None:
+            raise InputError(
+                "no spectral peak stands out",
+                field="lowest_frequency_hz",
+                value=f"a record of {record.duration_s:.0f} s",
+                remedy="state the lowest frequency of interest, or use a longer record",
+            )
+        low = EDGE_BELOW_PEAK * peak
+    limit = 2.0 / SAMPLES_A_CYCLE * nyquist
+    high = settings.highest_frequency_hz or min(BAND_RATIO * low, limit)
+    if not low < high < nyquist:
+        raise InputError(
+            "the band of interest does not fit the record",
+            field="lowest_frequency_hz, highest_frequency_hz",
+            value=(low, high),
+            allowed=f"0 < lowest < highest < {nyquist:g} Hz",
+            remedy="choose a lower band or use a record of higher rate",
+        )
+    return low, high
+
+
+def _check_samples(record: Record) -> None:
+    n = record.data.shape[1]
+    if n < FEWEST_SAMPLES:
+        raise InputError(
+            "record too short to identify anything",
+            field="data",
+            value=f"{n} samples",
+            allowed=f"≥ {FEWEST_SAMPLES} samples",
+            remedy="use a longer record",
+        )
+
+
+def _check_duration(record: Record, low: float, window_s: float) -> None:
+    needed = max(window_s / WINDOW_SHARE, FEWEST_CYCLES / low)
+    if record.duration_s < needed:
+        raise InputError(
+            "record too short for its lag window",
+            field="duration_s",
+            value=record.duration_s,
+            allowed=f"≥ {needed:.0f} s for a lowest frequency of {low:.3g} Hz",
+            remedy="use a longer record or raise lowest_frequency_hz",
+        )

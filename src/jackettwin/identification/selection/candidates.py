@@ -1,0 +1,246 @@
+"""Which clusters of poles are modes, with their uncertainty, and why the others are not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.estimate import ModalEstimate, Rejected
+from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.tones.harmonics import drifting_tone, is_steady_tone, without_unsteady_tone
+from jackettwin.identification.tones.steady_tones import without_tones
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from jackettwin.identification.estimate import Stabilisation
+    from jackettwin.identification.selection.clustering import Cluster
+    from jackettwin.identification.settings import IdentificationSettings
+
+FloatArray = npt.NDArray[np.float64]
+
+FEWEST_ORDERS = 5
+"""A mode appears in at least so many model orders (or 0.4 of them, if there are few)."""
+A_TONE = "steady tone: its envelope does not wander as that of a mode"
+TONE_REACH = 6.0
+"""A tone nearer than this many half bandwidths disturbs a mode …"""
+TONE_WIDENING = 2.0
+"""… whose standard deviations are multiplied by this."""
+
+
+@dataclass(frozen=True)
+class Tones:
+    """Tones among the poles.
+
+    Attributes
+    ----------
+    frequency_hz : dict
+        By representative pole of the cluster.
+    swept_hz : tuple of (low, high)
+        Ranges that drifting tones passed.
+    clean : (n_channels, n_samples)
+        Samples less the tones.
+    """
+
+    frequency_hz: dict[int, float]
+    swept_hz: tuple[tuple[float, float], ...]
+    clean: FloatArray
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A cluster of poles, the mode it would be, and what speaks against it.
+
+    Attributes
+    ----------
+    objection : str or None
+        Why it is not a mode.
+    doubt : str or None
+        Why it may not be one, unless the spectrum needs it.
+    """
+
+    cluster: Cluster
+    mode: ModalEstimate
+    objection: str | None
+    doubt: str | None
+
+    @property
+    def is_tone(self) -> bool:
+        """Whether its envelope is that of a tone."""
+        return self.objection == A_TONE
+
+    @property
+    def rejected(self) -> Rejected:
+        """The candidate with the reason it was left out."""
+        reason = self.objection or self.doubt or ""
+        return Rejected(self.mode.frequency_hz, self.mode.damping_ratio, reason)
+
+
+def candidates(
+    poles: Stabilisation,
+    found: list[Cluster],
+    tones: Iterable[int],
+    settings: IdentificationSettings,
+    *,
+    duration_s: float,
+    n_orders: int,
+) -> list[Candidate]:
+    """Judge every cluster by the hard criteria.
+
+    Parameters
+    ----------
+    tones : iterable of int
+        Representative poles of clusters that are steady tones.
+    """
+    steady = set(tones)
+    fewest = min(FEWEST_ORDERS, int(np.ceil(0.4 * n_orders)))
+    out = []
+    for cluster in found:
+        mode = _mode(poles, cluster, duration_s)
+        objection = _objection(cluster, mode, settings, fewest)
+        if cluster.representative in steady:
+            objection = A_TONE
+        out.append(Candidate(cluster, mode, objection, _doubt(cluster, mode, settings)))
+    return out
+
+
+def find_tones(
+    poles: Stabilisation,
+    found: list[Cluster],
+    y: FloatArray,
+    scale: FloatArray,
+    sample_rate_hz: float,
+    settings: IdentificationSettings,
+    swept: Iterable[tuple[float, float]] = (),
+) -> Tones:
+    """Return the tones among the clusters.
+
+    A drifting tone leaves several poles: all poles it passed are of it.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Divided by ``scale``.
+    swept : iterable of (low, high)
+        Ranges of drifting tones that were taken out already: what is left of them has poles as well.
+    """
+    likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
+    f, zeta = poles.frequency_hz, poles.damping_ratio
+    shape = {k: poles.mode_shape[k] / scale for k in likely}
+    steady = {k for k in likely if is_steady_tone(y, sample_rate_hz, f[k], zeta[k], shape[k])}
+    tones = {k for k in likely if drifting_tone(y, sample_rate_hz, f[k], shape[k])} | steady
+    clean, passed = y, list(swept)
+    for k in sorted(tones):
+        sweep = drifting_tone(clean, sample_rate_hz, f[k], shape[k])
+        if sweep is not None:
+            passed.append((sweep.low_hz, sweep.high_hz))
+            clean = without_unsteady_tone(clean, sample_rate_hz, f[k], sweep.half_hz, shape[k])
+        elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], shape[k]):
+            clean = without_tones(clean, sample_rate_hz, [f[k]])
+    tones |= {k for k in likely if any(low < f[k] < high for low, high in passed)}
+    return Tones({k: float(f[k]) for k in sorted(tones)}, tuple(passed), clean)
+
+
+def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:
+    """Flag a mode near a tone, and widen what is said of it.
+
+    Parameters
+    ----------
+    tones_hz : iterable of (low, high)
+        Ranges of the tones; low and high of a steady one are equal.
+    """
+    f = mode.frequency_hz
+    reach = TONE_REACH * mode.damping_ratio * f
+    near = [(low, high) for low, high in tones_hz if low - reach < f < high + reach]
+    if not near:
+        return mode
+    low, high = near[0]
+    tone = f"a steady tone at {low:.4g} Hz" if low == high else f"a tone between {low:.4g} and {high:.4g} Hz"
+    mode = replace(mode, status=f"{tone} is too near to trust the damping")
+    if mode.log_covariance is None:
+        return mode
+    return with_covariance(mode, TONE_WIDENING**2 * mode.log_covariance)
+
+
+def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimate:
+    """Return the mode with the covariance of (ln f, ln ζ) and what follows from it."""
+    std_f, std_zeta = np.sqrt(np.diag(covariance))
+    return replace(
+        mode,
+        log_covariance=covariance,
+        frequency_std_hz=float(mode.frequency_hz * std_f),
+        damping_ratio_std=float(mode.damping_ratio * std_zeta),
+        frequency_interval_95=_interval(mode.frequency_hz, std_f),
+        damping_ratio_interval_95=_interval(mode.damping_ratio, std_zeta),
+    )
+
+
+def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEstimate:
+    """Return the representative pole; its uncertainty and the scatter over the model orders together.
+
+    Never below the long-data limits: blocks shorter than the memory of a mode underestimate its scatter.
+    """
+    k = cluster.representative
+    f, zeta = float(poles.frequency_hz[k]), float(poles.damping_ratio[k])
+    shape = normalised(aligned(poles.mode_shape[k]))
+    limits = long_data_limits(f, zeta, duration_s)
+    mode = ModalEstimate(
+        f,
+        zeta,
+        shape,
+        float(mpc(shape)),
+        float(mpd_rad(shape)),
+        cluster.order_share,
+        damping_ratio_cov_limit=float(limits[1]),
+    )
+    if poles.log_covariance is None or poles.mode_shape_std is None:
+        return mode
+    both = np.log([poles.frequency_hz[cluster.core], poles.damping_ratio[cluster.core]])
+    covariance = poles.log_covariance[k] + np.cov(both, bias=True)
+    lift = np.maximum(limits / np.sqrt(np.diag(covariance)), 1.0)
+    mode = replace(mode, mode_shape_std=poles.mode_shape_std[k])
+    return with_covariance(mode, covariance * np.outer(lift, lift))
+
+
+def _interval(centre: float, log_std: float) -> tuple[float, float]:
+    factor = float(np.exp(min(1.96 * log_std, 50.0)))
+    return centre / factor, centre * factor
+
+
+def _objection(
+    cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings, fewest: int
+) -> str | None:
+    """Return why a cluster is not a mode, or None."""
+    if len(cluster.poles) < fewest:
+        return f"in {len(cluster.poles)} model orders, {fewest} needed"
+    if cluster.order_share < settings.min_order_share:
+        return (
+            f"in {cluster.order_share:.0%} of the model orders since it first appeared, "
+            f"{settings.min_order_share:.0%} needed"
+        )
+    if mode.mpc < settings.min_mpc:
+        return f"modal phase collinearity {mode.mpc:.2f} below {settings.min_mpc:g}"
+    if mode.mpd_rad > settings.max_mpd_rad:
+        return f"mean phase deviation {mode.mpd_rad:.2f} rad above {settings.max_mpd_rad:g}"
+    return None
+
+
+def _doubt(cluster: Cluster, mode: ModalEstimate, settings: IdentificationSettings) -> str | None:
+    """Return why a cluster is doubtful: its damping is hardly known, or far worse than the record allows."""
+    if cluster.damping_cov > settings.max_damping_cov:
+        return (
+            f"damping uncertain by {cluster.damping_cov:.0%}, at most {settings.max_damping_cov:.0%} allowed"
+        )
+    if mode.damping_ratio_cov_limit is None:
+        return None
+    excess = cluster.damping_cov / mode.damping_ratio_cov_limit
+    if excess <= settings.max_damping_excess:
+        return None
+    return (
+        f"damping {excess:.0f} times as uncertain as the record allows, "
+        f"at most {settings.max_damping_excess:g} times accepted"
+    )

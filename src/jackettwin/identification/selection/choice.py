@@ -1,0 +1,215 @@
+"""The modes that are reported: the candidates no one doubts, refined, and those the spectrum needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.estimate import Rejected
+from jackettwin.identification.mac import mac, normalised
+from jackettwin.identification.maximum_likelihood.fits import Start, believed_fits
+from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.selection.candidates import beside_tones, with_covariance
+from jackettwin.identification.tones.drifting_tones import disturbed_hz
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
+    from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
+    from jackettwin.identification.maximum_likelihood.refinement import Refined
+    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.selection.candidates import Candidate, Tones
+    from jackettwin.identification.settings import IdentificationSettings
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+MOST_MISSING = 0.01
+"""Share of missing samples in a channel up to which a periodogram is trusted."""
+
+LEAST_SHARE = 0.8
+"""Standard deviations over the long-data limits, at least. The ratios between many quiet channels tell more
+than the lines of a peak do: of ten modes in eight channels the Cramér-Rao bound is 0.79 of the limit."""
+HINT_ORDER_SHARE = 0.25
+"""Share of the model orders in which what may be a mode must appear to be worth a hint."""
+SAME_SHAPE = 0.8
+"""MAC from which a pole is the mode beside it."""
+TAKEN_LINES = 0.75
+"""A line as far from a tone as this went with it."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Modes by ascending frequency, the candidate each came from, and what was left out."""
+
+    modes: tuple[ModalEstimate, ...]
+    candidate: tuple[int, ...]
+    rejected: tuple[Rejected, ...]
+    warnings: tuple[str, ...]
+
+
+def chosen_modes(
+    judged: Sequence[Candidate], tones: Tones, ready: Prepared, settings: IdentificationSettings
+) -> Choice:
+    """Refine the candidates and keep those that are modes inside the band."""
+    y, scale, resolved = tones.clean, ready.scale, ready.settings
+    open_to = [i for i, c in enumerate(judged) if c.objection is None]
+    sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
+    warnings: tuple[str, ...] = ()
+    modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
+    if settings.refine and sure.any():
+        if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
+            warnings = ("modes not refined: gaps remain in the record",)
+        else:
+            start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
+            band = guarded_band_hz(resolved)
+            fits, warnings = believed_fits(y, resolved.sample_rate_hz, band, start)
+            for fit in fits:
+                for position in np.flatnonzero(fit.candidates):
+                    modes.pop(open_to[position], None)
+                modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
+    tones_hz = [(f, f) for f in (*tones.frequency_hz.values(), *ready.tones_hz)] + [*ready.swept_hz]
+    found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+    if settings.refine:
+        found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
+    return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
+
+
+def _start(
+    modes: list[ModalEstimate],
+    sure: BoolArray,
+    ready: Prepared,
+    tones: Tones,
+    settings: IdentificationSettings,
+) -> Start:
+    return Start(
+        frequency_hz=np.array([m.frequency_hz for m in modes]),
+        damping_ratio=np.array([m.damping_ratio for m in modes]),
+        log_damping_std=np.array([_log_damping_std(m) for m in modes]),
+        shapes=np.array([m.mode_shape.real for m in modes]) / ready.scale,
+        sure=sure,
+        derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
+        avoid_hz=(
+            *map(disturbed_hz, tones.swept_hz),
+            *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz),
+        ),
+        most_damping=settings.max_damping_ratio,
+    )
+
+
+def _log_damping_std(mode: ModalEstimate) -> float:
+    return 0.0 if mode.log_covariance is None else float(np.sqrt(mode.log_covariance[1, 1]))
+
+
+def _taken_hz(tone_hz: float, duration_s: float) -> tuple[float, float]:
+    """Return the range of the lines that went with a tone: one on either side of it, or that it is on."""
+    return tone_hz - TAKEN_LINES / duration_s, tone_hz + TAKEN_LINES / duration_s
+
+
+def _numbers(
+    judged: Sequence[Candidate], open_to: list[int], refined: Refined, scale: FloatArray, duration_s: float
+) -> dict[int, ModalEstimate]:
+    """Return the refined modes by candidate."""
+    out = {}
+    for k, position in enumerate(refined.candidate):
+        index = open_to[position]
+        f, zeta = float(refined.frequency_hz[k]), float(refined.damping_ratio[k])
+        limits = long_data_limits(f, zeta, duration_s)
+        lift = np.maximum(LEAST_SHARE * limits / np.sqrt(np.diag(refined.covariance[k])), 1.0)
+        shape = refined.shapes[k] * scale
+        top = int(np.argmax(np.abs(shape)))
+        relative = shape / shape[top]
+        jacobian = np.diag(scale) - np.outer(relative, scale * (np.arange(len(shape)) == top))
+        spread = jacobian @ refined.shape_covariance[k] @ jacobian.T / shape[top] ** 2
+        mode = replace(
+            judged[index].mode,
+            frequency_hz=f,
+            damping_ratio=zeta,
+            mode_shape=normalised(shape.astype(complex)),
+            mode_shape_std=np.sqrt(np.maximum(np.diag(spread), 0.0)),
+            method="maximum likelihood",
+            unrefined=judged[index].mode,
+            cramer_rao_log_std=refined.cramer_rao[k],
+            damping_ratio_cov_limit=float(limits[1]),
+        )
+        out[index] = with_covariance(mode, refined.covariance[k] * np.outer(lift, lift))
+    return out
+
+
+def _sorted(
+    judged: Sequence[Candidate],
+    modes: dict[int, ModalEstimate],
+    tones_hz: Collection[tuple[float, float]],
+    resolved: ResolvedSettings,
+    settings: IdentificationSettings,
+    warnings: tuple[str, ...],
+) -> Choice:
+    """Drop what is outside the band or hardly known; order by frequency."""
+    rejected = {i: c.rejected for i, c in enumerate(judged) if i not in modes}
+    for i, refused in rejected.items():
+        if not refused.reason:
+            rejected[i] = replace(refused, reason="the spectrum is explained as well without it")
+    kept = {}
+    for i, mode in modes.items():
+        reason = _late_objection(mode, resolved, settings)
+        if reason is None:
+            kept[i] = beside_tones(mode, tones_hz)
+        else:
+            rejected[i] = Rejected(mode.frequency_hz, mode.damping_ratio, reason)
+    order = sorted(kept, key=lambda i: kept[i].frequency_hz)
+    return Choice(
+        modes=tuple(kept[i] for i in order),
+        candidate=tuple(order),
+        rejected=tuple(rejected[i] for i in sorted(rejected)),
+        warnings=warnings,
+    )
+
+
+def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
+    low, high = guarded_band_hz(resolved)
+    steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
+    found = [(f, steady) for f in ready.tones_hz] + [(0.5 * (a + b), drifting) for a, b in ready.swept_hz]
+    return [Rejected(f, None, reason) for f, reason in sorted(found) if low < f < high]
+
+
+def _hidden(judged: Sequence[Candidate], found: Choice) -> list[str]:
+    """Say where what was left out may be the other mode of a close pair, beside the mode it is nearest to.
+
+    Only beside modes that no fit describes: where one does, the spectrum needs no other.
+    """
+    out: dict[float, str] = {}
+    for i, c in enumerate(judged):
+        near = [m for m in found.modes if _overlap(c.mode, m)]
+        alike = [float(mac(c.mode.mode_shape, m.mode_shape)) for m in near]
+        known = i in found.candidate or c.is_tone or c.cluster.order_share < HINT_ORDER_SHARE
+        if known or not near or max(alike) > SAME_SHAPE or any(m.unrefined is not None for m in near):
+            continue
+        mode = min(near, key=lambda m: abs(m.frequency_hz - c.mode.frequency_hz))
+        out[mode.frequency_hz] = (
+            f"a second mode may hide beside {mode.frequency_hz:.4g} Hz: poles of another shape at "
+            f"{c.mode.frequency_hz:.4g} Hz, within its bandwidth, were left out"
+        )
+    return list(out.values())
+
+
+def _overlap(a: ModalEstimate, b: ModalEstimate) -> bool:
+    half = a.damping_ratio * a.frequency_hz + b.damping_ratio * b.frequency_hz
+    return abs(a.frequency_hz - b.frequency_hz) < half
+
+
+def _late_objection(
+    mode: ModalEstimate, resolved: ResolvedSettings, settings: IdentificationSettings
+) -> str | None:
+    if not resolved.lowest_frequency_hz < mode.frequency_hz < resolved.highest_frequency_hz:
+        return "outside the band"
+    if mode.log_covariance is not None and mode.log_covariance[1, 1] > settings.max_damping_cov**2:
+        return (
+            f"damping uncertain by {np.sqrt(mode.log_covariance[1, 1]):.0%}, "
+            f"at most {settings.max_damping_cov:.0%} allowed"
+        )
+    return None

@@ -1,0 +1,1 @@
+"""Stochastic subspace identification: poles of every model order, with their uncertainty."""

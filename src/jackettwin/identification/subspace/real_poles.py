@@ -1,0 +1,128 @@
+r"""Real poles: relaxations that do not oscillate, of a damper or a creeping soil.
+
+The discrete eigenvalue of :math:`\lambda = -a` is :math:`e^{-a\Delta t}`, real between 0 and 1. Models fit
+noise with many of them, so a relaxation counts only if model orders agree on its rate and its uncertainty is
+known and moderate. No method beats :math:`\sigma_{\ln a} = \sqrt{2/(aT)}`, the limit of a first-order process
+observed alone for T.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.cluster import hierarchy
+from scipy.spatial.distance import squareform
+
+from jackettwin.identification.estimate import RealPole
+from jackettwin.identification.mac import aligned, mac, normalised
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.identification.subspace.ssi_cov import OrderPoles
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.int64]
+
+JOINED = 0.3
+"""Poles nearer than this, |Δ ln a| + 1 − MAC on average, are one relaxation."""
+MOST_LOG_STD = 0.5
+"""Largest standard deviation of ln a of a relaxation that is reported."""
+FEWEST_ORDERS = 5
+
+
+@dataclass(frozen=True)
+class _Table:
+    """Real poles of all orders: (n_poles,) each, shapes (n_poles, n_channels)."""
+
+    order: IntArray
+    log_rate: FloatArray
+    log_std: FloatArray
+    shape: ComplexArray
+
+
+def real_poles(
+    poles: Sequence[OrderPoles],
+    settings: IdentificationSettings,
+    *,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+    scale: FloatArray,
+) -> tuple[RealPole, ...]:
+    """Return the relaxations on which the model orders agree, slowest first.
+
+    Parameters
+    ----------
+    poles : sequence of OrderPoles
+        Real eigenvalues between 0 and 1 with their deviations, one entry an order.
+    scale : (n_channels,)
+        Standard deviations by which the channels were divided.
+    """
+    table = _table(poles, sample_rate_hz, band_hz, scale)
+    orders = np.array([p.order for p in poles])
+    found = [_relaxation(table, members, orders, settings) for members in _groups(table, scale)]
+    return tuple(sorted((r for r in found if r is not None), key=lambda r: r.rate_rad_s))
+
+
+def _table(
+    poles: Sequence[OrderPoles], rate: float, band_hz: tuple[float, float], scale: FloatArray
+) -> _Table:
+    order, log_rate, log_std, shape = [], [], [], []
+    for p in poles:
+        a = -np.log(p.eigenvalues.real) * rate
+        inside = (a > 2.0 * np.pi * band_hz[0]) & (a < 2.0 * np.pi * band_hz[1])
+        if not inside.any() or p.eigenvalue_deviations is None:
+            continue
+        # δλ = δμ/μ · rate, and λ = −a
+        delta = (p.eigenvalue_deviations.real / p.eigenvalues.real * rate)[:, inside] / a[inside]
+        order += [p.order] * int(inside.sum())
+        log_rate += np.log(a[inside]).tolist()
+        log_std += np.sqrt(np.sum(delta**2, axis=0)).tolist()
+        shape += list(p.shapes[inside] * scale)
+    return _Table(
+        np.array(order, dtype=np.int64),
+        np.array(log_rate),
+        np.array(log_std),
+        np.array(shape, dtype=complex).reshape(-1, len(scale)),
+    )
+
+
+def _groups(table: _Table, scale: FloatArray) -> list[IntArray]:
+    if len(table.order) < 2:
+        return []
+    unit = table.shape / scale
+    apart = np.abs(np.subtract.outer(table.log_rate, table.log_rate)) + 1.0 - mac(unit, unit)
+    apart = np.maximum(0.5 * (apart + apart.T), 0.0)
+    np.fill_diagonal(apart, 0.0)
+    tree = hierarchy.linkage(squareform(apart, checks=False), method="average")
+    label = hierarchy.fcluster(tree, JOINED, criterion="distance")
+    return [np.flatnonzero(label == k) for k in np.unique(label)]
+
+
+def _relaxation(
+    table: _Table, members: IntArray, orders: IntArray, settings: IdentificationSettings
+) -> RealPole | None:
+    """Return the best known pole of a group, its variance and the scatter over the orders together."""
+    held = len(np.unique(table.order[members]))
+    share = held / int(np.sum(orders >= table.order[members].min()))
+    if held < FEWEST_ORDERS or share < settings.min_order_share:
+        return None
+    core = members[np.argsort(table.log_std[members], kind="stable")[: (len(members) + 1) // 2]]
+    k = core[np.argmin(np.abs(table.log_rate[core] - np.median(table.log_rate[core])))]
+    log_std = float(np.hypot(table.log_std[k], table.log_rate[core].std()))
+    if log_std > MOST_LOG_STD:
+        return None
+    a = float(np.exp(table.log_rate[k]))
+    factor = float(np.exp(1.96 * log_std))
+    return RealPole(
+        rate_rad_s=a,
+        rate_std_rad_s=a * log_std,
+        rate_interval_95=(a / factor, a * factor),
+        mode_shape=normalised(aligned(table.shape[k])),
+        order_share=share,
+    )

@@ -1,0 +1,156 @@
+"""Poles of all model orders in one table, with the soft criteria of a stabilisation diagram."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.identification.estimate import Stabilisation
+from jackettwin.identification.mac import mac, normalised
+from jackettwin.identification.subspace.ssi_cov import OrderPoles, frequency_and_damping
+
+if TYPE_CHECKING:
+    from jackettwin.identification.settings import IdentificationSettings
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+
+
+def stabilisation(
+    poles: list[OrderPoles],
+    settings: IdentificationSettings,
+    *,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+    scale: FloatArray,
+) -> Stabilisation:
+    """Collect the poles inside the band that pass the hard limit on damping, and flag the stable ones.
+
+    Parameters
+    ----------
+    scale : (n_channels,)
+        Standard deviations by which the channels were divided: shapes come back in channel units.
+    """
+    poles = [_inside(p, settings, sample_rate_hz, band_hz) for p in poles]
+    table = [(*frequency_and_damping(p.eigenvalues, sample_rate_hz), p.shapes) for p in poles]
+    n_channels = len(scale)
+    flags = [np.zeros((len(table[0][0]), 3), dtype=bool)] if table else []
+    flags += [_stable(now, before, settings) for before, now in zip(table, table[1:], strict=False)]
+    order = [np.full(len(f), p.order) for p, (f, _, _) in zip(poles, table, strict=True)]
+    shapes = np.concatenate([s for _, _, s in table]) if table else np.empty((0, n_channels), dtype=complex)
+    stable = np.concatenate(flags) if flags else np.empty((0, 3), dtype=bool)
+    flat_order = np.concatenate(order) if order else np.empty(0, dtype=int)
+    return Stabilisation(
+        order=flat_order.astype(np.int64),
+        frequency_hz=np.concatenate([f for f, _, _ in table]) if table else np.empty(0),
+        damping_ratio=np.concatenate([z for _, z, _ in table]) if table else np.empty(0),
+        mode_shape=normalised(np.asarray(shapes * scale, dtype=complex)),
+        stable_frequency=stable[:, 0],
+        stable_damping=stable[:, 1],
+        stable_shape=stable[:, 2],
+        cluster=np.full(len(flat_order), -1, dtype=np.int64),
+        log_covariance=_log_covariances(poles, sample_rate_hz),
+        mode_shape_std=_shape_stds(poles, scale),
+    )
+
+
+def admissible(
+    eigenvalues: ComplexArray,
+    settings: IdentificationSettings,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+) -> BoolArray:
+    """Return which poles lie inside the band and below the hard limit on damping, and are stable."""
+    f, zeta = frequency_and_damping(eigenvalues, sample_rate_hz)
+    inside = (f > band_hz[0]) & (f < band_hz[1])
+    return np.asarray(inside & (zeta > 0.0) & (zeta < settings.max_damping_ratio))
+
+
+def log_deviations(
+    eigenvalues: ComplexArray, deviations: ComplexArray, sample_rate_hz: float
+) -> tuple[FloatArray, FloatArray]:
+    r"""Return the deviations of ln f and ln ζ that follow from those of discrete eigenvalues.
+
+    .. math:: \delta\ln f = \mathrm{Re}(\bar\lambda\,\delta\lambda)/|\lambda|^2, \quad
+              \delta\ln\zeta = -\mathrm{Re}\,\delta\lambda/(\zeta|\lambda|) - \delta\ln f
+
+    Parameters
+    ----------
+    eigenvalues : (n_poles,)
+    deviations : (n_blocks, n_poles)
+    """
+    lam = np.log(eigenvalues) * sample_rate_hz
+    delta = deviations / eigenvalues * sample_rate_hz
+    log_f = np.asarray((lam.conj() * delta).real / np.abs(lam) ** 2)
+    return log_f, np.asarray(delta.real / lam.real - log_f)
+
+
+def _inside(
+    poles: OrderPoles,
+    settings: IdentificationSettings,
+    sample_rate_hz: float,
+    band_hz: tuple[float, float],
+) -> OrderPoles:
+    keep = admissible(poles.eigenvalues, settings, sample_rate_hz, band_hz)
+    deviations, shapes = poles.eigenvalue_deviations, poles.shape_deviations
+    return OrderPoles(
+        poles.order,
+        poles.eigenvalues[keep],
+        poles.shapes[keep],
+        None if deviations is None else deviations[:, keep],
+        None if shapes is None else shapes[:, keep],
+    )
+
+
+def _log_covariances(poles: list[OrderPoles], sample_rate_hz: float) -> FloatArray | None:
+    """Return the covariance of (ln f, ln ζ) of every pole, (n_poles, 2, 2)."""
+    out = []
+    for p in poles:
+        if p.eigenvalue_deviations is None:
+            if len(p.eigenvalues):
+                return None
+            continue
+        both = np.stack(log_deviations(p.eigenvalues, p.eigenvalue_deviations, sample_rate_hz))
+        out.append(np.einsum("ibp,jbp->pij", both, both))
+    return np.concatenate(out) if out else None
+
+
+def _shape_stds(poles: list[OrderPoles], scale: FloatArray) -> FloatArray | None:
+    """Return the standard deviation of every entry of the shapes in channel units, (n_poles, n_channels)."""
+    out = []
+    for p in poles:
+        if p.shape_deviations is None:
+            if len(p.eigenvalues):
+                return None
+            continue
+        raw, delta = p.shapes * scale, p.shape_deviations * scale
+        largest = np.argmax(np.abs(raw), axis=1)[:, None]
+        top = np.take_along_axis(raw, largest, axis=1)
+        at_top = np.take_along_axis(delta, largest[None], axis=2)
+        relative = (delta - raw / top * at_top) / top
+        out.append(np.sqrt(np.sum(np.abs(relative) ** 2, axis=0)))
+    return np.concatenate(out) if out else None
+
+
+def _stable(
+    now: tuple[FloatArray, FloatArray, ComplexArray],
+    before: tuple[FloatArray, FloatArray, ComplexArray],
+    settings: IdentificationSettings,
+) -> BoolArray:
+    """Return the three soft criteria of each pole towards the most similar pole of the order before."""
+    f, zeta, shapes = now
+    f0, zeta0, shapes0 = before
+    out = np.zeros((len(f), 3), dtype=bool)
+    if not len(f) or not len(f0):
+        return out
+    change_f = np.abs(f[:, None] - f0) / f[:, None]
+    similarity = mac(shapes, shapes0)
+    nearest = np.argmin(change_f + 1.0 - similarity, axis=1)
+    row = np.arange(len(f))
+    out[:, 0] = change_f[row, nearest] < settings.frequency_tolerance
+    out[:, 1] = np.abs(zeta - zeta0[nearest]) / zeta < settings.damping_tolerance
+    out[:, 2] = 1.0 - similarity[row, nearest] < settings.mac_tolerance
+    return out

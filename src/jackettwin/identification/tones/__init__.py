@@ -1,0 +1,1 @@
+"""Tones of machines: found, taken out, and told from modes."""

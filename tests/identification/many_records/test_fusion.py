@@ -1,0 +1,84 @@
+"""Many records: closed forms of the mean, identities through crossings, intervals that shrink."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.identification import fuse, identify, mac
+from jackettwin.identification.many_records.fusion import random_effects
+from jackettwin.identification.synthetic import simulate
+
+
+@pytest.fixture(scope="module")
+def results():
+    from jackettwin.identification.synthetic import ModalSystem
+
+    shapes = np.kron(np.array([[1.0, 0.4, 0.2]]), np.eye(2))
+    system = ModalSystem(np.array([0.300, 0.306]), np.array([0.03, 0.015]), shapes, np.eye(2))
+    return system, [
+        identify(simulate(system, np.random.default_rng([7, k]), sample_rate_hz=3.0)) for k in range(20)
+    ]
+
+
+def test_equal_records_give_the_plain_mean():
+    mean, variance, between = random_effects(np.array([0.0, 0.1, 0.2]), np.full(3, 0.05))
+    assert (mean, variance, between) == pytest.approx((0.1, 0.05 / 3, 0.0))
+
+
+def test_scatter_beyond_the_records_own_uncertainty_is_found(rng):
+    values = rng.normal(0.0, 0.5, 2000) + rng.normal(0.0, 0.1, 2000)
+    mean, variance, between = random_effects(values, np.full(2000, 0.01))
+    # standard error of a variance from 2000 values: 3 %
+    assert between == pytest.approx(0.25, rel=0.12)
+    assert variance == pytest.approx(0.26 / 2000, rel=0.12)
+    assert abs(mean) < 4 * np.sqrt(variance)
+
+
+def test_a_close_pair_is_fused_apart_and_its_intervals_hold_the_truth(results):
+    system, found = results
+    fused = fuse(found)
+    shapes = np.array([mode.mode_shape for mode in fused.modes])
+    for f, zeta, shape in zip(system.frequency_hz, system.damping_ratio, system.mode_shapes, strict=True):
+        mode = fused.modes[int(np.argmax(mac(shape, shapes)))]
+        assert mac(shape, mode.mode_shape) > 0.98
+        # four standard errors
+        assert abs(np.log(mode.frequency_hz / f)) < 4 * mode.frequency_std_hz / mode.frequency_hz
+        assert abs(np.log(mode.damping_ratio / zeta)) < 4 * mode.damping_ratio_std / mode.damping_ratio
+        single = found[0].modes[0].damping_ratio_std / found[0].modes[0].damping_ratio
+        assert mode.damping_ratio_std / mode.damping_ratio < 0.5 * single
+
+
+def test_modes_that_cross_keep_their_shapes(results):
+    """The same records with the two frequencies swapped in half of them: shape decides."""
+    _, found = results
+    swapped = []
+    for k, result in enumerate(found):
+        factor = 1.0 if k % 2 else 0.98
+        modes = tuple(
+            replace(m, frequency_hz=m.frequency_hz * (factor if abs(m.mode_shape[0]) > 0.7 else 1.0))
+            for m in result.modes
+        )
+        swapped.append(replace(result, modes=modes))
+    fused = fuse(swapped)
+    for mode in fused.modes[:2]:
+        members = zip(mode.sightings.record, mode.sightings.mode, strict=True)
+        same = [mac(swapped[r].modes[m].mode_shape, mode.mode_shape) for r, m in members]
+        assert np.median(same) > 0.9
+        assert min(same) > 0.5
+
+
+def test_order_of_records_does_not_matter(results):
+    _, found = results
+    forward, backward = fuse(found), fuse(found[::-1])
+    f = [mode.frequency_hz for mode in forward.modes]
+    # sums in another order
+    np.testing.assert_allclose([mode.frequency_hz for mode in backward.modes][:2], f[:2], rtol=1e-3)
+
+
+def test_nothing_to_fuse_is_refused():
+    with pytest.raises(InputError, match="nothing to fuse"):
+        fuse([])

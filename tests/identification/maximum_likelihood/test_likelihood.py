@@ -1,0 +1,146 @@
+"""Derivatives against finite differences; the fit against the information limit of Au 2014."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification.maximum_likelihood import likelihood
+from jackettwin.identification.maximum_likelihood.periodogram import periodogram
+from jackettwin.identification.maximum_likelihood.refinement import gain_of, needed_gain, refine
+from jackettwin.identification.maximum_likelihood.spectral_model import expected
+from jackettwin.identification.synthetic import ModalSystem, simulate
+
+RATE, BAND = 5.0, (0.15, 2.0)
+
+
+def of(system, rng, **options):
+    y = simulate(system, rng, sample_rate_hz=RATE, **options).data
+    return y / y.std(axis=1, keepdims=True), system.mode_shapes / y.std(axis=1)
+
+
+def rough(system, y):
+    modes = (system.frequency_hz, system.damping_ratio)
+    return periodogram(y, RATE, BAND, modes=modes, derivatives=[0] * len(y))
+
+
+def refined(system, y, shapes, sure):
+    return refine(
+        y,
+        RATE,
+        BAND,
+        frequency_hz=system.frequency_hz,
+        damping_ratio=system.damping_ratio,
+        shapes=shapes,
+        sure=np.asarray(sure),
+        derivatives=[0] * len(y),
+    )
+
+
+@pytest.fixture
+def fitted(tower, rng):
+    y, shapes = of(tower, rng)
+    data = rough(tower, y)
+    p = likelihood.start(data, tower.frequency_hz, tower.damping_ratio, shapes)
+    # somewhere off the start, coherences and colours at work
+    return data, p.moved(0.03 * rng.standard_normal(len(p.vector)))
+
+
+def central(function, p, k, step):
+    h = np.zeros(len(p.vector))
+    h[k] = step
+    return (function(p.moved(h)) - function(p.moved(-h))) / (2.0 * step)
+
+
+def test_score_equals_finite_differences(fitted):
+    data, p = fitted
+    prior = likelihood.prior_of(data, p)
+    score, _ = likelihood.scoring(data, prior, p)
+    for k in range(0, len(score), 7):
+        slope = central(lambda q: likelihood.objective(data, prior, q), p, k, 1e-6)
+        # differences of a value near 1e4 lose 1e-5; the kernel's own differences 1e-7 of the score
+        assert score[k] == pytest.approx(slope, rel=1e-4, abs=1e-2)
+
+
+def test_information_is_the_mean_curvature(fitted):
+    """With the model itself as data, minus the slope of the score is the Fisher information."""
+    data, p = fitted
+    exact = replace(data, density=expected(data, p, 0.0).matrix)
+    prior = likelihood.prior_of(exact, p)
+    _, fisher = likelihood.scoring(exact, prior, p)
+    size = np.sqrt(np.diag(fisher))
+    for k in range(0, len(size), 11):
+        column = -central(lambda q: likelihood.scoring(exact, prior, q)[0], p, k, 1e-5)
+        # the prior's own curvature is its Fisher information only at its centre: 1 of 10³ or more
+        np.testing.assert_allclose(fisher[:, k] / size / size[k], column / size / size[k], atol=5e-3)
+
+
+def test_claimed_scatter_is_near_the_long_data_law(tower, rng):
+    y, shapes = of(tower, rng)
+    found = refined(tower, y, shapes, [True] * 4)
+    limit = 1.0 / np.sqrt(2.0 * np.pi * found.damping_ratio * found.frequency_hz * 600.0)
+    ratio = np.sqrt(found.covariance[:, 1, 1]) / limit
+    assert np.all((ratio > 0.8) & (ratio < 1.5))
+    # no estimate is sharper than the bound of its model; the bound itself is taken at the estimate
+    assert np.all(found.cramer_rao[:, 1] < 1.02 * np.sqrt(found.covariance[:, 1, 1]))
+    assert found.lack_of_fit < 1.3
+
+
+def test_estimates_scatter_as_they_claim():
+    """Sixty records, one mode, ζfT = 6: mean ζ within 3.5 standard errors, 60 intervals hold at least 50.
+
+    Fewer than 50 has a probability of 0.1 % at 95 % coverage (binomial).
+    """
+    system = ModalSystem(np.array([0.5]), np.array([0.02]), np.array([[1.0, 0.5, -0.3]]), np.eye(1), 0.05)
+    z, ratio = [], []
+    for seed in range(60):
+        y, shapes = of(system, np.random.default_rng([3, seed]))
+        found = refined(system, y, shapes, [True])
+        ratio.append(found.damping_ratio[0] / 0.02)
+        z.append(np.log(ratio[-1]) / np.sqrt(found.covariance[0, 1, 1]))
+    assert abs(np.mean(ratio) - 1.0) < 3.5 * np.std(ratio) / np.sqrt(60)
+    assert np.sum(np.abs(z) < 1.96) >= 50
+
+
+def test_a_mode_the_spectrum_needs_is_admitted_and_a_repeated_one_is_not(tower, rng):
+    y, shapes = of(tower, rng)
+    system = ModalSystem(
+        np.append(tower.frequency_hz, [1.21, 0.6]),
+        np.append(tower.damping_ratio, [0.015, 0.03]),
+        np.vstack([tower.mode_shapes, tower.mode_shapes[2:3], tower.mode_shapes[:1]]),
+        np.eye(6),
+    )
+    doubled = np.vstack([shapes, shapes[2:3], shapes[:1]])
+    found = refined(system, y, doubled, [True, True, True, False, False, False])
+    assert list(np.sort(found.candidate)) == [0, 1, 2, 3]
+
+
+def test_gain_of_a_mode_already_there_is_small(fitted, tower):
+    data, p = fitted
+    p = likelihood.climbed(data, p).parameters
+    gain, _ = gain_of(data, p, float(np.exp(p.log_f[0])), float(np.exp(p.log_zeta[0])), p.shapes[0])
+    assert gain < 0.1 * needed_gain(data)
+
+
+def test_exponent_of_coloured_forces_is_found(tower, rng):
+    y, shapes = of(ModalSystem(**{**vars(tower), "force_slope": 2.0}), rng)
+    data = rough(tower, y)
+    p = likelihood.climbed(
+        data, likelihood.start(data, tower.frequency_hz, tower.damping_ratio, shapes)
+    ).parameters
+    # exponents of the two lower modes are seen over most of the band
+    np.testing.assert_allclose(p.colour[:2], 2.0, atol=0.4)
+
+
+def test_a_hump_in_the_force_spectrum_is_a_lack_of_fit(tower, rng):
+    """Narrow-band force at 0.75 Hz, as from a rotor of unsteady speed: not what the model says."""
+    y, shapes = of(tower, rng)
+    n = y.shape[1]
+    f = np.fft.rfftfreq(n, 1.0 / RATE)
+    lines = np.exp(-0.5 * ((f - 0.75) / 0.02) ** 2) * (rng.standard_normal((2, len(f))).T @ [1.0, 1j])
+    hump = np.fft.irfft(lines, n)
+    y = y + 0.5 * np.outer(shapes[2] / np.abs(shapes[2]).max(), hump / hump.std())
+    found = refined(tower, y, shapes, [True] * 4)
+    assert found.lack_of_fit > 1.4

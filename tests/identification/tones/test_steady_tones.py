@@ -1,0 +1,81 @@
+"""Lines of tones are told from the peaks of lightly damped modes and leave nothing behind."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.identification.tones.steady_tones import sinusoid, steady_tones, without_tones
+
+RATE = 5.0
+T = np.arange(3000) / RATE
+
+
+def light_mode(rng, zeta=0.005):
+    """Return ten minutes of a mode whose half bandwidth is one line: ζfT = 0.9."""
+    system = ModalSystem(np.array([0.3]), np.array([zeta]), np.array([[1.0, -0.4]]), np.eye(1), 0.02)
+    return simulate(system, rng, sample_rate_hz=RATE).data
+
+
+def test_frequency_between_lines_is_found():
+    y = np.sin(2.0 * np.pi * 0.50042 * T)[None]
+    spectrum = np.fft.rfft(y, axis=1)
+    # leakage of the negative frequency: 1/(2π·600) of the amplitude
+    assert sinusoid(spectrum, 300).position / 600.0 == pytest.approx(0.50042, abs=2e-6)
+
+
+def test_a_lightly_damped_mode_is_no_tone(rng):
+    """Forty records; the chance of one false tone is below 1 in 1,000 each."""
+    assert [steady_tones(light_mode(rng), RATE)[0] for _ in range(40)] == [()] * 40
+
+
+@pytest.mark.parametrize("tone_hz", [0.1537, 0.27, 0.33, 0.9001, 1.8])
+def test_a_tone_as_strong_as_the_mode_is_found_and_taken_out(rng, tone_hz):
+    y = light_mode(rng)
+    tone = np.sqrt(2.0) * y.std(axis=1, keepdims=True) * np.sin(2.0 * np.pi * tone_hz * T + 0.3)
+    (found,), left = steady_tones(y + tone, RATE)
+    # a fiftieth of a line
+    assert found == pytest.approx(tone_hz, abs=0.02 / 600.0)
+    assert np.std(left - y) < 0.1 * np.std(y)
+
+
+def test_harmonics_of_a_rotor_are_all_found(rng):
+    y = light_mode(rng)
+    harmonics = [0.11, 0.33, 0.66, 1.32]
+    for f in harmonics:
+        y = y + 0.5 * y.std(axis=1, keepdims=True) * np.sin(2.0 * np.pi * f * T)
+    assert sorted(steady_tones(y, RATE)[0]) == pytest.approx(harmonics, abs=1e-4)
+
+
+def test_missing_samples_stay_missing(rng):
+    y = light_mode(rng)
+    y[0, 100:130] = np.nan
+    left = without_tones(y, RATE, [0.7])
+    np.testing.assert_array_equal(np.isnan(left), np.isnan(y))
+
+
+def two_light_modes(rng):
+    """Return ten minutes of six sensors on two light modes and one at 1 Hz."""
+    shapes = np.random.default_rng(1).standard_normal((3, 6))
+    f, zeta = np.array([0.3, 0.302, 1.0]), np.array([0.005, 0.005, 0.003])
+    return simulate(ModalSystem(f, zeta, shapes, np.eye(3), 0.02), rng, sample_rate_hz=RATE).data
+
+
+def test_lightly_damped_modes_of_many_sensors_are_no_tones(rng):
+    """In 120 other records D stays below 14; 25 makes a tone."""
+    assert [steady_tones(two_light_modes(rng), RATE)[0] for _ in range(30)] == [()] * 30
+
+
+@pytest.mark.parametrize("amplitude", [0.2, 0.5, 1.5])
+@pytest.mark.parametrize("half_bandwidths", [0.0, 0.5, 2.0, 6.0])
+def test_a_tone_within_the_peak_of_a_mode_is_seen_by_what_it_moves(rng, amplitude, half_bandwidths):
+    """It moves the sensors otherwise than the mode does, and nothing else moves them so."""
+    y = two_light_modes(rng)
+    tone_hz = 1.0 + half_bandwidths * 0.003
+    wave = np.sin(2.0 * np.pi * tone_hz * T + 0.3) * rng.uniform(0.5, 1.5, 6)[:, None]
+    tone = np.sqrt(2.0) * amplitude * y.std(axis=1, keepdims=True) * wave
+    (found,), left = steady_tones(y + tone, RATE)
+    assert found == pytest.approx(tone_hz, abs=0.1 / 600.0)
+    # what is left differs by what the mode did at the one or two lines that went with the tone
+    assert np.std(left - y) < 0.6 * np.std(y)
