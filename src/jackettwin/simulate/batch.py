@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError
 from jackettwin.files import write_json
+from jackettwin.processes import worker_pool
 from jackettwin.records import write_record
 from jackettwin.records.readers.description import read_description
 from jackettwin.simulate.files import scenario_from
 from jackettwin.simulate.record import simulate
 from jackettwin.simulate.sets import Case, ScenarioSet
 from jackettwin.version import __version__
-
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def run_case(case: Case, folder: Path) -> None:
@@ -91,42 +87,14 @@ def run_set(
 
 def _in_parallel(todo: tuple[Case, ...], folder: Path, workers: int) -> Iterator[str]:
     """Yield the names of cases as they are done; the first error, or Ctrl-C, stops the rest."""
-    spawn = multiprocessing.get_context("spawn")
-    with (
-        _one_thread_each(),
-        ProcessPoolExecutor(workers, mp_context=spawn, initializer=_ignore_interrupt) as pool,
-    ):
+    with worker_pool(workers) as pool:
         running: dict[Future[None], Case] = {pool.submit(run_case, case, folder): case for case in todo}
-        try:
-            while running:
-                done, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in done:
-                    case = running.pop(future)
-                    future.result()
-                    yield case.name
-        finally:
-            for future in running:
-                future.cancel()
-
-
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent: a child that dies with the queue's lock in hand hangs its brothers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Let child processes use one thread of linear algebra each: the cores are taken."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+        while running:
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                case = running.pop(future)
+                future.result()
+                yield case.name
 
 
 def _manifest(chosen: ScenarioSet, folder: Path) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Day, Followed, RecordModes, since_first
-from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.measure import PAIRED_MODES, Measured, measure
 from jackettwin.twin.problem import Evidence, law_model, tied_problem
 from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Problem, SupportModel, numbered_modes
@@ -37,7 +37,6 @@ Each = Literal["day", "record"]
 
 _WHOLE_SPAN = 2.0
 """Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
-_PAIRED_MODES = 12
 
 
 def follow_twin(
@@ -73,7 +72,7 @@ def follow_twin(
     if not new.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     assembly = assembled(config)
-    found = measure(new, assembly, numbered_modes(assembly, _PAIRED_MODES), step=step)
+    found = measure(new, assembly, numbered_modes(assembly, PAIRED_MODES), step=step)
     warnings = [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
     followed = follow_modes(
         config, assembly, _record_modes(new, found), law=law, each=each, prior=prior, step=step
@@ -96,7 +95,7 @@ def follow_modes(
     batches = _batches(config, sorted(records, key=lambda r: r.time_utc), each, past)
     known = [record for day in past for record in day.records]
     everything = [*known, *(record for batch in batches for record in batch)]
-    numbered = numbered_modes(assembly, _PAIRED_MODES)
+    numbered = numbered_modes(assembly, PAIRED_MODES)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
     wind = mean_wind(config, _measured(everything)) if prior is None else prior.wind_m_s
     law = law or (config.update.laws[0] if prior is None else prior.law)

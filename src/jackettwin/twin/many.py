@@ -11,11 +11,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +23,7 @@ from jackettwin.files.json import null_for_nan
 from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
+from jackettwin.processes import worker_pool
 from jackettwin.records.readers import FORMATS
 from jackettwin.records.readers.table import Unsaid
 from jackettwin.twin.observe import Observation, observe
@@ -32,7 +31,6 @@ from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 6
 """Fewer records are done sooner than other processes are started."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _AHEAD = 2
 """Records handed out for every worker: the others are not even opened."""
 
@@ -185,13 +183,9 @@ def _computed(
         for i in left:
             yield i, _one(files[i], work)
         return
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
-    # spawned, not forked: a forked child shares locks and BLAS threads it cannot use
-    pool = ProcessPoolExecutor(n_workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt)
     under_way: dict[Future[Seen | Failed], int] = {}
     waiting = iter(left)
-    try:
+    with worker_pool(n_workers) as pool:
         while True:
             for i in waiting:
                 under_way[pool.submit(_one, files[i], work)] = i
@@ -201,13 +195,6 @@ def _computed(
                 return
             for future in wait(under_way, return_when=FIRST_COMPLETED).done:
                 yield under_way.pop(future), future.result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent, which lets every worker finish its record."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _one(file: Path, work: _Work) -> Seen | Failed:

@@ -18,6 +18,9 @@ from jackettwin.twin.observe import Observation, observe
 from jackettwin.updating import Target
 from jackettwin.updating.pairing import pair
 
+PAIRED_MODES = 12
+"""Modes of the model that measured modes may be paired with."""
+
 
 @dataclass(frozen=True)
 class Sighting:

@@ -10,15 +10,12 @@ from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
-from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.measure import PAIRED_MODES, Measured, measure
 from jackettwin.twin.narrative import assumptions, cautions
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Update, numbered_modes, update
-
-_PAIRED_MODES = 12
-"""Modes of the model that measured modes may be paired with."""
 
 
 def run_twin(
@@ -48,7 +45,7 @@ def run_twin(
     """
     step("assemble the structure")
     assembly = assembled(config)
-    number = max([_PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
+    number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
     numbered = numbered_modes(assembly, number)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
     found = measure(config, assembly, numbered, compare=compare, step=step) if config.records else None
