@@ -1,6 +1,7 @@
 """``jackettwin modes``: the contract's keys, numbers, and refusals."""
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -76,3 +77,23 @@ def test_bad_input_exits_2_with_one_message(arguments: list[str], message: str) 
     assert message in result.stderr.replace("\n", " ")
     assert "Traceback" not in result.stderr
     assert result.stdout == ""
+
+
+def test_free_motions_are_no_modes(tmp_path: Path) -> None:
+    spar = tmp_path / "spar.yaml"
+    spar.write_text(
+        "nodes: {a: [0, 0, 0], b: [0, 0, 50], c: [0, 0, 100]}\n"
+        "materials: {steel: {youngs_modulus_pa: 2.1e11, poisson_ratio: 0.3, density_kg_m3: 7850}}\n"
+        "sections: {tube: {outer_diameter_m: 4, thickness_m: 0.05}}\n"
+        "members:\n"
+        "  - {name: ab, nodes: [a, b], section: tube, material: steel}\n"
+        "  - {name: bc, nodes: [b, c], section: tube, material: steel}\n"
+    )
+    result = document(str(spar), "--number", "2", "--subdivide", "8")
+    assert result["free_motions"] == 6
+    assert len(result["real_poles_rad_s"]) == 0
+    # a free beam's first bending: (4.7300/L)² √(EI/ρA)/2π
+    ei_over_m = 2.1e11 / 7850 * (4.0**2 + 3.9**2) / 16.0
+    f = (4.73004 / 100.0) ** 2 * ei_over_m**0.5 / (2 * 3.141592653589793)
+    for mode in result["modes"]:
+        assert abs(mode["frequency_hz"] / f - 1.0) < 1e-4  # sixteen elements

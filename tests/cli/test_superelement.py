@@ -95,3 +95,26 @@ def test_a_decks_own_damping(tmp_path: Path) -> None:
     refused = run("jacket15", "--deck-damping", "--out", str(out))
     assert refused.exit_code == 2
     assert "only a SubDyn deck" in refused.stderr
+
+
+def test_what_floats_is_reduced_and_missing_modes_are_said(tmp_path: Path) -> None:
+    """A deck without reaction joints moves freely with its interface: a floater's, or one that hangs."""
+    deck = tmp_path / "floats.dat"
+    text = DECK.read_text(encoding="utf-8")
+    lines = text.splitlines()
+    at = next(k for k, line in enumerate(lines) if "NReact" in line)
+    n = int(lines[at].split()[0])
+    lines[at] = lines[at].replace(str(n), "0", 1)
+    del lines[at + 3 : at + 3 + n]
+    deck.write_text("\n".join(lines), encoding="utf-8")
+    few, many = (
+        run(str(deck), "--modes", number, "--out", str(tmp_path / "f.npz"), "--json")
+        for number in ("2", "40")
+    )
+    assert few.exit_code == many.exit_code == 0, few.stderr + many.stderr
+    assert "no coordinates" in few.stderr
+    found = json.loads(many.stdout)
+    assert max(found["guyan_frequency_hz"]) < 1e-3
+    assert not found["warnings"]
+    # forty fixed-interface modes of a jacket whose first five free ones are asked for
+    assert found["largest_frequency_error"] < 0.01

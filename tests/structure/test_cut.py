@@ -38,7 +38,15 @@ def test_what_cannot_be_cut_is_refused() -> None:
     with pytest.raises(InputError, match="has no interface"):
         at_interface(replace(whole, interface_nodes=()))
     with pytest.raises(InputError, match="no reaction node stands below"):
-        at_interface(replace(whole, reactions=()))
+        at_interface(replace(whole, interface_nodes=whole.reaction_nodes))
+
+
+def test_what_floats_is_cut_above_its_interface() -> None:
+    whole = read_structure("jacket15")
+    base, top = at_interface(replace(whole, reactions=()))
+    assert top is not None
+    assert [m.name for m in base.members] == [m.name for m in at_interface(whole)[0].members]
+    assert {m.part for m in top.members} == {"tower"}
 
 
 def test_the_deck_s_mass_ignores_shear() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.response.modal import undamped_modes
 from jackettwin.response.superelement import Superelement, fixed_interface_frequencies, superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import own_support
@@ -83,6 +84,29 @@ def test_monopile(tmp_path: Path) -> None:
         [6.141989, 6.141989, 28.33050, 45.67286, 51.98826, 51.98826],
         rtol=PRINTED,
     )
+
+
+def test_a_hanging_spar_without_reactions(tmp_path: Path) -> None:
+    """SD_SparHanging: two members in ten elements each, free to move with the interface at their top."""
+    deck = read_deck(
+        tmp_path,
+        ndiv=10,
+        NJoints="1 0 0 75 1 0 0 0 0; 2 0 0 0 1 0 0 0 0; 3 0 0 -75 1 0 0 0 0",
+        NInterf="1 1 1 1 1 1 1",
+        NMembers="1 1 2 1 1 1 -1; 2 2 3 1 1 1 -1",
+        NPropSets="1 2.1e11 8.0e10 7850 2.4164 1.2082",
+    )
+    element, held = reduced(deck, 6)
+    printed = [0.07769716, 0.07769716, 0.4864739, 0.4864739, 1.360155, 1.360155]
+    np.testing.assert_allclose(held, printed, rtol=PRINTED)
+    free = undamped_modes(build_system(assemble(deck), own_support(deck)), 12)
+    assert free.n_at_rest == 6
+    printed = [0.4941340, 0.4941340, 1.360329, 1.360329, 2.661805, 2.661805]
+    np.testing.assert_allclose(free.frequency_hz[6:], printed, rtol=PRINTED)
+    # rigid: no stiffness against the interface beside its own, and the mass of both members
+    K = np.abs(element.interface_stiffness)
+    assert K.max() < 1e-6 * np.diag(assemble(deck).stiffness.toarray()).max()
+    assert element.interface_mass[0, 0] == pytest.approx(2 * 2.699967e6, rel=PRINTED)
 
 
 def test_rigid_link(tmp_path: Path) -> None:

@@ -108,8 +108,9 @@ def rayleigh_option(text: str | None) -> Rayleigh:
 def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:
     structure, M = assembly.structure, assembly.mass
     undamped = undamped_modes(system, number + 12)
+    free = undamped.n_at_rest
     damped = damped_modes(
-        system, below_hz=1.1 * float(undamped.frequency_hz[min(number, undamped.omega.size) - 1])
+        system, below_hz=1.1 * float(undamped.frequency_hz[min(number + free, undamped.omega.size) - 1])
     )
     damped = _enough(system, damped, number)
     static = follow(M, undamped.omega, undamped.shapes, damped.shapes)
@@ -136,7 +137,9 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
         "warnings": books.warnings,
         "modes": rows[:number],
         "overdamped_poles": others,
-        "real_poles_rad_s": damped.real_poles,
+        "free_motions": free,
+        # each free motion has a double pole at zero
+        "real_poles_rad_s": damped.real_poles[2 * free :],
     }
 
 
@@ -183,6 +186,8 @@ def _print(document: dict[str, Any]) -> None:
             "–" if apart is None else fixed(apart, 3),
         )
     output.print(table)
+    if document["free_motions"]:
+        output.print(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
     if document["overdamped_poles"]:
         output.print(
             f"{len(document['overdamped_poles'])} overdamped motions of the supports, e.g. "

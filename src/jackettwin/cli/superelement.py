@@ -239,6 +239,11 @@ def _document(
 
 def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
     found = []
+    if error.missing:
+        found.append(f"{error.missing} modes of the band have no coordinates: keep more of them")
+    apart = float(np.abs(error.frequency_error).max(initial=0.0))
+    if apart > 0.01:
+        found.append(f"a frequency is {100 * apart:.0f} % off: keep more coordinates")
     worst = float(np.abs(error.damping_error / np.maximum(damping_ratio(error.full), 1e-3)).max(initial=0.0))
     if worst > 0.05:
         found.append(

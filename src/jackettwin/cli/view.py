@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
@@ -17,7 +18,7 @@ from jackettwin.records import read_record
 from jackettwin.report.view import Quantity, View, thickness_quantities, write_view
 from jackettwin.report.view_motions import Motion, damped_motion, record_motion, undamped_motion, wave_motion
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.modal import UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.passage import wave_passage
 from jackettwin.response.playback import playback, record_sensors
 from jackettwin.response.sensors import Sensor
@@ -108,9 +109,11 @@ def view_command(
         found = playback(assembly, undamped_modes(system, 12), measured)
         motions.append(record_motion(assembly, measured.name, found))
     books = check(assembly)
+    loads = dict(nodal_force(f) for f in forces)
+    floats = not (held.springs or held.fixed)
     view = View(
         assembly,
-        (*thickness_quantities(assembly), *_uses(assembly, system, dict(nodal_force(f) for f in forces))),
+        (*thickness_quantities(assembly), *(() if floats else _uses(assembly, system, loads))),
         tuple(motions),
         sensors,
         coefficients,
@@ -148,10 +151,12 @@ def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
 
 
 def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
-    """Return undamped modes, and damped ones if anything dissipates."""
+    """Return undamped modes, and damped ones if anything dissipates; what floats freely is no mode."""
     if number == 0:
         return []
-    still = undamped_modes(system, number)
+    still = undamped_modes(system, number + DOFS_PER_NODE)
+    shown = range(still.n_at_rest, min(still.n_at_rest + number, still.omega.size))
+    still = UndampedModes(still.omega[shown], still.shapes[:, shown])
     labels = mode_labels(mode_kinds(assembly, still.shapes))
     motions = [
         undamped_motion(assembly, f"{k + 1} {label.replace('_', ' ')}", float(f), still.shapes[:, k])

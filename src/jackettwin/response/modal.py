@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.response.poles import REAL, poles_below
 from jackettwin.response.system import System
-from jackettwin.structure.eigen import below_zero, lowest_modes
+from jackettwin.structure.eigen import AT_REST, below_zero, lowest_modes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -34,6 +34,11 @@ class UndampedModes:
     def frequency_hz(self) -> FloatArray:
         """Natural frequencies [Hz]."""
         return self.omega / (2.0 * pi)
+
+    @property
+    def n_at_rest(self) -> int:
+        """How many of them, the first, are free motions of a floating structure or a mechanism."""
+        return int(np.count_nonzero(self.omega <= AT_REST * self.omega.max(initial=0.0)))
 
 
 @dataclass(frozen=True)

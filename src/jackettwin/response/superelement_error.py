@@ -10,6 +10,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 from scipy.optimize import linear_sum_assignment
 
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.response.poles import poles_below
 from jackettwin.response.superelement import (
     INTERFACE,
@@ -22,7 +23,7 @@ from jackettwin.response.superelement import (
 from jackettwin.response.system import Pencil, System
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
-from jackettwin.structure.eigen import dense, lowest_modes
+from jackettwin.structure.eigen import AT_REST, dense, lowest_modes
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -38,10 +39,12 @@ class ReducedModes:
     Attributes
     ----------
     full, reduced : (n_modes,) λ [rad/s], by |λ|
+    missing : modes of the full model that the reduced one has no coordinates for
     """
 
     full: ComplexArray
     reduced: ComplexArray
+    missing: int = 0
 
     @property
     def frequency_error(self) -> FloatArray:
@@ -74,9 +77,9 @@ def reduced_modes(
     exact = np.array([pole for pole, _ in poles_below(tied(full), 2.0 * pi * band_hz)])
     exact = exact[(exact.imag > 0.0) & (damping_ratio(exact) < _OVERDAMPED)]
     found = coupled_poles(element, rest, full.pencil.rayleigh)
-    found = found[found.imag > 0.0]
+    found = found[found.imag > AT_REST * np.abs(exact).max(initial=0.0)]
     rows, columns = linear_sum_assignment(np.abs(exact[:, None] - found) / np.abs(exact)[:, None])
-    return ReducedModes(exact[rows], found[columns])
+    return ReducedModes(exact[rows], found[columns], exact.size - rows.size)
 
 
 def tied(system: System) -> Pencil:
@@ -125,13 +128,15 @@ def coupled_poles(element: Superelement, rest: Assembly | None, rayleigh: Raylei
 def default_band_hz(full: System) -> float:
     """Return the band [Hz] whose damping is asked for: five modes, with dampers locked, and 5 %.
 
-    A turbine's second bending pair are modes 4 and 5.
+    A turbine's second bending pair are modes 4 and 5. Motions of a floating structure at rest do not count.
     """
     pencil = tied(full)
     locked = [group.dofs for group in pencil.groups if dissipates(group.law)]
     free = np.setdiff1d(np.arange(pencil.n), np.concatenate([*locked, np.empty(0, dtype=np.intp)]))
     K, M = (sp.csc_array(matrix)[free][:, free] for matrix in (pencil.static_stiffness(), pencil.M))
-    return float(1.05 * lowest_modes(K, M, 5)[0][-1] / (2.0 * pi))
+    omega = lowest_modes(K, M, 5 + DOFS_PER_NODE)[0]
+    oscillating = omega[omega > AT_REST * omega[-1]]
+    return float(1.05 * oscillating[:5][-1] / (2.0 * pi))
 
 
 def hertz(pole: ComplexArray) -> FloatArray:

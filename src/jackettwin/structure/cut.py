@@ -16,12 +16,13 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
     """Return (foundation, rest): what is joined to the ground without passing the interface, and the rest.
 
     Masses on interface nodes and members between two of them belong to the foundation. The rest is None if
-    nothing stands on the interface.
+    nothing stands on the interface. Without any reaction node the structure floats, or hangs on its
+    interface: all of it is foundation but the tower.
 
     Raises
     ------
     InputError
-        If the structure has no interface nodes, or no reaction nodes below them.
+        If the structure has no interface nodes, or nothing below them.
     """
     interface = set(structure.interface_nodes)
     if not interface:
@@ -31,7 +32,7 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
             value=[],
             remedy="name the nodes that carry what stands on the foundation",
         )
-    inside = _reached(structure, set(structure.reaction_nodes) - interface, interface)
+    inside = _reached(structure, _grounded(structure) - interface, interface)
     if not inside:
         raise InputError(
             "no reaction node stands below the interface",
@@ -48,6 +49,14 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
         return base, None
     top = replace(_part(structure, rest | interface, above), reactions=())
     return base, replace(top, masses=tuple(m for m in top.masses if m.node in rest))
+
+
+def _grounded(structure: Structure) -> set[str]:
+    """Return the reaction nodes; of a structure without them, every node that is not the tower's."""
+    if structure.reactions:
+        return set(structure.reaction_nodes)
+    tower = {node for m in structure.members if m.part == "tower" for node in (m.start, m.end)}
+    return set(structure.nodes) - tower
 
 
 def _reached(structure: Structure, start: set[str], stop: set[str]) -> set[str]:

@@ -16,6 +16,8 @@ FloatArray = npt.NDArray[np.float64]
 Matrix = Any
 """A NumPy array or a SciPy sparse array."""
 
+AT_REST = 1e-4
+"""Motions slower than this share of the elastic ones are rounding of a floating structure's free ones."""
 _SMALL = 150
 """Matrices up to this size are solved densely: Lanczos needs room."""
 
