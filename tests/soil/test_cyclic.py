@@ -7,7 +7,8 @@ from jackettwin.soil.curves import Tanh
 from jackettwin.soil.cyclic import CyclicPile, advance, cyclic_pile, drive, loop
 from jackettwin.soil.hysteresis import Sliders
 from jackettwin.soil.impedance import head_impedance
-from jackettwin.soil.piles import Pile, PileCurves, linearised, pile_curves, stations
+from jackettwin.soil.pile_curves import PileCurves, linearised, pile_curves
+from jackettwin.soil.piles import Pile, stations
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
 from jackettwin.soil.pushover import push
 from jackettwin.structure import Section

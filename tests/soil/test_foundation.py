@@ -95,3 +95,13 @@ def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(InputError, match=message) as caught:
         read_foundation(path)
     assert str(path) in str(caught.value)
+
+
+def test_a_pile_longer_than_its_layers_is_said(tmp_path: Path) -> None:
+    structure = read_structure("jacket15")
+    for length, said in ((60, 0), (61, 1)):
+        path = tmp_path / "piles.yaml"
+        path.write_text(PILE.replace("60", str(length), 1) + CLAY)
+        notes = read_support(path, structure).notes
+        assert len(notes) == said
+        assert all("61 m, the layers 60 m" in note for note in notes)

@@ -11,14 +11,8 @@ from jackettwin.response.modal import damped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.impedance import head_impedance, lumped_head
-from jackettwin.soil.piles import (
-    Pile,
-    dashpots,
-    linear_springs,
-    linearised,
-    pile_curves,
-    stations,
-)
+from jackettwin.soil.pile_curves import linearised, pile_curves
+from jackettwin.soil.piles import Pile, dashpots, linear_springs, stations
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
 from jackettwin.soil.pushover import push
 from jackettwin.soil.scour import Scour

@@ -64,6 +64,7 @@ def modes_command(
     system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
     own = f"the structure's own: {described(held)}"
     document = {**_document(assembly, system, number), "support": own if support is None else support}
+    document["warnings"] = [*document["warnings"], *held.notes]
     if as_json:
         print_json(document)
     else:

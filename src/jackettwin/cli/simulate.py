@@ -33,7 +33,7 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
         print_json({**done.document(), "record": str(path)})
     else:
         _print(done, path)
-        for note in rotor_notes(chosen):
+        for note in (*rotor_notes(chosen), *chosen.asset.support.notes):
             output.print(f"note: {note}")
 
 

@@ -19,6 +19,11 @@ class Curve(Protocol):
         """Slope the curve starts with [N/m² or N/m]."""
         ...
 
+    @property
+    def capacity(self) -> float:
+        """Largest reaction [N/m or N]."""
+        ...
+
     def force(self, y: FloatArray | float) -> FloatArray:
         """Return the reaction at displacement ``y`` [m]."""
         ...
@@ -50,6 +55,11 @@ class Table:
     def initial_stiffness(self) -> float:
         """Slope of the first line."""
         return self.p[1] / self.y[1]
+
+    @property
+    def capacity(self) -> float:
+        """The peak."""
+        return max(self.p)
 
     def force(self, y: FloatArray | float) -> FloatArray:
         """Return the reaction at displacement ``y`` [m]."""

@@ -19,7 +19,8 @@ import scipy.sparse as sp
 from jackettwin.errors import NumericalError
 from jackettwin.soil.hysteresis import Sliders, move, sliders
 from jackettwin.soil.impedance import pile_matrices
-from jackettwin.soil.piles import Pile, PileCurves, linearised
+from jackettwin.soil.pile_curves import PileCurves, linearised
+from jackettwin.soil.piles import Pile
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,17 +16,8 @@ from jackettwin.files.plausible import refuse_tiny
 from jackettwin.soil.cyclic import CyclicPile, cyclic_pile
 from jackettwin.soil.impedance import PileHead, lumped_head, on_pile_heads
 from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
-from jackettwin.soil.piles import (
-    CurveOptions,
-    Pile,
-    PileCurves,
-    PileSprings,
-    dashpots,
-    linear_springs,
-    linearised,
-    pile_curves,
-    with_piles,
-)
+from jackettwin.soil.pile_curves import CurveOptions, PileCurves, linearised, pile_curves
+from jackettwin.soil.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
 from jackettwin.soil.radiation import Radiation
 from jackettwin.soil.scour import Scour
@@ -45,6 +36,8 @@ class Foundation:
     radiation: Radiation | None = None
     curves: PileCurves | None = None
     """The ground's own curves; None for linear ground."""
+    notes: tuple[str, ...] = ()
+    """What was assumed of the ground."""
 
     def head(self) -> PileHead:
         """Return a pile lumped at its head."""
@@ -77,11 +70,12 @@ class Foundation:
 
     def piled(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure on its piles, every node of them."""
-        return with_piles(structure, self.pile, self.springs, law=self.law, dashpots=self.dashpots)
+        piled, support = with_piles(structure, self.pile, self.springs, law=self.law, dashpots=self.dashpots)
+        return piled, replace(support, notes=self.notes)
 
     def heads(self, structure: Structure) -> Support:
         """Return pile heads lumped at the feet: as many unknowns as without piles."""
-        return on_pile_heads(structure, self.head())
+        return replace(on_pile_heads(structure, self.head()), notes=self.notes)
 
     def lumped(self, structure: Structure) -> tuple[Structure, Support]:
         """Return the structure and its pile heads, as ``piled`` does with every node of the piles."""
@@ -203,6 +197,7 @@ class CurvesSchema(Schema):
     sand_tz: str = "rp2geo"
     clay_py: str = "table"
     cycles: Annotated[float, Field(ge=1.0)] = 100.0
+    layering: str = "overburden"
 
 
 class DampingSchema(Schema):
@@ -251,7 +246,19 @@ class FoundationSchema(Schema):
         curves = self._curves(pile)
         radiation = None if self.radiation is None else self.radiation.build()
         springs = self._linear(pile) if curves is None else linearised(curves)
-        return Foundation(pile, springs, law, radiation, curves)
+        return Foundation(pile, springs, law, radiation, curves, self._notes())
+
+    def _notes(self) -> tuple[str, ...]:
+        """Return that the lowest layer is taken to go on, if the pile is longer than the layers."""
+        if self.soil.layers is None:
+            return ()
+        described = sum(layer.thickness_m for layer in self.soil.layers)
+        if self.pile.length_m <= described + 1e-9:
+            return ()
+        return (
+            f"the pile reaches {self.pile.length_m:g} m, the layers {described:g} m: "
+            "the lowest is taken to go on below",
+        )
 
     def _curves(self, pile: Pile) -> PileCurves | None:
         layers, linear = self.soil.layers, self.soil.linear

@@ -12,7 +12,8 @@ import scipy.sparse.linalg as spla
 from jackettwin.errors import NumericalError
 from jackettwin.soil.curves import tangent_stiffness
 from jackettwin.soil.impedance import pile_matrices
-from jackettwin.soil.piles import Pile, PileCurves, PileSprings, linearised
+from jackettwin.soil.pile_curves import PileCurves, linearised
+from jackettwin.soil.piles import Pile, PileSprings
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -41,6 +41,8 @@ class Support:
     """(node, held DOFs 0–5) pairs."""
     masses: tuple[tuple[str, FloatArray], ...] = ()
     """(node, 6×6 mass that moves with it) pairs: piles."""
+    notes: tuple[str, ...] = ()
+    """What was assumed to get it."""
 
 
 def pinned(structure: Structure) -> Support:
