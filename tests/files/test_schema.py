@@ -19,11 +19,19 @@ class Dog(Schema):
     barks: bool = True
 
 
+class Cellar(Schema):
+    depth_m: Annotated[float, Field(gt=0.0)]
+
+
 class Home(Schema):
     area_m2: Annotated[float, Field(gt=0.0)]
     pets: list[Annotated[Cat | Dog, Field(discriminator="type")]] = []
     rooms: dict[str, Cat] = {}
     glass_ratio: Annotated[float, Field(lt=1.0)] = 0.2
+    duration_s: Annotated[float, Field(lt=10.0)] = 1.0
+    colour: Literal["red", "none"] | Annotated[float, Field(ge=0.0, le=1.0)] = "red"
+    cellar: str | Cellar = "none"
+    name: str = "home"
 
 
 @pytest.mark.parametrize(
@@ -36,10 +44,19 @@ class Home(Schema):
         ({"area_m2": "big"}, "area_m2: .*got 'big'"),
         ({"area_m2": float("nan")}, "area_m2: .*finite"),
         ({"area": 1}, "area: unknown key .got 'area'.*did you mean 'area_m2'"),
-        ({"area_m2": 1, "pets": [{"type": "cow"}]}, "pets.0: .*'cat', 'dog'"),
+        ({"area_m2": 1, "pets": [{"type": "cow"}]}, "pets.0.type: unknown type .got 'cow'.; allowed: 'cat'"),
+        ({"area_m2": 1, "pets": [{"lives": 3}]}, "pets.0.type: required key is missing; add 'type'"),
         ({"area_m2": 1, "pets": [{"type": "cat", "live": 3}]}, "pets.0.cat.live: .*did you mean 'lives'"),
         ({"area_m2": 1, "pets": [{"type": "dog", "lives": 3}]}, "pets.0.dog.lives: .*allowed: type, barks"),
         ({"area_m2": 1, "rooms": {"attic": {"type": "cat", "lifes": 1}}}, "rooms.attic.lifes: .*'lives'"),
+        ({"area_m2": 1, "duration_s": 20}, "duration_s: .*; check the number and its unit"),
+        ({"area_m2": 1, "name": 5}, "name: not a text .got 5.; write a name"),
+        # unions: the field alone, what is wrong with the kind it is, or what every kind allows
+        ({"area_m2": 1, "colour": 16}, r"colour: .*less than or equal to 1 .got 16.; allowed: ≤ 1"),
+        ({"area_m2": 1, "colour": "blue"}, "colour: .*allowed: 'red' or 'none'; write it without a unit"),
+        ({"area_m2": 1, "cellar": {"depth_m": -1}}, "cellar.depth_m: .*got -1.; allowed: > 0"),
+        ({"area_m2": 1, "cellar": {"depth": 1}}, "cellar.depth: unknown key .*did you mean 'depth_m'"),
+        ({"area_m2": 1, "cellar": 5}, "cellar: not a text .got 5.; write a name.*, or write keys"),
     ],
 )  # fmt: skip
 def test_one_sentence_names_place_value_and_remedy(data: dict, message: str) -> None:

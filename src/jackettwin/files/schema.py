@@ -22,6 +22,8 @@ S = TypeVar("S", bound=Schema)
 
 _BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
 _PLAIN = {
+    "string_type": ("not a text", "write a name; in quotes if it looks like a number"),
+    **dict.fromkeys(("too_short", "string_too_short"), ("empty, or too few", "add what is missing")),
     **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), ("not a whole number", "write e.g. 4")),
     **dict.fromkeys(("float_parsing", "float_type"), ("not a number", "write it without a unit, e.g. 1.5e9")),
     "finite_number": ("not a finite number", "give its value, or leave the key out"),
@@ -30,6 +32,14 @@ _PLAIN = {
     **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), ("not a mapping", "write keys")),
 }
 """What pydantic calls a mistake → what to say of it, and what to do."""
+_KINDS = ("str", "int", "float", "bool", "constrained-float", "constrained-int", "constrained-str")
+_OF_ANOTHER_KIND = (
+    "literal_error",
+    "string_type",
+    *(f"{kind}_{what}" for kind in ("int", "float", "bool") for what in ("parsing", "type")),
+    *("list_type", "tuple_type", "dict_type", "model_type", "model_attributes_type"),
+)
+"""Mistakes that say no more than that a value is not of one of the kinds it may be."""
 
 
 def validate(schema: type[S], data: Any, *, file: Path | str | None = None, field: str | None = None) -> S:
@@ -43,14 +53,62 @@ def validate(schema: type[S], data: Any, *, file: Path | str | None = None, fiel
     try:
         return schema.model_validate(data)
     except ValidationError as error:
-        first = _most_telling(error)
-        raise _as_input_error(first, schema).at(file=file, field=field) from None
+        errors = [{**e, "loc": _place(e["loc"], schema)} for e in error.errors()]
+        first = _most_telling(errors)
+        others = [e for e in errors if e["loc"] == first["loc"] and e is not first]
+        found = _as_input_error(first, schema)
+        if others and first["type"] in _OF_ANOTHER_KIND:
+            found = _with_alternatives(found, [_as_input_error(e, schema) for e in others])
+        raise found.at(file=file, field=field) from None
 
 
-def _most_telling(error: ValidationError) -> Any:
-    """Return the unknown key if there is one: a typo also makes its right name missing."""
-    errors = error.errors()
-    return next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+def _place(location: tuple[Any, ...], schema: type[BaseModel]) -> tuple[Any, ...]:
+    """Return a location without what pydantic puts in for each alternative of a union."""
+    names = {model.__name__ for model in _all_models(schema)}
+    return tuple(
+        part
+        for part in location
+        if not isinstance(part, str) or not (part in names or part in _KINDS or part.endswith("]"))
+    )
+
+
+def _all_models(schema: type[BaseModel]) -> set[type[BaseModel]]:
+    found, stack = {schema}, [schema]
+    while stack:
+        for info in stack.pop().model_fields.values():
+            new = set(_models_inside(info.annotation)) - found
+            found |= new
+            stack += new
+    return found
+
+
+def _most_telling(errors: list[Any]) -> Any:
+    """Return the unknown key if there is one: a typo also makes its right name missing.
+
+    Else the first; where a value may be of several kinds, what is wrong with it as the kind that it is.
+    """
+    unknown = next((e for e in errors if e["type"] == "extra_forbidden"), None)
+    if unknown is not None:
+        return unknown
+    first = errors[0]
+    base = first["loc"]
+    alternatives = [e for e in errors if e["loc"][: len(base)] == base]
+    return next((e for e in alternatives if e["type"] not in _OF_ANOTHER_KIND), first)
+
+
+def _with_alternatives(error: InputError, others: list[InputError]) -> InputError:
+    """Return an error that allows what every alternative of a union does."""
+
+    def joined(texts: list[str | None]) -> str | None:
+        return ", or ".join(dict.fromkeys(text for text in texts if text is not None)) or None
+
+    return InputError(
+        error.problem,
+        field=error.field,
+        value=error.value,
+        allowed=joined([error.allowed, *(other.allowed for other in others)]),
+        remedy=joined([error.remedy, *(other.remedy for other in others)]),
+    )
 
 
 def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
@@ -66,6 +124,15 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
             allowed=", ".join(known) or None,
             remedy=did_you_mean(str(location[-1]), known) or "take it out, or use one of these",
         )
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        key = context["discriminator"].strip("'")
+        return InputError(
+            f"unknown {key}" if "tag" in context else "required key is missing",
+            field=f"{field}.{key}",
+            value=context.get("tag"),
+            allowed=context.get("expected_tags"),
+            remedy=None if "tag" in context else f"add {key!r}",
+        )
     if kind == "missing":
         return InputError("required key is missing", field=field, remedy=f"add {location[-1]!r}")
     if kind in ("value_error", "assertion_error") and isinstance(context.get("error"), InputError):
@@ -80,7 +147,7 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
 
 
 def _out_of_bounds(field: str, value: Any) -> str:
-    if "ratio" in field and isinstance(value, (int, float)) and value >= 1.0:
+    if "ratio" in field.rpartition(".")[2].split("_") and isinstance(value, (int, float)) and value >= 1.0:
         return f"a ratio: {value:g} % is {value / 100.0:g}"
     return "check the number and its unit"
 

@@ -70,14 +70,17 @@ def blend_polars(polars: list[Polar], relative_thickness: FloatArray) -> tuple[F
     """Return tables (Cl, Cd), each (n, ALPHA.size), at the stations' relative thickness.
 
     Monotone cubics over the angle and over the thickness; linear blending over thickness or span adds up to
-    2 % to the drag of the thick root and changes its stalled lift.
+    2 % to the drag of the thick root and changes its stalled lift. Polars of one thickness (two cylinders)
+    count as their mean.
     """
-    ordered = sorted(polars, key=lambda polar: polar.relative_thickness)
-    thickness = np.array([polar.relative_thickness for polar in ordered])
+    thickness, of = np.unique([polar.relative_thickness for polar in polars], return_inverse=True)
+    inside = np.clip(relative_thickness, thickness[0], thickness[-1])
 
     def blended(key: str) -> FloatArray:
-        tables = np.array([_on_alpha(polar.alpha, getattr(polar, key)) for polar in ordered])
-        inside = np.clip(relative_thickness, thickness[0], thickness[-1])
+        each = np.array([_on_alpha(polar.alpha, getattr(polar, key)) for polar in polars])
+        tables = np.array([each[of == k].mean(axis=0) for k in range(thickness.size)])
+        if thickness.size == 1:
+            return np.asarray(np.repeat(tables, inside.size, axis=0))
         return np.asarray(PchipInterpolator(thickness, tables, axis=0)(inside))
 
     return blended("cl"), blended("cd")

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import find_file, read_yaml
 from jackettwin.loads.bem import Control
 from jackettwin.loads.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.rotor import Rotor
+from jackettwin.loads.windio import Part, WindIO, windio
 
 FloatArray = npt.NDArray[np.float64]
+
+_STEEPEST = radians(30.0)
+"""Of a shaft or a cone: steeper ones are degrees where radians belong."""
 
 
 def read_rotor(name: str | Path, *, folder: Path | None = None) -> tuple[Rotor, Control]:
@@ -31,23 +35,15 @@ def read_rotor(name: str | Path, *, folder: Path | None = None) -> tuple[Rotor, 
         If the file is missing or lacks a part that is needed.
     """
     path = find_file(name, "rotors", folder=folder)
-    data = read_yaml(path, what="windIO file")
-    try:
-        return _rotor(data), _control(data)
-    except KeyError as missing:
-        raise InputError(
-            "windIO file lacks a part",
-            file=path,
-            field=str(missing.args[0]),
-            remedy="give a windIO (ontology v1) turbine with outer_shape_bem, airfoils, hub and drivetrain",
-        ) from None
+    content = windio(read_yaml(path, what="windIO file"))
+    with located(file=path):
+        return _rotor(content), _control(content)
 
 
-def _rotor(data: dict[str, Any]) -> Rotor:
-    parts = data["components"]
-    hub, drivetrain = parts["hub"], parts["nacelle"]["drivetrain"]
-    hub_radius = 0.5 * float(hub["diameter"])
-    blade = _blade(parts["blade"]["outer_shape_bem"], data["airfoils"])
+def _rotor(content: WindIO) -> Rotor:
+    hub, drivetrain = content.root["components"]["hub"], content.drivetrain
+    hub_radius = 0.5 * hub["diameter"].number(low=0.1, high=30.0)
+    blade = _blade(content)
     r = hub_radius + blade.z
     lift = stall_delay(
         blade.cl,
@@ -55,40 +51,47 @@ def _rotor(data: dict[str, Any]) -> Rotor:
         chord=blade.chord,
         relative_thickness=blade.relative_thickness,
         radius=float(r[-1]),
-        tip_speed_ratio=_control(data).tip_speed_ratio,
+        tip_speed_ratio=content.speeds()[0],
     )
+    steepest = _STEEPEST / content.angle
     return Rotor(
         blade=replace(blade, cl=lift),
-        n_blades=int(data["assembly"]["number_of_blades"]),
+        n_blades=int(content.root["assembly"]["number_of_blades"].number(low=1.0, high=6.0)),
         hub_radius=hub_radius,
-        overhang=float(drivetrain["overhang"]),
-        hub_height=float(drivetrain["distance_tt_hub"]),
-        tilt=float(drivetrain["uptilt"]),
-        cone=float(hub["cone_angle"]),
+        overhang=drivetrain["overhang"].number(low=-50.0, high=50.0),
+        hub_height=drivetrain["distance_tt_hub"].number(low=-20.0, high=50.0),
+        tilt=drivetrain["uptilt"].number(low=-steepest, high=steepest) * content.angle,
+        cone=hub["cone_angle"].number(low=-steepest, high=steepest) * content.angle,
     )
 
 
-def _blade(shape: dict[str, Any], airfoils: list[dict[str, Any]]) -> Blade:
-    span = np.asarray(shape["twist"]["grid"], dtype=np.float64)
+def _blade(content: WindIO) -> Blade:
+    shape, axis = content.shape, content.axis
+    span, twist = shape["twist"].curve()
 
-    def at_stations(curve: dict[str, Any]) -> FloatArray:
-        return np.asarray(np.interp(span, curve["grid"], curve["values"]))
+    def at_stations(curve: Part) -> FloatArray:
+        return np.asarray(np.interp(span, *curve.curve()))
 
-    axis = shape["reference_axis"]
-    z, prebend = at_stations(axis["z"]), at_stations(axis["x"])
-    by_name = {airfoil["name"]: airfoil for airfoil in airfoils}
-    used = [by_name[label] for label in shape["airfoil_position"]["labels"]]
-    position = shape["airfoil_position"]["grid"]
-    thickness = np.asarray(PchipInterpolator(position, [foil["relative_thickness"] for foil in used])(span))
-    cl, cd = blend_polars([_polar(by_name[name]) for name in sorted({a["name"] for a in used})], thickness)
+    z, prebend, chord = at_stations(axis["z"]), at_stations(axis["x"]), at_stations(shape["chord"])
+    for part, values, good in ((axis["z"], np.diff(z), "growing"), (shape["chord"], chord, "> 0")):
+        if not (values > 0.0).all():
+            raise InputError("out of range", field=part.place, value=float(values.min()), allowed=good)
+    position, labels = content.airfoil_positions()
+    used = _used(content, labels)
+    thickness = np.asarray(
+        PchipInterpolator(position, [content.thickness(used[label.name]) for label in labels])(span)
+    )
+    cl, cd = blend_polars(
+        [Polar(content.thickness(used[name]), *content.polar(used[name])) for name in sorted(used)], thickness
+    )
     weight = np.zeros_like(z)
     weight[:-1] += 0.5 * np.diff(z)
     weight[1:] += 0.5 * np.diff(z)
     return Blade(
         z=z,
         prebend=prebend,
-        chord=at_stations(shape["chord"]),
-        twist=at_stations(shape["twist"]),
+        chord=chord,
+        twist=twist * content.angle,
         relative_thickness=thickness,
         weight=weight,
         cl=cl,
@@ -96,19 +99,26 @@ def _blade(shape: dict[str, Any], airfoils: list[dict[str, Any]]) -> Blade:
     )
 
 
-def _polar(airfoil: dict[str, Any]) -> Polar:
-    polar = airfoil["polars"][0]
-    alpha = np.asarray(polar["c_l"]["grid"], dtype=np.float64)
-    drag = np.interp(alpha, polar["c_d"]["grid"], polar["c_d"]["values"])
-    lift = np.asarray(polar["c_l"]["values"], dtype=np.float64)
-    return Polar(float(airfoil["relative_thickness"]), alpha, lift, drag)
+def _used(content: WindIO, labels: list[Part]) -> dict[str, Part]:
+    """Return the airfoils that the blade names."""
+    known = {foil["name"].name: foil for foil in content.root["airfoils"].entries()}
+    for label in labels:
+        if label.name not in known:
+            raise InputError(
+                "no such airfoil",
+                field=label.place,
+                value=label.name,
+                allowed=", ".join(known),
+                remedy=did_you_mean(label.name, known),
+            )
+    return {label.name: known[label.name] for label in labels}
 
 
-def _control(data: dict[str, Any]) -> Control:
-    torque = data["control"]["torque"]
+def _control(content: WindIO) -> Control:
+    tip_speed_ratio, lowest, highest = content.speeds()
     return Control(
-        rated_power_w=float(data["assembly"]["rated_power"]),
-        tip_speed_ratio=float(torque["tsr"]),
-        lowest_speed_rad_s=float(torque["VS_minspd"]),
-        highest_speed_rad_s=float(torque["VS_maxspd"]),
+        rated_power_w=content.root["assembly"]["rated_power"].number(low=1e3, high=1e9),
+        tip_speed_ratio=tip_speed_ratio,
+        lowest_speed_rad_s=lowest,
+        highest_speed_rad_s=highest,
     )

@@ -85,8 +85,21 @@ def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:
         law=ground.law,
         radiation=ground.radiation,
     )
-    with located(field="soil"):
+    try:
         return whole.build()
+    except InputError as error:
+        raise _in_words_of_scenario(error) from None
+
+
+def _in_words_of_scenario(error: InputError) -> InputError:
+    """Return an error of a foundation with a scenario's key: ``pile`` is ``piles``, the rest in ``soil``."""
+    first, dot, rest = (error.field or "").partition(".")
+    field = f"piles{dot}{rest}" if first == "pile" else f"soil{dot}{rest}"
+    if first not in ("pile", "soil"):
+        field = f"soil.{error.field}"
+    return InputError(
+        error.problem, field=field, value=error.value, allowed=error.allowed, remedy=error.remedy
+    )
 
 
 def _first_frequency(structure: Structure) -> float:

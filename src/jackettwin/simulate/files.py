@@ -14,7 +14,7 @@ from jackettwin.loads.current import Current
 from jackettwin.loads.files import read_rotor
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
-from jackettwin.response.sensors import Sensor
+from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
 from jackettwin.simulate.scenario import Air, Clock, Instrument, Scenario, Sea, Turbine
@@ -27,7 +27,7 @@ from jackettwin.simulate.schema import (
     WindSchema,
 )
 from jackettwin.simulate.water_files import WaterSchema, water_members
-from jackettwin.structure import Structure
+from jackettwin.structure import Structure, assemble
 
 REGULAR = ("airy", "stokes5", "stream")
 _GAP_M = 5.0
@@ -65,11 +65,8 @@ def scenario_from(data: Any, path: Path) -> Scenario:
     with located(file=path):
         asset = build_asset(schema, path.parent)
         turbine = _turbine(schema, path.parent)
-        names = [s.channel for s in schema.sensors]
-        if len(set(names)) != len(names):
-            raise InputError(
-                "a channel is given twice", field="sensors", value=names, remedy="rename one of them"
-            )
+        instruments = tuple(_instrument(s) for s in schema.sensors)
+        _check_instruments(instruments, asset.structure)
         return Scenario(
             name=path.stem,
             path=path,
@@ -78,8 +75,7 @@ def scenario_from(data: Any, path: Path) -> Scenario:
             air=_air(schema, asset.structure, turbine),
             turbine=turbine,
             clock=_clock(schema.time),
-            instruments=tuple(_instrument(s) for s in schema.sensors)
-            or _standard_instruments(asset.structure),
+            instruments=instruments or _standard_instruments(asset.structure),
             sensor_seed=schema.sensor_seed,
         )
 
@@ -93,8 +89,7 @@ def _turbine(schema: ScenarioSchema, folder: Path) -> Turbine | None:
         return None
     if chosen.state == "operating" and schema.wind is None:
         raise InputError("an operating turbine needs wind", field="wind", remedy="add wind: {speed_m_s: …}")
-    with located(field="rotor.data"):
-        rotor, control = read_rotor(chosen.data, folder=folder)
+    rotor, control = read_rotor(chosen.data, folder=folder)
     return Turbine(
         rotor,
         control,
@@ -274,6 +269,16 @@ def _clock(t: TimeSchema) -> Clock:
             remedy="take longer steps or a shorter record",
         )
     return Clock(t.duration_s, h, t.discard_s, load)
+
+
+def _check_instruments(instruments: tuple[Instrument, ...], structure: Structure) -> None:
+    """Refuse channels of one name, and sensors without a place or a direction."""
+    names = [one.sensor.channel for one in instruments]
+    if len(set(names)) != len(names):
+        raise InputError(
+            "a channel is given twice", field="sensors", value=names, remedy="rename one of them"
+        )
+    observation_matrix(assemble(structure), tuple(one.sensor for one in instruments))
 
 
 def _instrument(s: SensorSchema) -> Instrument:

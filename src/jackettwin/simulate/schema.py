@@ -26,6 +26,8 @@ NotNegative = Annotated[float, Field(ge=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Period = Annotated[float, Field(ge=0.5, le=100.0)]
 """Of a wave: shorter ones are ripples, longer ones tides [s]."""
+Speed = Annotated[float, Field(ge=0.0, le=10.0)]
+"""Of water [m/s]."""
 Seed = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]
 
@@ -83,9 +85,9 @@ class WavesSchema(Schema):
 class CurrentSchema(Schema):
     """``current``."""
 
-    subsurface_m_s: NotNegative = 0.0
-    wind_driven_m_s: NotNegative = 0.0
-    uniform_m_s: NotNegative = 0.0
+    subsurface_m_s: Speed = 0.0
+    wind_driven_m_s: Speed = 0.0
+    uniform_m_s: Speed = 0.0
     direction_deg: float = 0.0
 
 

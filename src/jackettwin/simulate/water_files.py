@@ -26,6 +26,8 @@ from jackettwin.structure import Structure
 
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
+Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
+"""Density of marine growth [kg/m³]."""
 
 
 class GrowthSchema(Schema):
@@ -34,8 +36,8 @@ class GrowthSchema(Schema):
     top_z_m: float | None = None
     bottom_z_m: float | None = None
     z_m: float | None = None
-    thickness_m: NotNegative
-    density: Positive | None = None
+    thickness_m: Annotated[float, Field(ge=0.0, le=2.0)]
+    density: Growth | None = None
 
 
 class StripSchema(Schema):
@@ -72,14 +74,14 @@ class WaterSchema(Schema):
     """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
 
     depth_m: Positive | None = None
-    density: Positive = SEA_WATER_KG_M3
+    density: Annotated[float, Field(ge=500.0, le=2000.0)] = SEA_WATER_KG_M3
     drag: NotNegative = 1.0
     added_mass: NotNegative = 1.0
     pressure: NotNegative = 1.0
     with_growth: StripSchema = StripSchema()
     coefficients: list[TableSchema] = []
     marine_growth: list[GrowthSchema] = []
-    growth_density: Positive = GROWTH_KG_M3
+    growth_density: Growth = GROWTH_KG_M3
     flooded: bool | list[str] = []
     ends: EndsSchema = EndsSchema()
     hydrodyn: str | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -24,6 +24,9 @@ from jackettwin.soil.scour import Scour
 from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.model import Material, Section, Structure
+
+_MOST_ELEMENTS = 2000
+"""Along a pile."""
 
 
 @dataclass(frozen=True)
@@ -90,12 +93,20 @@ class PileSchema(Schema):
     thickness_m: Positive
     youngs_modulus_pa: Positive = 210e9
     poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
-    density_kg_m3: NotNegative = 7850.0
+    density_kg_m3: Annotated[float, Field(ge=500.0)] = 7850.0
     plugged: bool = False
     element_m: Positive | None = None
 
     def build(self) -> Pile:
         """Return the pile."""
+        if self.element_m is not None and self.length_m > _MOST_ELEMENTS * self.element_m:
+            raise InputError(
+                "too many elements",
+                field="element_m",
+                value=self.element_m,
+                allowed=f"≥ {self.length_m / _MOST_ELEMENTS:.3g} m for this length",
+                remedy="leave it out: half a diameter leaves 0.03 %",
+            )
         return Pile(
             length_m=self.length_m,
             section=Section(self.outer_diameter_m, self.thickness_m),
@@ -194,23 +205,34 @@ class CurvesSchema(Schema):
     """``CurveOptions``."""
 
     cyclic: bool = False
-    sand_tz: str = "rp2geo"
-    clay_py: str = "table"
+    sand_tz: Literal["rp2geo", "rp2a"] = "rp2geo"
+    clay_py: Literal["table", "cube-root"] = "table"
     cycles: Annotated[float, Field(ge=1.0)] = 100.0
-    layering: str = "overburden"
+    layering: Literal["overburden", "georgiadis"] = "overburden"
+
+    def build(self) -> CurveOptions:
+        """Return the options."""
+        if self.cyclic and self.clay_py == "cube-root":
+            raise InputError(
+                "Matlock's parabola is for static loads",
+                field="curves.clay_py",
+                value=self.clay_py,
+                allowed="table, if cyclic",
+            )
+        return CurveOptions(**self.model_dump())
 
 
 class DampingSchema(Schema):
     """Dashpots c = 2ζk/ω1 (thesis eq. (5.4))."""
 
-    ratio: NotNegative
+    ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
     frequency_hz: Positive
 
 
 class RadiationSchema(Schema):
     """``radiation``: ground that carries waves away, and their frequency."""
 
-    density_kg_m3: Positive
+    density_kg_m3: Annotated[float, Field(ge=500.0)]
     shear_wave_m_s: Positive
     frequency_hz: Positive
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5)] = 0.5
@@ -241,8 +263,10 @@ class FoundationSchema(Schema):
         if self.damping is not None:
             law = dashpots(self.damping.ratio, 2.0 * pi * self.damping.frequency_hz)
         elif self.law is not None:
-            law = self.law.build()
-        pile = self.pile.build()
+            with located(field="law"):
+                law = self.law.build()
+        with located(field="pile"):
+            pile = self.pile.build()
         curves = self._curves(pile)
         radiation = None if self.radiation is None else self.radiation.build()
         springs = self._linear(pile) if curves is None else linearised(curves)
@@ -272,7 +296,7 @@ class FoundationSchema(Schema):
             with located(field=f"soil.layers.{i}"):
                 built.append(layer.build())
         profile = SoilProfile(tuple(built), scour)
-        return pile_curves(pile, profile, CurveOptions(**self.curves.model_dump()))
+        return pile_curves(pile, profile, self.curves.build())
 
     def _linear(self, pile: Pile) -> PileSprings:
         linear = self.soil.linear

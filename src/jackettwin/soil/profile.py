@@ -54,8 +54,8 @@ class Clay:
     free_water: bool = True
 
     def __post_init__(self) -> None:
-        _check("strength_top_pa", self.strength_top_pa, 0.0, np.inf)
-        _check("strength_bottom_pa", self.strength_bottom_pa, 0.0, np.inf)
+        for strength in (self.strength_top_pa, self.strength_bottom_pa):
+            _check("strength_pa", strength, 0.0, np.inf)
         _check("strain_50", self.strain_50, 1e-4, 0.1)
         _check("J", self.J, 0.0, 1.0)
         _check("residual", self.residual, 0.0, 1.0)
@@ -166,6 +166,7 @@ def _check(field: str, value: float, low: float, high: float) -> None:
             "out of range",
             field=field,
             value=value,
-            allowed=f"{low:g} to {high:g}" + (f" {unit}" if unit else ""),
+            allowed=(f"{low:g} to {high:g}" if np.isfinite(high) else f"≥ {low:g}")
+            + (f" {unit}" if unit else ""),
             remedy="check the number and its unit",
         )
