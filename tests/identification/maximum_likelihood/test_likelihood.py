@@ -104,6 +104,47 @@ def test_estimates_scatter_as_they_claim():
     assert np.sum(np.abs(z) < 1.96) >= 50
 
 
+def test_curvature_biases_as_foretold():
+    """Three hundred spectra of one light mode, ζfT = 3, drawn from the model itself.
+
+    The linear part of each error is taken away, which has no mean: what is left is the bias of second order.
+    """
+    system = ModalSystem(np.array([0.5]), np.array([0.01]), np.array([[1.0, 0.5, -0.3]]), np.eye(1), 0.05)
+    rng = np.random.default_rng(5)
+    y, shapes = of(system, rng)
+    data = rough(system, y)
+    p = likelihood.climbed(data, likelihood.start(data, *at(system), shapes)).parameters
+    p = replace(p, log_zeta=np.log(system.damping_ratio))
+    data = replace(data, dither=np.full_like(data.dither, 1e-3 * data.floor.min()))
+    prior = replace(likelihood.prior_of(data, p), centre=p.vector)
+    matrix = expected(data, p, 0.0).matrix
+    root = np.linalg.cholesky(matrix)
+    fisher = likelihood.scoring(data, prior, p)[1]
+    left = []
+    for _ in range(300):
+        drawn = replace(data, density=wishart(root, data.count, rng))
+        linear = np.linalg.solve(fisher, likelihood.scoring(drawn, prior, p)[0])
+        left.append((likelihood.climbed(drawn, p).parameters.vector - p.vector - linear)[:2])
+    foretold = likelihood.curvature_bias(data, p, likelihood.covariance(data, p)[0])[:2]
+    error = np.std(left, axis=0) / np.sqrt(len(left))
+    assert foretold[1] > 10.0 * error[1] / 3.0
+    # the next order is the bias times σ², 0.05; three standard errors
+    assert abs(np.mean(left, axis=0)[1] - foretold[1]) < 3.0 * error[1] + 0.1 * foretold[1]
+
+
+def at(system):
+    return system.frequency_hz, system.damping_ratio
+
+
+def wishart(root, count, rng):
+    """Return means of so many outer products of complex Gaussian vectors of covariance root rootᴴ."""
+    out = np.empty_like(root)
+    for k, n in enumerate(count.astype(int)):
+        x = root[k] @ (rng.standard_normal((root.shape[1], n, 2)) @ np.array([1.0, 1.0j])) / np.sqrt(2.0)
+        out[k] = x @ x.conj().T / n
+    return out
+
+
 def test_a_mode_the_spectrum_needs_is_admitted_and_a_repeated_one_is_not(tower, rng):
     y, shapes = of(tower, rng)
     system = ModalSystem(

@@ -230,15 +230,17 @@ def _interval(value: float, log_std: float) -> tuple[float, float]:
 def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
     """Return the variance of ln f (0) or ln ζ (1) of each record, were its damping the common one.
 
-    The information limit at the common damping, inflated by the median ratio of claimed variance to limit.
+    The information limit at the common damping, inflated by the ratio of claimed variance to limit: of ln f
+    that of the record, whose fit may be worse than others'; of ln ζ the median, as ratios go with the error.
     """
     cycles = 2.0 * np.pi * seen.frequency_hz * seen.duration_s
     limit = zeta / cycles if which == 0 else 1.0 / (zeta * cycles)
     own_zeta = seen.damping_ratio
     own_limit = own_zeta / cycles if which == 0 else 1.0 / (own_zeta * cycles)
     claimed = seen.log_covariance[:, which, which] / own_limit
-    claimed = claimed[np.isfinite(claimed)]
-    return np.asarray(limit * (np.median(claimed) if len(claimed) else 1.0))
+    known = np.isfinite(claimed)
+    typical = np.median(claimed[known]) if known.any() else 1.0
+    return np.asarray(limit * (np.where(known, claimed, typical) if which == 0 else typical))
 
 
 def _warnings(followed: Followed, modes: Sequence[FusedMode]) -> tuple[str, ...]:

@@ -21,7 +21,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
-from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
     Parameters,
@@ -29,6 +28,8 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
     derivative_factors,
     expected,
     gram,
+    response_power,
+    unit_response,
 )
 
 if TYPE_CHECKING:
@@ -39,24 +40,28 @@ ComplexArray = npt.NDArray[np.complex128]
 
 QUIET = 0.3
 """Noise at the start, as a share of the lowest local median."""
+LIKELY_NOISE = 0.01
+"""Centre of its prior, as a share of the same: noise may be all of it, or next to nothing …"""
 COHERENCE_PRIOR = 1.0
 """Weight of ln det Γ: coherences stay inside the unit circle."""
 COLOUR_PRIOR = 3.0
 """Standard deviation of the exponents of the force spectra about white."""
-NOISE_PRIOR = (2.0, 1.0)
-"""Standard deviations of the logarithm of the noise about its start, and of its exponent."""
+NOISE_PRIOR = (2.7, 1.0)
+"""… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
 """Exponents of the force spectrum tried at the start."""
 MAX_ITERATIONS = 40
 TOLERANCE = 0.02
 """Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
-LEAST_GAIN = 0.01
+LEAST_GAIN = 0.001
 """… or the log-likelihood gains less than this."""
 KEPT_SHARE = 1e-4
 """Share of the added power kept in the Cramér-Rao bound, against rounding."""
-LEAST_SHARE = 1e-12
-"""Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
-across, and the inverse must exist."""
+LEAST_SHARE = 1e-10
+"""Information, or variance, added to every parameter, as a share of its own: shapes of one direction only
+determine nothing across, and the inverse, or root, must exist."""
+BEND_STEP = 0.1
+"""Share of the standard deviations over which the curvature of the model is taken."""
 FIT_BLOCKS = 40
 """Blocks of lines over which the misfit is summed."""
 ZETA_RANGE = (1e-5, 0.5)
@@ -114,13 +119,12 @@ def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray
         away = np.abs(data.omega / (2.0 * np.pi) - f[i])
         near = away <= max(1.5 * f[i] * zeta[i], 1.5 / data.duration_s, float(away.min()))
         power = np.real(phi @ data.density[near] @ phi)
-        lam = poles(f[i : i + 1], zeta[i : i + 1])
-        response = kernel(data.omega[near], data.duration_s, lam, lam)[:, 0, 0].real
+        response = response_power(data, f[i], zeta[i])[near]
         scaled[i] = phi * np.sqrt(max(np.mean(power / response), 1e-30))
     n = len(f)
     pairs = coherent_pairs(np.log(f))
     none = np.zeros(len(pairs), dtype=complex)
-    noise = np.stack([_noise_level(data), np.zeros(data.floor.shape[1])])
+    noise = np.stack([_noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
     first = [
         Parameters(np.log(f), np.log(zeta), np.full(n, colour), scaled, none, noise, pairs)
         for colour in COLOURS
@@ -128,8 +132,8 @@ def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
 
 
-def _noise_level(data: Periodogram) -> FloatArray:
-    return np.asarray(np.log(QUIET * data.floor.min(axis=0)))
+def _noise_level(data: Periodogram, share: float) -> FloatArray:
+    return np.asarray(np.log(share * data.floor.min(axis=0)))
 
 
 def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray]:
@@ -170,7 +174,7 @@ def _information(data: Periodogram, p: Parameters, model: Expected, white: Compl
 
 def prior_of(data: Periodogram, p: Parameters) -> Prior:
     """Return the prior: weak on colours and noise, none on the modes, backgrounds held."""
-    level = _noise_level(data)
+    level = _noise_level(data, LIKELY_NOISE)
     blank = p.moved(-p.vector)
     held = (np.arange(len(p.log_f)) < p.background).astype(float)
     centre = replace(
@@ -213,13 +217,53 @@ def scoring(data: Periodogram, prior: Prior, p: Parameters) -> tuple[FloatArray,
     """Return the score and the Fisher information, prior included."""
     model = expected(data, p)
     white, misfit = _whitened(data, model)
-    u, w = derivative_factors(data, p, model, white)
-    weight = np.sqrt(data.count)
-    score, fisher = gram(np.asarray(u * weight), w, np.asarray(misfit.transpose(1, 2, 0) * weight))
+    score, fisher = _products(data, p, model, white, misfit)
     score -= prior.precision * (p.vector - prior.centre)
     fisher[np.diag_indices(len(score))] += prior.precision
     _add_coherence_prior(p, score, fisher)
     return score, fisher
+
+
+def _products(
+    data: Periodogram, p: Parameters, model: Expected, white: ComplexArray, misfit: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return Σ_k n_k ⟨G_p, misfit⟩ and Σ_k n_k ⟨G_p, G_q⟩ of the whitened derivatives of E."""
+    u, w = derivative_factors(data, p, model, white)
+    weight = np.sqrt(data.count)
+    return gram(np.asarray(u * weight), w, np.asarray(misfit.transpose(1, 2, 0) * weight))
+
+
+def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> FloatArray:
+    r"""Return the bias of the estimated parameters due to the curvature of the model, (n_parameters,).
+
+    .. math:: b_p = -\tfrac12 \sum_q F^{-1}_{pq} \sum_k n_k\, \mathrm{tr}\,E^{-1}\partial_q E\,E^{-1} T,
+              \qquad T = \sum_{rs} C_{rs}\, \partial^2_{rs} E
+
+    The second-order bias of Cox & Snell (1968) for a Gaussian model, whose other terms cancel. T is the sum
+    of the second differences of E along the columns of a triangular root of C, most of which leave f and ζ.
+
+    Parameters
+    ----------
+    covariance : (n_parameters, n_parameters)
+        C, of the estimate.
+    """
+    model = expected(data, p)
+    std = np.sqrt(np.diag(covariance))
+    correlation = covariance / np.outer(std, std) + LEAST_SHARE * np.eye(len(std))
+    root = std[:, None] * np.linalg.cholesky(correlation)
+    unit = unit_response(data, p)
+    bend = np.zeros_like(model.matrix)
+    for k, step in enumerate(BEND_STEP * root.T):
+        same = unit if k >= 2 * len(p.log_f) else None
+        bend += expected(data, p.moved(step), unit=same).matrix
+        bend += expected(data, p.moved(-step), unit=same).matrix - 2.0 * model.matrix
+    bend /= BEND_STEP**2
+    white = _inverse_root(model.matrix)
+    misfit = np.asarray(-0.5 * white @ bend @ white.conj().transpose(0, 2, 1))
+    score, fisher = _products(data, p, model, white, misfit)
+    fisher[np.diag_indices(len(score))] += prior_of(data, p).precision
+    _add_coherence_prior(p, np.zeros(len(score)), fisher)
+    return np.asarray(_inverse(fisher) @ score)
 
 
 def _add_coherence_prior(p: Parameters, score: FloatArray, fisher: FloatArray) -> None:

@@ -8,9 +8,13 @@ Two modes contribute :math:`H_i(i\omega) H_j(i\omega)^*` with
           \qquad \rho_p = \frac{p^2}{p-\bar p}.
 
 A record of length T weights the covariance at lag τ with 1 − τ/T (Fejér), which turns 1/(s−p), the
-transform of :math:`e^{p\tau}`, at a Fourier frequency into
+transform of :math:`e^{p\tau}`, at a Fourier frequency into :math:`F_p + L_p`,
 
-.. math:: F_p(\omega) = \frac{1}{i\omega-p} + \frac{e^{pT}-1}{T\,(i\omega-p)^2}.
+.. math:: F_p(\omega) = \frac{1}{i\omega-p}, \qquad L_p(\omega) = \frac{e^{pT}-1}{T\,(i\omega-p)^2}.
+
+L is what leaks from the peak: it follows the force at the mode's frequency, F the force at ω. Over the
+lines of a group, of variance v about their mean ω, their means are :math:`F_p(1 - vF_p^2)` and
+:math:`L_p(1 - 3vF_p^2)`.
 """
 
 from __future__ import annotations
@@ -27,30 +31,46 @@ def poles(frequency_hz: FloatArray, damping_ratio: FloatArray) -> ComplexArray:
     return np.asarray(2.0 * np.pi * frequency_hz * (-damping_ratio + 1j * np.sqrt(1.0 - damping_ratio**2)))
 
 
-def kernel(omega: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray) -> ComplexArray:
-    """Return the expected cross periodogram of unit-force modes, (n_omega, n_first, n_second).
+def kernel(
+    omega: FloatArray, variance: FloatArray, duration_s: float, first: ComplexArray, second: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the expected cross periodogram of unit-force modes: of the force at ω, and what leaks there.
 
     Parameters
     ----------
-    omega : (n_omega,) [rad/s]
-        Fourier frequencies of the record.
+    omega, variance : (n_omega,) [rad/s], [rad²/s²]
+        Mean Fourier frequency of every group of lines, and their variance about it.
     first, second : (n_first,), (n_second,) complex
         Poles of the two sets of modes, upper half plane.
+
+    Returns
+    -------
+    steady, leaked : (n_omega, n_first, n_second)
     """
-    out = np.ones((len(omega), len(first), len(second)), dtype=complex)
+    steady = np.ones((len(omega), len(first), len(second)), dtype=complex)
+    leaked = np.zeros_like(steady)
     for p in (first, first.conj()):
         weight = _residue(p)[:, None] * _transfer(-p[:, None], second)
-        out += fejer(omega, duration_s, p)[:, :, None] * weight
+        at, beside = fejer(omega, variance, duration_s, p)
+        steady += at[:, :, None] * weight
+        leaked += beside[:, :, None] * weight
     for p in (second, second.conj()):
         weight = _residue(p) * _transfer(-p, first[:, None])
-        out += fejer(-omega, duration_s, p)[:, None, :] * weight
-    return out
+        at, beside = fejer(-omega, variance, duration_s, p)
+        steady += at[:, None, :] * weight
+        leaked += beside[:, None, :] * weight
+    return steady, leaked
 
 
-def fejer(omega: FloatArray, duration_s: float, p: ComplexArray) -> ComplexArray:
-    """Return F_p(ω), (n_omega, n_poles)."""
+def fejer(
+    omega: FloatArray, variance: FloatArray, duration_s: float, p: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the means of F_p and L_p over groups of lines, (n_omega, n_poles) each."""
     inverse = 1.0 / (1j * omega[:, None] - p)
-    return np.asarray(inverse + np.expm1(p * duration_s) / duration_s * inverse**2)
+    square = inverse**2
+    bend = variance[:, None] * square
+    leak = np.expm1(p * duration_s) / duration_s
+    return np.asarray(inverse * (1.0 - bend)), np.asarray(leak * square * (1.0 - 3.0 * bend))
 
 
 def _transfer(s: ComplexArray, lam: ComplexArray) -> ComplexArray:

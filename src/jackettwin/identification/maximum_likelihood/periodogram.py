@@ -58,6 +58,11 @@ class Periodogram:
     duration_s: float
 
     @property
+    def variance(self) -> FloatArray:
+        """Variance of the lines of each group about their mean [rad²/s²], (n_groups,)."""
+        return np.asarray((self.count**2 - 1.0) / 12.0 * (2.0 * np.pi / self.duration_s) ** 2)
+
+    @property
     def log_position(self) -> FloatArray:
         """ln(f/f_0), with f_0 the middle of the band, (n_groups,)."""
         log_f = np.log(self.omega)

@@ -7,11 +7,13 @@ enough of what the others leave, by the gain of log-likelihood
           a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
 
 of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
-criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). The maximum of a likelihood
-overestimates the damping of a short record, as the logarithm of ζ is the quantity that is nearly Gaussian:
-its mean is brought back by :math:`\zeta/(1+\sigma^2)`, σ the standard deviation of ln ζ. The information is
-that of many lines, and of few the scatter is larger: :math:`\sigma^2(1+\sigma^2)` is reported (of one mode
-alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 to 95 %).
+criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked).
+
+What a small sample does is taken back: the bias b of ln ζ from the curvature of the model
+(``likelihood.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
+Gaussian: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`, σ the standard deviation of ln ζ. The information
+is that of many lines, and of few the scatter is larger: :math:`\sigma^2(1+\sigma^2)` is reported (of one
+mode alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 to 95 %).
 """
 
 from __future__ import annotations
@@ -25,9 +27,8 @@ from scipy.optimize import minimize_scalar
 
 from jackettwin.identification.maximum_likelihood import likelihood
 from jackettwin.identification.maximum_likelihood.background import with_background
-from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
-from jackettwin.identification.maximum_likelihood.spectral_model import expected
+from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,6 +46,8 @@ APPROACH = 4
 """Steps before the doubtful modes are judged."""
 PARAMETERS_OF_A_MODE = 3
 """f, ζ and colour; its shape has one for each channel."""
+MOST_BIAS = 0.5
+"""Standard deviations beyond which an expansion to second order is not believed."""
 MOST_ADDED = 6
 """Doubtful modes admitted at most."""
 
@@ -207,8 +210,7 @@ def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatA
     a = np.real(left @ phi)
     b = np.einsum("ka,kab,kb->k", left.conj(), data.density, left, optimize=True).real
     b += np.sum(np.abs(left) ** 2 * data.dither, axis=1)
-    lam = poles(np.array([f]), np.array([zeta]))
-    h = kernel(data.omega, data.duration_s, lam, lam)[:, 0, 0].real
+    h = response_power(data, f, zeta)
 
     def loss(log_s: float) -> float:
         s = np.exp(log_s) * h
@@ -228,13 +230,17 @@ def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: 
     both = np.stack([mode, mode + n], axis=1)
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
     log_covariance = covariance[both[:, :, None], both[:, None, :]]
+    bias, excess = np.zeros((len(mode), 2)), np.zeros(len(mode))
     # a background takes its share of the peaks, and with it the bias of the small sample
-    excess = np.zeros(len(mode)) if p.background else log_covariance[:, 1, 1]
+    if not p.background:
+        excess = log_covariance[:, 1, 1]
+        most = MOST_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
+        bias = np.clip(likelihood.curvature_bias(data, p, covariance)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
         candidate=chosen[mode - p.background],
-        frequency_hz=np.exp(p.log_f[mode]),
-        damping_ratio=np.exp(p.log_zeta[mode]) / (1.0 + excess),
+        frequency_hz=np.exp(p.log_f[mode] - bias[:, 0]),
+        damping_ratio=np.exp(p.log_zeta[mode] - bias[:, 1]) / (1.0 + 0.5 * excess),
         shapes=p.shapes[mode],
         covariance=log_covariance * wider[:, :, None] * wider[:, None, :],
         shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],

@@ -2,13 +2,13 @@ r"""Spectral matrix of modes of real shapes, driven by coloured forces, with sen
 
 At a group k of Fourier lines
 
-.. math:: E_k = \Phi^T\,(\Gamma\circ K_k\circ c_k c_k^T)\,\Phi + N_k, \qquad
+.. math:: E_k = \Phi^T\,(\Gamma\circ(K_k\circ c_k c_k^T + L_k))\,\Phi + N_k, \qquad
           c_{ki} = (f_k/f_i)^{-\alpha_i/2}, \quad N_k = \mathrm{diag}\,e^{a + b\ln(f_k/f_0)}
 
-with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces, K the
-closed-form expected periodogram of unit forces (``modal_spectrum.kernel``: no bias from the finite record),
-α the exponents of the force spectra. Every parameter changes E by a matrix :math:`u w^H + w u^H`, of
-which all derivatives are made.
+with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces, K + L
+the closed-form expected periodogram of unit forces (``modal_spectrum.kernel``: no bias from the finite
+record; L is what leaks from the peaks), α the exponents of the force spectra. Every parameter changes E by
+a matrix :math:`u w^H + w u^H`, of which all derivatives are made.
 """
 
 from __future__ import annotations
@@ -135,14 +135,17 @@ class Expected:
 
     Attributes
     ----------
-    coloured : (n_groups, n_modes, n_modes)
+    forced : (n_groups, n_modes, n_modes)
         K with colours.
+    coloured : (n_groups, n_modes, n_modes)
+        The same with L.
     modal : (n_groups, n_modes, n_modes)
-        Γ∘K with colours.
+        Γ∘ that.
     matrix : (n_groups, n_channels, n_channels)
         E.
     """
 
+    forced: ComplexArray
     coloured: ComplexArray
     modal: ComplexArray
     matrix: ComplexArray
@@ -165,35 +168,69 @@ def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
     return np.asarray(np.exp(p.noise[0] + p.noise[1] * data.log_position[:, None]))
 
 
-def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
-    """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
-    lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
+def expected(
+    data: Periodogram,
+    p: Parameters,
+    share: float = 1.0,
+    unit: tuple[ComplexArray, ComplexArray] | None = None,
+) -> Expected:
+    """Evaluate the model.
+
+    Parameters
+    ----------
+    share : float
+        So much of the data's dither is added to the diagonal of E.
+    unit : (K, L), optional
+        As of ``unit_response``, where they are known.
+    """
+    steady, leaked = unit_response(data, p) if unit is None else unit
     colour = np.exp(-0.5 * p.colour * log_distance(data, p))
-    coloured = kernel(data.omega, data.duration_s, lam, lam) * (colour[:, :, None] * colour[:, None, :])
+    forced = steady * (colour[:, :, None] * colour[:, None, :])
+    coloured = forced + leaked
     modal = p.gamma * coloured
     matrix = p.shapes.T @ modal @ p.shapes
     channel = np.arange(p.shapes.shape[1])
     matrix[:, channel, channel] += noise_density(data, p) + share * data.dither
-    return Expected(np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
+    return Expected(np.asarray(forced), np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
+
+
+def unit_response(data: Periodogram, p: Parameters) -> tuple[ComplexArray, ComplexArray]:
+    """Return K and L, (n_groups, n_modes, n_modes) each."""
+    lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
+    return kernel(data.omega, data.variance, data.duration_s, lam, lam)
+
+
+def response_power(data: Periodogram, f: float, zeta: float) -> FloatArray:
+    """Return the expected periodogram of one mode under a white force of density 1, (n_groups,)."""
+    lam = poles(np.array([f]), np.array([zeta]))
+    steady, leaked = kernel(data.omega, data.variance, data.duration_s, lam, lam)
+    return np.asarray((steady + leaked)[:, 0, 0].real)
 
 
 def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[ComplexArray, ...]:
-    """Return the derivatives of Γ∘K by ln f, ln ζ and α of the mode of the first index."""
+    """Return the derivatives of Γ∘(K∘ccᵀ + L) by ln f, ln ζ and α of the mode of the first index."""
     f, zeta = np.exp(p.log_f), np.exp(p.log_zeta)
     lam = poles(f, zeta)
     away = log_distance(data, p)
     colour = np.exp(-0.5 * p.colour * away)
-    factor = p.gamma * (colour[:, :, None] * colour[:, None, :])
+    colours = colour[:, :, None] * colour[:, None, :]
 
     def slope(ahead: ComplexArray, behind: ComplexArray) -> ComplexArray:
-        change = kernel(data.omega, data.duration_s, ahead, lam)
-        change -= kernel(data.omega, data.duration_s, behind, lam)
-        return np.asarray(change * (factor / (2.0 * STEP)))
+        steady, leaked = (
+            a - b
+            for a, b in zip(
+                kernel(data.omega, data.variance, data.duration_s, ahead, lam),
+                kernel(data.omega, data.variance, data.duration_s, behind, lam),
+                strict=True,
+            )
+        )
+        return np.asarray(p.gamma * (steady * colours + leaked) / (2.0 * STEP))
 
+    forced = p.gamma * model.forced
     by_f = slope(poles(f * np.exp(STEP), zeta), poles(f * np.exp(-STEP), zeta))
-    by_f += (0.5 * p.colour)[:, None] * model.modal
+    by_f += (0.5 * p.colour)[:, None] * forced
     by_zeta = slope(poles(f, zeta * np.exp(STEP)), poles(f, zeta * np.exp(-STEP)))
-    by_colour = model.modal * (-0.5 * away)[:, :, None]
+    by_colour = forced * (-0.5 * away)[:, :, None]
     return by_f, by_zeta, by_colour
 
 
