@@ -12,6 +12,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.identification import FusedMode
+from jackettwin.identification.intervals import TWO_SIDED_95
 from jackettwin.report import style
 from jackettwin.report.numbers import words
 
@@ -19,7 +20,6 @@ FloatArray = npt.NDArray[np.floating[Any]]
 
 MOST_POINTS = 1000
 """More records than these are drawn as medians of neighbours: nobody can tell them apart."""
-_TWO_SIDED_95 = 1.96
 _ROW = 170
 
 
@@ -55,7 +55,7 @@ def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go
             (seen.damping_ratio, std[:, 1], 100.0, mode.damping_ratio_interval_95),
         )
         for col, (value, log_std, scale, (low, high)) in enumerate(sides, start=1):
-            reach = np.exp(_TWO_SIDED_95 * np.nan_to_num(log_std))
+            reach = np.exp(TWO_SIDED_95 * np.nan_to_num(log_std))
             points = _Points(
                 seen.record + 1.0, scale * value, scale * value / reach, scale * value * reach, names
             )

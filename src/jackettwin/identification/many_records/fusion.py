@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.many_records.setups import WEAK_TIE, tie
 from jackettwin.identification.many_records.tracking import Followed, Track, follow
 
@@ -64,12 +65,12 @@ class Average:
     @property
     def frequency_interval_95(self) -> tuple[float, float]:
         """On the logarithm of f."""
-        return _interval(self.frequency_hz, self.log_std[0])
+        return log_interval_95(self.frequency_hz, self.log_std[0])
 
     @property
     def damping_ratio_interval_95(self) -> tuple[float, float]:
         """On the logarithm of ζ."""
-        return _interval(self.damping_ratio, self.log_std[1])
+        return log_interval_95(self.damping_ratio, self.log_std[1])
 
 
 @dataclass(frozen=True)
@@ -221,10 +222,6 @@ def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followe
         scatter_damping_ratio=mean.scatter[1],
         sightings=seen,
     )
-
-
-def _interval(value: float, log_std: float) -> tuple[float, float]:
-    return value * float(np.exp(-1.96 * log_std)), value * float(np.exp(1.96 * log_std))
 
 
 def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import ModalEstimate, Rejected
+from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.identification.tones.harmonics import drifting_tone, is_steady_tone, without_unsteady_tone
@@ -174,8 +175,8 @@ def with_covariance(mode: ModalEstimate, covariance: FloatArray) -> ModalEstimat
         log_covariance=covariance,
         frequency_std_hz=float(mode.frequency_hz * std_f),
         damping_ratio_std=float(mode.damping_ratio * std_zeta),
-        frequency_interval_95=_interval(mode.frequency_hz, std_f),
-        damping_ratio_interval_95=_interval(mode.damping_ratio, std_zeta),
+        frequency_interval_95=log_interval_95(mode.frequency_hz, std_f),
+        damping_ratio_interval_95=log_interval_95(mode.damping_ratio, std_zeta),
     )
 
 
@@ -204,11 +205,6 @@ def _mode(poles: Stabilisation, cluster: Cluster, duration_s: float) -> ModalEst
     lift = np.maximum(limits / np.sqrt(np.diag(covariance)), 1.0)
     mode = replace(mode, mode_shape_std=poles.mode_shape_std[k])
     return with_covariance(mode, covariance * np.outer(lift, lift))
-
-
-def _interval(centre: float, log_std: float) -> tuple[float, float]:
-    factor = float(np.exp(min(1.96 * log_std, 50.0)))
-    return centre / factor, centre * factor
 
 
 def _objection(

@@ -17,6 +17,7 @@ from scipy.cluster import hierarchy
 from scipy.spatial.distance import squareform
 
 from jackettwin.identification.estimate import RealPole
+from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mac, normalised
 
 if TYPE_CHECKING:
@@ -118,11 +119,10 @@ def _relaxation(
     if log_std > MOST_LOG_STD:
         return None
     a = float(np.exp(table.log_rate[k]))
-    factor = float(np.exp(1.96 * log_std))
     return RealPole(
         rate_rad_s=a,
         rate_std_rad_s=a * log_std,
-        rate_interval_95=(a / factor, a * factor),
+        rate_interval_95=log_interval_95(a, log_std),
         mode_shape=normalised(aligned(table.shape[k])),
         order_share=share,
     )
