@@ -10,7 +10,7 @@ import pytest
 from jackettwin.identification.maximum_likelihood import likelihood
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
 from jackettwin.identification.maximum_likelihood.refinement import gain_of, needed_gain, refine
-from jackettwin.identification.maximum_likelihood.spectral_model import expected
+from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 RATE, BAND = 5.0, (0.15, 2.0)
@@ -102,6 +102,20 @@ def test_estimates_scatter_as_they_claim():
         z.append(np.log(ratio[-1]) / np.sqrt(found.covariance[0, 1, 1]))
     assert abs(np.mean(ratio) - 1.0) < 3.5 * np.std(ratio) / np.sqrt(60)
     assert np.sum(np.abs(z) < 1.96) >= 50
+
+
+def test_linear_bend_equals_second_differences(fitted, rng):
+    data, p = fitted
+    n = 3 * len(p.log_f)
+    middle = expected(data, p)
+    root = rng.standard_normal((len(p.vector) - n, 5)) * 1e-3
+    bend = linear_bend(data, p, middle, root @ root.T)
+    plain = np.zeros_like(bend)
+    for step in np.vstack([np.zeros((n, 5)), root]).T:
+        plain += expected(data, p.moved(step)).matrix + expected(data, p.moved(-step)).matrix
+        plain -= 2.0 * middle.matrix
+    # rounding of E over the square of the step, and its fourth order in the noise
+    np.testing.assert_allclose(bend, plain, rtol=1e-3, atol=1e-5 * np.abs(bend).max())
 
 
 def test_curvature_biases_as_foretold():

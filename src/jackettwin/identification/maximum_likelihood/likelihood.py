@@ -28,8 +28,8 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
     derivative_factors,
     expected,
     gram,
+    linear_bend,
     response_power,
-    unit_response,
 )
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ LEAST_GAIN = 0.001
 KEPT_SHARE = 1e-4
 """Share of the added power kept in the Cramér-Rao bound, against rounding."""
 LEAST_SHARE = 1e-10
-"""Information, or variance, added to every parameter, as a share of its own: shapes of one direction only
-determine nothing across, and the inverse, or root, must exist."""
+"""Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
+across, and the inverse must exist."""
 BEND_STEP = 0.1
 """Share of the standard deviations over which the curvature of the model is taken."""
 FIT_BLOCKS = 40
@@ -240,7 +240,8 @@ def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> 
               \qquad T = \sum_{rs} C_{rs}\, \partial^2_{rs} E
 
     The second-order bias of Cox & Snell (1968) for a Gaussian model, whose other terms cancel. T is the sum
-    of the second differences of E along the columns of a triangular root of C, most of which leave f and ζ.
+    of the second differences of E along the columns of a triangular root of C that move f, ζ and α; what
+    the others add is in closed form.
 
     Parameters
     ----------
@@ -248,16 +249,13 @@ def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> 
         C, of the estimate.
     """
     model = expected(data, p)
-    std = np.sqrt(np.diag(covariance))
-    correlation = covariance / np.outer(std, std) + LEAST_SHARE * np.eye(len(std))
-    root = std[:, None] * np.linalg.cholesky(correlation)
-    unit = unit_response(data, p)
-    bend = np.zeros_like(model.matrix)
-    for k, step in enumerate(BEND_STEP * root.T):
-        same = unit if k >= 2 * len(p.log_f) else None
-        bend += expected(data, p.moved(step), unit=same).matrix
-        bend += expected(data, p.moved(-step), unit=same).matrix - 2.0 * model.matrix
-    bend /= BEND_STEP**2
+    n = 3 * len(p.log_f)
+    root = linalg.cholesky(covariance[:n, :n], lower=True)
+    columns = np.vstack([root, linalg.solve_triangular(root, covariance[:n, n:], lower=True).T])
+    bend = linear_bend(data, p, model, covariance[n:, n:] - columns[n:] @ columns[n:].T)
+    for step in BEND_STEP * columns.T:
+        ahead, behind = (expected(data, p.moved(way * step)).matrix for way in (1.0, -1.0))
+        bend += (ahead + behind - 2.0 * model.matrix) / BEND_STEP**2
     white = _inverse_root(model.matrix)
     misfit = np.asarray(-0.5 * white @ bend @ white.conj().transpose(0, 2, 1))
     score, fisher = _products(data, p, model, white, misfit)

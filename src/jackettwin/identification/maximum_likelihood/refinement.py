@@ -142,9 +142,10 @@ def refine(
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
     climb = likelihood.climbed(data, climb.parameters)
+    known = likelihood.covariance(data, climb.parameters)
     if likelihood.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
-        climb, chosen = _thinned(data, climb, chosen)
-    return _result(data, climb, chosen, gain)
+        climb, chosen, known = _thinned(data, climb, chosen, known)
+    return _result(data, climb, chosen, gain, known)
 
 
 def _joined(
@@ -175,14 +176,14 @@ def _joined(
 
 
 def _thinned(
-    data: Periodogram, climb: likelihood.Climb, chosen: IntArray
-) -> tuple[likelihood.Climb, IntArray]:
+    data: Periodogram, climb: likelihood.Climb, chosen: IntArray, known: tuple[FloatArray, FloatArray]
+) -> tuple[likelihood.Climb, IntArray, tuple[FloatArray, FloatArray]]:
     """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
     kept: set[int] = set()
     while len(chosen) > 1:
         p = climb.parameters
         mode = p.background + np.arange(len(chosen))
-        std = np.sqrt(np.diag(likelihood.covariance(data, p)[0]))[len(p.log_f) + mode]
+        std = np.sqrt(np.diag(known[0]))[len(p.log_f) + mode]
         limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
         suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
@@ -191,9 +192,10 @@ def _thinned(
         fewer = likelihood.climbed(data, p.without(p.background + suspect[0]))
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
+            known = likelihood.covariance(data, climb.parameters)
         else:
             kept.add(int(chosen[suspect[0]]))
-    return climb, chosen
+    return climb, chosen, known
 
 
 def needed_gain(data: Periodogram) -> float:
@@ -221,10 +223,16 @@ def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatA
     return max(-float(found.fun), 0.0), float(np.exp(found.x))
 
 
-def _result(data: Periodogram, climb: likelihood.Climb, chosen: IntArray, gain: FloatArray) -> Refined:
+def _result(
+    data: Periodogram,
+    climb: likelihood.Climb,
+    chosen: IntArray,
+    gain: FloatArray,
+    known: tuple[FloatArray, FloatArray],
+) -> Refined:
     p = climb.parameters
     n, n_channels = p.shapes.shape
-    covariance, bound = likelihood.covariance(data, p)
+    covariance, bound = known
     mode = np.arange(p.background, n)
     mode = mode[np.argsort(p.log_f[mode])]
     both = np.stack([mode, mode + n], axis=1)

@@ -168,22 +168,10 @@ def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
     return np.asarray(np.exp(p.noise[0] + p.noise[1] * data.log_position[:, None]))
 
 
-def expected(
-    data: Periodogram,
-    p: Parameters,
-    share: float = 1.0,
-    unit: tuple[ComplexArray, ComplexArray] | None = None,
-) -> Expected:
-    """Evaluate the model.
-
-    Parameters
-    ----------
-    share : float
-        So much of the data's dither is added to the diagonal of E.
-    unit : (K, L), optional
-        As of ``unit_response``, where they are known.
-    """
-    steady, leaked = unit_response(data, p) if unit is None else unit
+def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
+    """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
+    lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
+    steady, leaked = kernel(data.omega, data.variance, data.duration_s, lam, lam)
     colour = np.exp(-0.5 * p.colour * log_distance(data, p))
     forced = steady * (colour[:, :, None] * colour[:, None, :])
     coloured = forced + leaked
@@ -192,12 +180,6 @@ def expected(
     channel = np.arange(p.shapes.shape[1])
     matrix[:, channel, channel] += noise_density(data, p) + share * data.dither
     return Expected(np.asarray(forced), np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
-
-
-def unit_response(data: Periodogram, p: Parameters) -> tuple[ComplexArray, ComplexArray]:
-    """Return K and L, (n_groups, n_modes, n_modes) each."""
-    lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
-    return kernel(data.omega, data.variance, data.duration_s, lam, lam)
 
 
 def response_power(data: Periodogram, f: float, zeta: float) -> FloatArray:
@@ -232,6 +214,39 @@ def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[Com
     by_zeta = slope(poles(f, zeta * np.exp(STEP)), poles(f, zeta * np.exp(-STEP)))
     by_colour = forced * (-0.5 * away)[:, :, None]
     return by_f, by_zeta, by_colour
+
+
+def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: FloatArray) -> ComplexArray:
+    """Return Σ C_rs ∂²_rs E over shapes, coherences and noise, (n_groups, n_channels, n_channels).
+
+    Parameters
+    ----------
+    covariance : (n, n)
+        C, of those parameters alone, in the order of the vector.
+    """
+    n_modes, n_channels = p.shapes.shape
+    i, j = p.pairs.T
+    cuts = np.cumsum([p.shapes.size, len(i), len(i), n_channels])
+    of_shape, of_real, of_imaginary, level, exponent = np.split(np.arange(len(covariance)), cuts)
+
+    def with_shapes(rows: IntArray) -> FloatArray:
+        return covariance[np.ix_(rows, of_shape)].reshape(-1, n_modes, n_channels)
+
+    both = with_shapes(of_shape).reshape(n_modes, n_channels, n_modes, n_channels)
+    bend = 2.0 * np.einsum("iajb,kij->kab", both, model.modal, optimize=True)
+    across = np.zeros((n_modes, n_modes, n_channels), dtype=complex)
+    real, imaginary = with_shapes(of_real), with_shapes(of_imaginary)
+    pair = np.arange(len(i))
+    across[i, j] = real[pair, i] + 1j * imaginary[pair, i]
+    across[j, i] = real[pair, j] - 1j * imaginary[pair, j]
+    half = 2.0 * np.einsum("ija,kij,jb->kab", across, model.coloured, p.shapes, optimize=True)
+    bend += half + half.conj().transpose(0, 2, 1)
+    x = data.log_position[:, None]
+    of_noise = covariance[level, level] + 2.0 * x * covariance[level, exponent]
+    of_noise = of_noise + x**2 * covariance[exponent, exponent]
+    channel = np.arange(n_channels)
+    bend[:, channel, channel] += noise_density(data, p) * of_noise
+    return np.asarray(bend)
 
 
 def derivative_factors(
