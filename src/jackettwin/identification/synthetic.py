@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.identification.maximum_likelihood import likelihood
+from jackettwin.identification.maximum_likelihood import accuracy
 from jackettwin.identification.maximum_likelihood.periodogram import Periodogram, group_starts
 from jackettwin.identification.maximum_likelihood.spectral_model import Parameters, coherent_pairs, expected
 from jackettwin.records import Channel, Record
@@ -116,7 +116,7 @@ def cramer_rao(
     data = Periodogram(omega, count, np.zeros((len(omega), n, n), complex), none, none, duration_s)
     matrix = expected(data, p).matrix
     power = np.einsum("kaa->ka", matrix).real
-    bound = likelihood.covariance(replace(data, density=matrix, floor=power, dither=power), p)[1]
+    bound = accuracy.covariance(replace(data, density=matrix, floor=power, dither=power), p)[1]
     return bound[: len(f)], bound[len(f) : 2 * len(f)]
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification.maximum_likelihood import likelihood
+from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
 from jackettwin.identification.maximum_likelihood.refinement import gain_of, needed_gain, refine
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
@@ -139,7 +139,7 @@ def test_curvature_biases_as_foretold():
         drawn = replace(data, density=wishart(root, data.count, rng))
         linear = np.linalg.solve(fisher, likelihood.scoring(drawn, prior, p)[0])
         left.append((likelihood.climbed(drawn, p).parameters.vector - p.vector - linear)[:2])
-    foretold = likelihood.curvature_bias(data, p, likelihood.covariance(data, p)[0])[:2]
+    foretold = accuracy.curvature_bias(data, p, accuracy.covariance(data, p)[0])[:2]
     error = np.std(left, axis=0) / np.sqrt(len(left))
     assert foretold[1] > 10.0 * error[1] / 3.0
     # the next order is the bias times σ², 0.05; three standard errors

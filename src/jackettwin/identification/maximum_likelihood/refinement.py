@@ -10,7 +10,7 @@ of adding power s with its shape and kernel h held: one unit at least for each p
 criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked).
 
 What a small sample does is taken back: the bias b of ln ζ from the curvature of the model
-(``likelihood.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
+(``accuracy.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
 Gaussian: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`, σ the standard deviation of ln ζ. The information
 is that of many lines, and of few the scatter is larger: :math:`\sigma^2(1+\sigma^2)` is reported (of one
 mode alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 to 95 %).
@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
-from jackettwin.identification.maximum_likelihood import likelihood
+from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
@@ -72,7 +72,7 @@ class Refined:
     gain : (n_candidates,)
         Log-likelihood a doubtful candidate would add; infinite for modes that were sure.
     lack_of_fit : float
-        ``likelihood.lack_of_fit``: near 1 where the record is what the model says.
+        ``accuracy.lack_of_fit``: near 1 where the record is what the model says.
     converged : bool
     """
 
@@ -142,8 +142,8 @@ def refine(
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
     climb = likelihood.climbed(data, climb.parameters)
-    known = likelihood.covariance(data, climb.parameters)
-    if likelihood.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
+    known = accuracy.covariance(data, climb.parameters)
+    if accuracy.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
         climb, chosen, known = _thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
 
@@ -192,7 +192,7 @@ def _thinned(
         fewer = likelihood.climbed(data, p.without(p.background + suspect[0]))
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
-            known = likelihood.covariance(data, climb.parameters)
+            known = accuracy.covariance(data, climb.parameters)
         else:
             kept.add(int(chosen[suspect[0]]))
     return climb, chosen, known
@@ -243,7 +243,7 @@ def _result(
     if not p.background:
         excess = log_covariance[:, 1, 1]
         most = MOST_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
-        bias = np.clip(likelihood.curvature_bias(data, p, covariance)[both], -most, most)
+        bias = np.clip(accuracy.curvature_bias(data, p, covariance)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
         candidate=chosen[mode - p.background],
@@ -254,6 +254,6 @@ def _result(
         shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],
         cramer_rao=bound[both],
         gain=gain,
-        lack_of_fit=likelihood.lack_of_fit(data, p),
+        lack_of_fit=accuracy.lack_of_fit(data, p),
         converged=climb.converged,
     )

@@ -1,0 +1,131 @@
+"""How well a fit knows its parameters: covariance, bound, bias of the small sample, lack of fit.
+
+Data hold a dither that does not scatter, so the covariance of the estimate is the sandwich, not the inverse
+of the information.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy import linalg
+
+from jackettwin.identification.maximum_likelihood.likelihood import (
+    add_coherence_prior,
+    inverse_root,
+    prior_of,
+    products,
+    scoring,
+    whitened,
+)
+from jackettwin.identification.maximum_likelihood.spectral_model import (
+    Expected,
+    Parameters,
+    derivative_factors,
+    expected,
+    gram,
+    linear_bend,
+)
+
+if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+KEPT_SHARE = 1e-4
+"""Share of the added power kept in the Cramér-Rao bound, against rounding."""
+LEAST_SHARE = 1e-10
+"""Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
+across, and the inverse must exist."""
+BEND_STEP = 0.1
+"""Share of the standard deviations over which the curvature of the model is taken."""
+FIT_BLOCKS = 40
+"""Blocks of lines over which the misfit is summed."""
+
+
+def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray]:
+    r"""Return the sandwich covariance of the parameters and their Cramér-Rao standard deviations.
+
+    .. math:: F^{-1} V F^{-1}, \quad V_{pq} = \sum_k n_k \mathrm{tr}(E^{-1}\partial_p E\,E^{-1}E_0\,
+              E^{-1}\partial_q E\,E^{-1}E_0)
+
+    with :math:`E_0` the model without the dither, which does not scatter; the bound is that of :math:`E_0`.
+    """
+    prior = prior_of(data, p)
+    model = expected(data, p)
+    white = inverse_root(model.matrix)
+    share = np.einsum("kab,kb,kcb->kac", white, data.dither, white.conj(), optimize=True)
+    # E0 whitened is R Rᴴ, singular but for the noise; V is the inner product of Rᴴ G R
+    values, vectors = np.linalg.eigh(np.eye(white.shape[1]) - share)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+    middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
+    bread = _inverse(scoring(data, prior, p)[1])
+    bare = expected(data, p, KEPT_SHARE)
+    clear = _information(data, p, bare, inverse_root(bare.matrix))
+    clear[np.diag_indices(len(clear))] += prior.precision
+    add_coherence_prior(p, np.zeros(len(clear)), clear)
+    return np.asarray(bread @ middle @ bread), np.sqrt(np.diag(_inverse(clear)))
+
+
+def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> FloatArray:
+    r"""Return the bias of the estimated parameters due to the curvature of the model, (n_parameters,).
+
+    .. math:: b_p = -\tfrac12 \sum_q F^{-1}_{pq} \sum_k n_k\, \mathrm{tr}\,E^{-1}\partial_q E\,E^{-1} T,
+              \qquad T = \sum_{rs} C_{rs}\, \partial^2_{rs} E
+
+    The second-order bias of Cox & Snell (1968) for a Gaussian model, whose other terms cancel. T is the sum
+    of the second differences of E along the columns of a triangular root of C that move f, ζ and α; what
+    the others add is in closed form.
+
+    Parameters
+    ----------
+    covariance : (n_parameters, n_parameters)
+        C, of the estimate.
+    """
+    model = expected(data, p)
+    n = 3 * len(p.log_f)
+    root = linalg.cholesky(covariance[:n, :n], lower=True)
+    columns = np.vstack([root, linalg.solve_triangular(root, covariance[:n, n:], lower=True).T])
+    bend = linear_bend(data, p, model, covariance[n:, n:] - columns[n:] @ columns[n:].T)
+    for step in BEND_STEP * columns.T:
+        ahead, behind = (expected(data, p.moved(way * step)).matrix for way in (1.0, -1.0))
+        bend += (ahead + behind - 2.0 * model.matrix) / BEND_STEP**2
+    white = inverse_root(model.matrix)
+    misfit = np.asarray(-0.5 * white @ bend @ white.conj().transpose(0, 2, 1))
+    score, fisher = products(data, p, model, white, misfit)
+    fisher[np.diag_indices(len(score))] += prior_of(data, p).precision
+    add_coherence_prior(p, np.zeros(len(score)), fisher)
+    return np.asarray(_inverse(fisher) @ score)
+
+
+def lack_of_fit(data: Periodogram, p: Parameters) -> float:
+    r"""Return the mean square of the whitened misfit of blocks of lines over its expectation.
+
+    .. math:: \frac1B\sum_b \frac{\|\sum_{k\in b} n_k(W_k\hat S_kW_k^H - I)\|_F^2}
+              {\sum_{k\in b} n_k (\mathrm{tr}\,W_kE_{0k}W_k^H)^2}
+
+    Near 1 (a little below, as parameters were fitted) where the record is what the model says.
+    """
+    white, misfit = whitened(data, expected(data, p))
+    share = np.einsum("kab,kb,kab->k", white, data.dither, white.conj(), optimize=True).real
+    variance = data.count * (white.shape[1] - share) ** 2
+    passed = np.cumsum(data.count)
+    first = np.flatnonzero(np.diff(np.ceil(passed / passed[-1] * FIT_BLOCKS), prepend=0.0))
+    total = np.add.reduceat(data.count[:, None, None] * misfit, first, axis=0)
+    size = np.sum(np.abs(total) ** 2, axis=(1, 2))
+    return float(np.mean(size / np.add.reduceat(variance, first)))
+
+
+def _inverse(information: FloatArray) -> FloatArray:
+    unit = 1.0 / np.sqrt(np.diag(information))
+    scaled = information * np.outer(unit, unit) + LEAST_SHARE * np.eye(len(unit))
+    return np.asarray(linalg.inv(scaled) * np.outer(unit, unit))
+
+
+def _information(data: Periodogram, p: Parameters, model: Expected, white: ComplexArray) -> FloatArray:
+    """Return Σ_k n_k ⟨G_p, G_q⟩ of the derivatives of E between two factors ``white``."""
+    u, w = derivative_factors(data, p, model, white)
+    return gram(np.asarray(u * np.sqrt(data.count)), w)[1]
