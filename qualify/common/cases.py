@@ -15,12 +15,17 @@ KEPT = ROOT / "out" / "qualify"
 Result = dict[str, Any]
 
 
-def cases(name: str, number: int, run: Callable[[int], Result]) -> list[Result]:
+def cases(name: str, number: int, run: Callable[[int], Result], *, part: str = "") -> list[Result]:
     """Return the results of cases 0 to number − 1; those of this very code are not computed again.
 
     Each result carries ``cpu_s``, the processor time that it took.
+
+    Parameters
+    ----------
+    name : of the script
+    part : of what the script runs, if it runs several kinds of cases
     """
-    path = KEPT / f"{name}-{digest(name)}.jsonl"
+    path = KEPT / f"{name}{part}-{digest(name)}.jsonl"
     path.parent.mkdir(parents=True, exist_ok=True)
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     known = {line["case"]: line for line in map(json.loads, lines)}

@@ -116,7 +116,7 @@ def complete(targets_only: TwinResult, record: Record, observation: Observation)
     )
 
 
-CATEGORIES = {"mode", "member", "law"}
+CATEGORIES = {"mode", "member", "law", "parameter"}
 """Axes that name things have no unit."""
 
 

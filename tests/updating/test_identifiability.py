@@ -74,6 +74,9 @@ def test_a_profile_is_least_at_the_solution_and_rises_as_the_data_say(problem: P
     sharp, flat = profile(problem, TRUTH, 2), profile(problem, TRUTH, 1)
     assert sharp.values[np.argmin(sharp.cost)] == pytest.approx(TRUTH[2])
     assert sharp.cost[0] > 50.0 and sharp.cost[-1] > 10.0
+    # the interval's ends lie between points that are not far apart
+    near = sharp.cost < sharp.cost.min() + 8.0
+    assert near.sum() >= 5 and np.abs(np.diff(sharp.cost[near])).max() < 4.0
     # nothing sees the horizontal dashpots until they lock
     assert flat.cost[flat.values < TRUTH[1]].max() < 0.5
 

@@ -29,9 +29,9 @@ def sensitivities(problem: Problem, theta: FloatArray) -> list[Curve]:
     return curves
 
 
-def surface(update: Update, *, n: int = 36) -> tuple[FloatArray, FloatArray, FloatArray]:
+def surface(update: Update, *, n: int = 81) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return (x, y, cost) over the bounds of a law with two parameters."""
-    first, second = update.model.parameters
+    first, second = update.problem.parameters
     x, y = np.geomspace(first.low, first.high, n), np.geomspace(second.low, second.high, n)
     return x, y, cost_surface(update.problem, update.best.theta, (0, 1), x, y)
 

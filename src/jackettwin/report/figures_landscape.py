@@ -18,6 +18,10 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
+_BRIGHTEST = 0.9
+"""This share of a cost surface lies below the brightest colour."""
+
+
 @dataclass(frozen=True)
 class Curve:
     """Cost over one parameter: factor on its value and the cost there."""
@@ -44,39 +48,46 @@ class Locus:
 
 
 def sensitivity(curves: Sequence[Curve]) -> go.Figure:
-    """Draw the cost as each parameter moves by ±50 %, one panel a law."""
+    """Draw the cost as each parameter moves by ±50 %, one panel a law with a legend of its own."""
     laws = list(dict.fromkeys(curve.law for curve in curves))
-    figure = make_subplots(rows=1, cols=len(laws), subplot_titles=laws, horizontal_spacing=0.09)
-    colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.SKY, style.ORANGE)
-    dashes = ("solid", "dash", "dot", "dashdot")
-    names = list(dict.fromkeys(curve.parameter for curve in curves))
-    seen: set[str] = set()
-    for curve in curves:
-        turn, place = divmod(names.index(curve.parameter), len(colours))
-        colour, dash = colours[place], dashes[(turn + place) % len(dashes)]
-        col = laws.index(curve.law) + 1
-        figure.add_scatter(
-            x=100.0 * (curve.factor - 1.0),
-            y=curve.cost,
-            mode="lines",
-            name=curve.parameter,
-            row=1,
-            col=col,
-            legendgroup=curve.parameter,
-            showlegend=curve.parameter not in seen,
-            line={"color": colour, "dash": dash, "width": 2.2},
-            customdata=[scientific(v) for v in curve.factor * curve.value],
-            hovertemplate=f"{curve.parameter} = %{{customdata}} {curve.unit} (%{{x:+.0f}} %)"
-            "<br>cost %{y:.4g}<extra></extra>",
-        )
-        seen.add(curve.parameter)
+    columns = min(len(laws), 2)
+    rows = -(-len(laws) // columns)
+    figure = make_subplots(
+        rows=rows,
+        cols=columns,
+        subplot_titles=laws,
+        horizontal_spacing=0.3,
+        vertical_spacing=0.2,
+    )
+    for panel, law in enumerate(laws):
+        place = {"row": panel // columns + 1, "col": panel % columns + 1}
+        legend = "legend" if panel == 0 else f"legend{panel + 1}"
+        for i, curve in enumerate(c for c in curves if c.law == law):
+            figure.add_trace(_sensitivity_curve(curve, i).update(legend=legend), **place)
+        x, y = (figure.get_subplot(**place)[axis].domain for axis in (0, 1))
+        beside = {"x": x[1] + 0.01, "xanchor": "left", "y": y[1], "yanchor": "top", "font": {"size": 12}}
+        figure.update_layout({legend: beside})
     figure.update_xaxes(title_text=style.title("change", "%"))
     figure.update_yaxes(title_text=style.title("cost", "-"), exponentformat="power")
+    first = figure.layout.legend.to_plotly_json()
     return style.finish(
-        figure,
-        height=420,
-        legend=style.LEGEND_BELOW | {"y": -0.22},
-        margin={"l": 70, "r": 24, "t": 46, "b": 90},
+        figure, height=110 + 270 * rows, legend=first, margin={"l": 70, "r": 170, "t": 46, "b": 54}
+    )
+
+
+def _sensitivity_curve(curve: Curve, i: int) -> go.Scatter:
+    """Return the i-th curve of a law: parameters look alike by their place in a law."""
+    colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)
+    dashes = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
+    return go.Scatter(
+        x=100.0 * (curve.factor - 1.0),
+        y=curve.cost,
+        mode="lines",
+        name=curve.parameter,
+        line={"color": colours[i % 6], "dash": dashes[(i + i // 6) % 6], "width": 2.2},
+        customdata=[scientific(v) for v in curve.factor * curve.value],
+        hovertemplate=f"{curve.parameter} = %{{customdata}} {curve.unit} (%{{x:+.0f}} %)"
+        "<br>cost %{y:.4g}<extra></extra>",
     )
 
 
@@ -91,17 +102,21 @@ def cost_surface(
     height: int = 560,
 ) -> go.Figure:
     """Draw log₁₀ of the cost (n_y, n_x) over two parameters, with solutions marked."""
-    level = np.log10(np.maximum(cost, 1e-16))
+    level = np.round(np.log10(np.maximum(cost, 1e-16)), 3)
+    # most colours for what is low: a ridge of a few sets would take them all
+    top = float(np.quantile(level[np.isfinite(level)], _BRIGHTEST))
     figure = go.Figure(
         go.Contour(
             x=x,
             y=y,
             z=level,
             colorscale=style.SCALE,
-            ncontours=24,
+            zmin=float(np.nanmin(level)),
+            zmax=top,
+            ncontours=32,
             line={"width": 0.5, "color": "rgba(0,0,0,0.35)"},
             colorbar={
-                "title": {"text": style.title("log₁₀ of the cost", "-"), "side": "right"},
+                "title": {"text": style.title("log₁₀ of the cost, capped", "-"), "side": "right"},
                 "thickness": 16,
             },
             hovertemplate=f"{names[0]} %{{x:.3g}} {units[0]}<br>{names[1]} %{{y:.3g}} {units[1]}<br>"
@@ -146,7 +161,7 @@ def cost_surface(
 def root_locus(locus: Locus) -> go.Figure:
     """Draw the poles of each mode in the upper left half plane, limits and solution marked."""
     n = len(locus.labels)
-    columns = min(n, 4)
+    columns = min(n, 3)
     rows = -(-n // columns)
     figure = make_subplots(
         rows=rows,

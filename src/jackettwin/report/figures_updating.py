@@ -20,7 +20,7 @@ def frequency_errors(measured: Sequence[MeasuredMode], updates: Sequence[Update]
     shown = [(i, m) for i, m in enumerate(measured) if known(m.frequency_hz)]
     spans = [_relative_span(m.frequency_hz, m.frequency_std_hz) for _, m in shown]
     figure.add_scatter(
-        x=list(range(len(shown))),
+        x=[k + _offset(0, len(updates)) for k in range(len(shown))],
         y=[0.0] * len(shown),
         mode="markers",
         name="measured, 95 %",
@@ -32,7 +32,7 @@ def frequency_errors(measured: Sequence[MeasuredMode], updates: Sequence[Update]
     for j, update in enumerate(updates):
         f = update.modes.frequency_hz
         figure.add_scatter(
-            x=[k + _offset(j, len(updates)) for k in range(len(shown))],
+            x=[k + _offset(j + 1, len(updates)) for k in range(len(shown))],
             y=[100.0 * (f[i] / float(m.frequency_hz or np.nan) - 1.0) for i, m in shown],
             mode="markers",
             name=update.law,
@@ -49,7 +49,7 @@ def damping_comparison(measured: Sequence[MeasuredMode], updates: Sequence[Updat
     figure = go.Figure()
     shown = [m for m in measured if known(m.damping_ratio)]
     spans = [_span(m.damping_ratio, m.damping_ratio_std) for m in shown]
-    places = [k for k, m in enumerate(measured) if known(m.damping_ratio)]
+    places = [k + _offset(0, len(updates)) for k, m in enumerate(measured) if known(m.damping_ratio)]
     figure.add_scatter(
         x=places,
         y=[100.0 * float(m.damping_ratio or 0.0) for m in shown],
@@ -61,7 +61,7 @@ def damping_comparison(measured: Sequence[MeasuredMode], updates: Sequence[Updat
     )
     for j, update in enumerate(updates):
         figure.add_scatter(
-            x=[k + _offset(j, len(updates)) for k in range(len(measured))],
+            x=[k + _offset(j + 1, len(updates)) for k in range(len(measured))],
             y=100.0 * update.modes.damping_ratio,
             mode="markers",
             name=update.law,
@@ -176,6 +176,8 @@ def _name(mode: MeasuredMode, *, fitted: bool) -> str:
 
 def _by_mode(figure: go.Figure, names: list[str], title: str) -> go.Figure:
     figure.add_hline(y=0.0, line={"color": style.GREY, "width": 1}, layer="below")
+    for k in range(1, len(names)):
+        figure.add_vline(x=k - 0.5, line={"color": style.GRID, "width": 1}, layer="below")
     return style.finish(
         figure,
         height=440,
@@ -190,8 +192,9 @@ def _by_mode(figure: go.Figure, names: list[str], title: str) -> go.Figure:
     )
 
 
-def _offset(j: int, n: int) -> float:
-    return 0.14 * (j + 1)
+def _offset(j: int, n_laws: int) -> float:
+    """Return where the measured value (0) and the laws (1, 2 …) stand about a mode's place."""
+    return min(0.14, 0.7 / max(n_laws, 1)) * (j - 0.5 * n_laws)
 
 
 def _marker(look: style.Look) -> dict[str, object]:

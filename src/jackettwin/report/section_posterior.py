@@ -13,6 +13,7 @@ from jackettwin.report.page import Block, Plot, Table, Text
 from jackettwin.report.summary import shown_update
 from jackettwin.twin import TwinResult
 from jackettwin.updating import Update, law_probability
+from jackettwin.updating.budget import SOURCES
 from jackettwin.updating.update import Uncertainty
 
 
@@ -42,9 +43,10 @@ def whose_damping(result: TwinResult) -> list[Block]:
     interval = (
         "bars: 90 % intervals" if u.budget.damping_ratio_interval_90 is not None else "no intervals known"
     )
-    caption = (
-        f"{u.law}: whose damping each mode has, {interval}. Water is not modelled: its part is not known."
-    )
+    modelled = draw.modelled_sources(u.budget)
+    absent = [source for s, source in enumerate(SOURCES) if s not in modelled]
+    unknown = f" Not modelled, so not known: {', '.join(absent)}." if absent else ""
+    caption = f"{u.law}: whose damping each mode has, {interval}.{unknown}"
     return [Plot("damping_budget", caption, draw.damping_budget(result.measured, u.budget))]
 
 
@@ -90,7 +92,7 @@ def _of_one(u: Update, k: Uncertainty, labels: Mapping[int, str]) -> list[Block]
     blocks: list[Block] = [
         Plot(
             "posterior",
-            f"{u.law}: draws from the posterior on logarithmic axes; × the best solution, dotted: 90 %.",
+            f"{u.law}: draws from the posterior on logarithmic axes; line: before the data; dotted: 90 %.",
             draw.corner(u, k),
         ),
         Plot(

@@ -6,6 +6,7 @@ from jackettwin.report import explore, figures_landscape
 from jackettwin.report import figures_updating as compare
 from jackettwin.report import tables_updating as tables
 from jackettwin.report.figures_modes import Shape, mode_shapes_3d
+from jackettwin.report.figures_solutions import solution_map
 from jackettwin.report.numbers import frequency, percent, words
 from jackettwin.report.page import Block, Plot, Text
 from jackettwin.report.summary import shown_update
@@ -84,8 +85,18 @@ def _shapes(result: TwinResult, u: Update) -> list[Shape]:
 
 def every_solution(result: TwinResult) -> list[Block]:
     """Return every distinct solution of each law, and how complete the search was."""
+    if not result.updates:
+        return []
     said = tuple(f"{u.law}: {u.search.statement}" for u in result.updates)
-    return [Text(said), *(tables.solutions_table(result, u) for u in result.updates)]
+    caption = (
+        "Every solution of each law between the parameters' bounds. Lines: how far its valley reaches. "
+        "Hollow: a locked damper."
+    )
+    return [
+        Text(said),
+        Plot("solutions", caption, solution_map(result.updates)),
+        *(tables.solutions_table(result, u) for u in result.updates),
+    ]
 
 
 def around_the_solution(result: TwinResult) -> list[Block]:
@@ -95,9 +106,7 @@ def around_the_solution(result: TwinResult) -> list[Block]:
     curves = [c for u in result.updates for c in explore.sensitivities(u.problem, u.best.theta)]
     caption = "Cost as one parameter moves by ±50 % about the solution, the others held."
     blocks: list[Block] = [Plot("sensitivity", caption, figures_landscape.sensitivity(curves))]
-    blocks += [
-        _surface(u) for u in result.updates if u.law == "kelvin-voigt" and len(u.model.parameters) == 2
-    ]
+    blocks += [_surface(u) for u in result.updates if len(u.problem.parameters) == 2]
     labels = tuple(m.label for m in result.measured)
     for u in result.updates:
         path = explore.locus(u.model, u.best.theta, u.shown, labels)
@@ -110,14 +119,18 @@ def around_the_solution(result: TwinResult) -> list[Block]:
 
 def _surface(u: Update) -> Plot:
     x, y, cost = explore.surface(u)
-    (px, py), parameters = u.best.theta, u.model.parameters
+    parameters = u.problem.parameters
+    points = [
+        (f"solution {i}{', damper locked' if s.locked_damper else ''}", float(s.theta[0]), float(s.theta[1]))
+        for i, s in enumerate(u.solutions, start=1)
+    ]
     figure = figures_landscape.cost_surface(
         x,
         y,
         cost,
         names=(parameters[0].name, parameters[1].name),
         units=(parameters[0].unit, parameters[1].unit),
-        points=[("solution", float(px), float(py))],
+        points=points,
     )
     return Plot(f"cost_surface_{u.law}", f"{u.law}: the cost over the whole bounds.", figure)
 
