@@ -65,7 +65,7 @@ def cell(values: list[float] | None, scale: float, digits: int) -> tuple[str, bo
 
 def main() -> None:
     chosen = subsets(read_twin("openfast_pile").records)
-    found = cases("record_subsets", len(chosen), lambda case: subset(chosen[case]))
+    found = cases("record_subsets", len(chosen), lambda case: subset(chosen[case]), whole=True)
     columns = (("k", 1e-9, 1), ("side_side_1", 100.0, 2), ("fore_aft_1", 100.0, 2))
     rows, inside = [], {name: [] for name, _, _ in columns}
     for r in found:

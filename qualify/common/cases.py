@@ -15,7 +15,9 @@ KEPT = ROOT / "out" / "qualify"
 Result = dict[str, Any]
 
 
-def cases(name: str, number: int, run: Callable[[int], Result], *, part: str = "") -> list[Result]:
+def cases(
+    name: str, number: int, run: Callable[[int], Result], *, part: str = "", whole: bool = False
+) -> list[Result]:
     """Return the results of cases 0 to number − 1; those of this very code are not computed again.
 
     Each result carries ``cpu_s``, the processor time that it took.
@@ -24,8 +26,9 @@ def cases(name: str, number: int, run: Callable[[int], Result], *, part: str = "
     ----------
     name : of the script
     part : of what the script runs, if it runs several kinds of cases
+    whole : whether it runs all of the package, identification included
     """
-    path = KEPT / f"{name}{part}-{digest(name)}.jsonl"
+    path = KEPT / f"{name}{part}-{digest(name, whole=whole)}.jsonl"
     path.parent.mkdir(parents=True, exist_ok=True)
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     known = {line["case"]: line for line in map(json.loads, lines)}
@@ -40,9 +43,9 @@ def cases(name: str, number: int, run: Callable[[int], Result], *, part: str = "
     return [known[case] for case in range(number)]
 
 
-def digest(name: str) -> str:
+def digest(name: str, *, whole: bool = False) -> str:
     """Return a short hash of a script and of all code that it may call."""
     files = [ROOT / "qualify" / f"{name}.py", *sorted((ROOT / "src" / "jackettwin").rglob("*.py"))]
     layers = ("updating", "response", "soil", "structure", name)
-    text = b"".join(f.read_bytes() for f in files if f.parent.name in layers or f.stem in layers)
+    text = b"".join(f.read_bytes() for f in files if whole or f.parent.name in layers or f.stem in layers)
     return hashlib.sha256(text).hexdigest()[:10]
