@@ -6,6 +6,7 @@ import pytest
 from jackettwin.loads import read_rotor
 from jackettwin.loads.rotor import compiled_rotor, elements, linearise, rotation, rotor_loads
 from jackettwin.loads.rotor_wind import RINGS, SPOKES, rotor_wind
+from jackettwin.loads.standing_blades import grid_nodes
 from jackettwin.loads.wind import Wind
 
 ROTOR, _ = read_rotor("iea15")
@@ -107,3 +108,35 @@ def test_a_turned_rotor_carries_its_load_along() -> None:
     again = rotor_loads(ROTOR, wind, pitch=1.2, azimuth=third)
     np.testing.assert_allclose(again, first, rtol=1e-9, atol=1e-6)
     assert rotation(d, third) @ d == pytest.approx(d)
+
+
+def test_nodes_of_a_grid_average_more_for_blades_that_slant() -> None:
+    """Between nodes of independent winds the shares' squares add up: 1 at a node, 2/3 along a grid line.
+
+    The first blade stands on such a line (2/3 in the mean), the others cut across: (2/3)² in the mean.
+    """
+    places = grid_nodes(HUB, ROTOR, 0.0, 3.0)
+    np.testing.assert_allclose(places.shares.sum(axis=1), 1.0, rtol=1e-12)
+    # a plane wind is interpolated without error, at the elements' own places
+    arm = ROTOR.hub_radius + ROTOR.blade.z
+    angle = np.repeat(2.0 * np.pi * np.arange(3) / 3.0, arm.size)
+    at = np.stack([-np.sin(angle) * np.tile(arm, 3), HUB + np.cos(angle) * np.tile(arm, 3)], axis=1)
+    np.testing.assert_allclose(places.shares @ places.points[:, 0], at, atol=1e-9)
+    power = (places.shares**2).sum(axis=1).reshape(3, -1).mean(axis=1)
+    # fifty elements, 117 m: the mean over the cells is met within some percent
+    assert power[0] == pytest.approx(2.0 / 3.0, rel=0.05)
+    np.testing.assert_allclose(power[1:], 4.0 / 9.0, rtol=0.05)
+
+
+def test_a_standing_rotor_takes_its_wind_from_the_grid() -> None:
+    wind = Wind(12.0, HUB, "B")
+    field = rotor_wind(wind, ROTOR, duration=300.0, step=0.5, seed=3, coherent="u", grid=24.0)
+    seen = field.on_blades(ROTOR, np.zeros(field.n_times)).reshape(field.n_times, 3, -1, 3)
+    root = seen[:, :, 0]
+    # all roots lie 4 m from one node: its share is 0.79 to 0.83 of the wind there
+    for component in range(3):
+        apart = (root[:, 0, component] - root[:, 1, component]).std()
+        assert apart < 0.4 * root[:, 0, component].std()
+    assert np.corrcoef(root[:, 0, 0], field.at_hub()[:, 0])[0, 1] > 0.95
+    tips = seen[:, 1:, -1, 1].std(axis=0) / seen[:, 0, 0, 1].std()
+    assert (tips < 1.0).all()

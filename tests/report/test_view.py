@@ -16,7 +16,9 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import on_translations
 from jackettwin.soil.viscoelastic import kelvin_voigt
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.structure.model import STEEL, Member, Reaction, RigidLink
+from jackettwin.structure.two_node import two_node_element
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +107,26 @@ def test_one_file_that_needs_no_network(view: View, tmp_path: Path) -> None:
     assert set(found["quantities"][-1]["values"]) == {None}
     assert "NaN" not in data[1]
     assert "marine growth" in page
+
+
+def test_what_is_no_tube_is_drawn_as_a_line(tmp_path: Path) -> None:
+    """A mast on a stiff foot, stayed by a cable: the cable and the rigid link are listed, with their key."""
+    K = np.zeros((12, 12))
+    stay = two_node_element("stay", "cable", ("top", "anchor"), K)
+    mast = Structure(
+        name="mast",
+        nodes={"foot": (0.0, 0.0, 0.0), "top": (0.0, 0.0, 30.0), "anchor": (20.0, 0.0, 0.0)},
+        members=(Member("mast", "foot", "top", Section(1.0, 0.02), Section(1.0, 0.02), STEEL),),
+        rigid_links=(RigidLink("foot", "anchor"),),
+        reactions=(Reaction("foot"),),
+        elements=(stay,),
+        sea_level_z_m=0.0,
+    )
+    assembly = assemble(mast)
+    view = View(assembly, thickness_quantities(assembly))
+    names = assembly.mesh.node_names
+    drawn = {one["kind"]: (names[one["start"]], names[one["end"]]) for one in view_document(view)["others"]}
+    assert drawn == {"cable": ("top", "anchor"), "rigid link": ("foot", "anchor")}
+    page = write_view(view, tmp_path / "mast.html").read_text(encoding="utf-8")
+    assert 'class="key cable"' in page
+    assert 'class="key rigid-link"' in page

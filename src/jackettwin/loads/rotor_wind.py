@@ -1,8 +1,8 @@
 """Turbulent wind over a rotor and its tower.
 
-A rotor that stands sees the mean wind over pieces of each blade; the blades of one that turns cut through
-rings of points (rotational sampling). The disc stands across the wind, which blows along +x. Heights count
-from still water.
+A rotor that stands sees the mean wind over pieces of each blade, or the nodes of a grid; the blades of one
+that turns cut through rings of points (rotational sampling). The disc stands across the wind, which blows
+along +x. Heights count from still water.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from jackettwin.loads.kernels import wind_on_blades
 from jackettwin.loads.rotor import Rotor, rotation
+from jackettwin.loads.standing_blades import Places, blade_pieces, grid_nodes, line_pieces
 from jackettwin.loads.turbulence import Coherent, turbulence
 from jackettwin.loads.wind import Wind
 
@@ -24,8 +25,6 @@ RINGS = (0.3, 0.55, 0.8, 1.0)
 SPOKES = 12
 PIECE_M = 10.0
 """Longest piece of blade or tower that has a wind of its own."""
-_POINTS = 5
-"""Points over which a piece is averaged."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +34,12 @@ class RotorWind:
     Attributes
     ----------
     hub : (n_times, 3)
-    rotor : on the pieces of the standing blades, root to tip, blade by blade; or at the hub and on the rings
+    rotor : at the places of the standing blades; or at the hub and on the rings
     tower : on pieces of the tower's axis, from still water to the hub
     step_s : between samples
     radius : of the rotor [m]
     azimuth : of the first blade if the rotor stands [rad], None if it turns
+    shares : (n_elements, n) of each place that an element of the standing blades sees
     """
 
     wind: Wind
@@ -49,6 +49,7 @@ class RotorWind:
     step_s: float
     radius: float
     azimuth: float | None
+    shares: FloatArray
 
     @property
     def n_times(self) -> int:
@@ -72,12 +73,9 @@ class RotorWind:
         turn = np.array([rotation(np.array([0.0, 0.0, 1.0]), float(one)) for one in np.atleast_1d(yaw)])
         r, n = rotor.hub_radius + rotor.blade.z, rotor.n_blades
         if self.azimuth is not None:
-            pieces = self.rotor.shape[1] // n
-            piece = np.minimum((r * pieces / self.radius).astype(np.intp), pieces - 1)
             spokes = self.azimuth + 2.0 * np.pi * np.arange(n) / n
             height = self.wind.hub_height_m + np.outer(np.cos(spokes), r).ravel()
-            on = np.concatenate([piece + blade * pieces for blade in range(n)])
-            return np.asarray((self.rotor[:, on] + self._mean(height)) @ turn)
+            return np.asarray((self.shares @ self.rotor + self._mean(height)) @ turn)
         knots = np.array([0.0, *RINGS])
         share_of_radius = r / self.radius
         ring = np.clip(np.searchsorted(knots, share_of_radius, side="right") - 1, 0, len(RINGS) - 1)
@@ -109,6 +107,7 @@ def rotor_wind(
     azimuth: float | None = 0.0,
     coherent: Coherent = "all",
     piece: float = PIECE_M,
+    grid: float | None = None,
 ) -> RotorWind:
     """Return the wind of ``duration`` [s], which it repeats, in steps of ``step`` [s].
 
@@ -120,13 +119,12 @@ def rotor_wind(
         Of the first blade of a rotor that stands [rad]; None if it turns.
     piece : float
         Longest piece of blade or tower with a wind of its own [m].
+    grid : float, optional
+        Width of a grid whose nodes the standing blades take their wind from instead [m].
     """
     hub = wind.hub_height_m
-    if rotor is None:
-        on_rotor = np.empty((0, _POINTS, 2))
-    else:
-        on_rotor = _rings(hub, rotor.radius) if azimuth is None else _blades(hub, rotor, azimuth, piece)
-    tower = _pieces(np.zeros(2), np.array([0.0, hub]), piece)
+    on_rotor, shares = _on_rotor(hub, rotor, azimuth, piece, grid)
+    tower = line_pieces(np.zeros(2), np.array([0.0, hub]), piece)
     places = [np.array([[[0.0, hub]]]), on_rotor, tower]
     points = np.concatenate([group.reshape(-1, 2) for group in places])
     size = np.concatenate([np.full(group.shape[0], group.shape[1]) for group in places])
@@ -148,26 +146,20 @@ def rotor_wind(
         step,
         0.0 if rotor is None else rotor.radius,
         azimuth,
+        shares,
     )
 
 
-def _pieces(start: FloatArray, end: FloatArray, piece: float) -> FloatArray:
-    """Return points (n_pieces, n, 2) of the pieces of a line."""
-    n = int(np.ceil(np.linalg.norm(end - start) / piece))
-    share = (np.arange(n * _POINTS) + 0.5) / (n * _POINTS)
-    return np.asarray((start + share[:, None] * (end - start)).reshape(n, _POINTS, 2))
-
-
-def _blades(hub_height: float, rotor: Rotor, azimuth: float, piece: float) -> FloatArray:
-    """Return points (n_pieces, n, 2: y and z) of all blades, from the hub's centre to the tips."""
-    centre = np.array([0.0, hub_height])
-    angle = azimuth + 2.0 * np.pi * np.arange(rotor.n_blades) / rotor.n_blades
-    tips = centre + rotor.radius * np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-    return np.concatenate([_pieces(centre, tip, piece) for tip in tips])
-
-
-def _rings(hub_height: float, radius: float) -> FloatArray:
-    return _disc(hub_height, radius)[:, None, :]
+def _on_rotor(
+    hub_height: float, rotor: Rotor | None, azimuth: float | None, piece: float, grid: float | None
+) -> Places:
+    if rotor is None:
+        return Places(np.empty((0, 1, 2)), np.empty((0, 0)))
+    if azimuth is None:
+        return Places(_disc(hub_height, rotor.radius)[:, None, :], np.empty((0, 0)))
+    if grid is None:
+        return blade_pieces(hub_height, rotor, azimuth, piece)
+    return grid_nodes(hub_height, rotor, azimuth, grid)
 
 
 def _disc(hub_height: float, radius: float) -> FloatArray:

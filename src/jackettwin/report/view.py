@@ -28,6 +28,10 @@ from jackettwin.structure import Assembly
 FloatArray = npt.NDArray[np.float64]
 
 
+_LINES = ("cable", "spring", "beam")
+"""Elements of a deck that are drawn as lines; the springs of a joint have no length."""
+
+
 @dataclass(frozen=True)
 class Quantity:
     """A number for every element, to colour by; ``log`` spreads values that span decades."""
@@ -77,6 +81,7 @@ def write_view(view: View, path: Path) -> Path:
         has_growth=view.coefficients is not None and bool(view.coefficients.growth),
         has_flooded=bool(view.flooded),
         has_sensors=bool(view.sensors),
+        others=sorted({one["kind"] for one in _others(view.assembly)}),
     )
     with atomic_path(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
@@ -119,6 +124,7 @@ def view_document(view: View) -> dict[str, Any]:
             }
             for m in structure.masses
         ],
+        "others": _others(assembly),
         "mud_z": float(
             min(
                 (points[mesh.node_names.index(n), 2] for n in structure.reaction_nodes),
@@ -152,6 +158,14 @@ def _growth(assembly: Assembly, points: FloatArray, coefficients: Coefficients |
         return np.zeros(assembly.mesh.start.size)
     middle = 0.5 * (points[assembly.mesh.start, 2] + points[assembly.mesh.end, 2])
     return np.asarray(coefficients.thickness(middle))
+
+
+def _others(assembly: Assembly) -> list[dict[str, Any]]:
+    """Return what is no tube but joins nodes: cables, springs, beams of any section, rigid links."""
+    structure, place = assembly.structure, assembly.mesh.node_names.index
+    joins = [(e.kind, e.start, e.end) for e in structure.elements if e.kind in _LINES]
+    joins += [("rigid link", link.leader, link.follower) for link in structure.rigid_links]
+    return [{"kind": kind, "start": place(a), "end": place(b)} for kind, a, b in joins]
 
 
 def _sensors(assembly: Assembly, sensors: Sequence[Sensor]) -> list[dict[str, Any]]:

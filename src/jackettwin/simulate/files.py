@@ -119,6 +119,13 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
     top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
     if turbine is not None:
         check_clearance(turbine, top)
+    if w.grid_m is not None and (turbine is None or turbine.state == "operating"):
+        raise InputError(
+            "a grid is for blades that stand",
+            field="wind.grid_m",
+            value=w.grid_m,
+            remedy="leave it out, or park the rotor",
+        )
     hub = 0.0 if turbine is None else turbine.rotor.hub_height
     turbulence = 0.0 if w.turbulence == "none" else w.turbulence
     with located(field="wind"):
@@ -132,6 +139,7 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
         tower_drag=w.tower_drag,
         coherent=w.coherence,
         piece_m=w.piece_m,
+        grid_m=w.grid_m,
     )
 
 

@@ -89,6 +89,8 @@ class Air:
     """Which components of turbulence are coherent across rotor and tower."""
     piece_m: float = PIECE_M
     """Longest piece of a standing blade or of the tower with a wind of its own."""
+    grid_m: float | None = None
+    """Width of a grid whose nodes standing blades take their wind from instead."""
 
     def heading(self, t: FloatArray) -> FloatArray:
         """Return the nacelle's heading [rad] at times ``t`` [s] in the record."""

@@ -103,6 +103,7 @@ class WindSchema(Schema):
     tower_drag: NotNegative = 0.65
     coherence: Literal["all", "u"] = "all"
     piece_m: Annotated[float, Field(ge=1.0, le=200.0)] = PIECE_M
+    grid_m: Annotated[float, Field(ge=5.0, le=200.0)] | None = None
 
 
 class RotorSchema(Schema):

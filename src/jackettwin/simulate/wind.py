@@ -89,6 +89,7 @@ def wind_field(air: Air, aero: Aerodynamics | None, *, duration: float, step: fl
         azimuth=None if aero is None or aero.turns else aero.turbine.azimuth,
         coherent=air.coherent,
         piece=air.piece_m,
+        grid=air.grid_m,
     )
 
 
