@@ -38,7 +38,7 @@ def print_updates(result: TwinResult) -> None:
         output.print(f"\n[bold]{u.law}[/bold]")
         output.print(_parameters(u))
         output.print(_modes(result.measured, u))
-        for line in _leg_scatter(u):
+        for line in (*_relaxations(result, u), *_leg_scatter(u)):
             output.print(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
@@ -59,6 +59,17 @@ def _parameters(u: Update) -> Table:
         bound = ", on its bound" if p.name in u.best.at_bound else ""
         table.add_row(p.name, f"{value:.3g}{unit}", span, verdict + bound)
     return table
+
+
+def _relaxations(result: TwinResult, u: Update) -> list[str]:
+    """Return measured real poles beside the model's, a line each."""
+    lines = []
+    for r, rate in zip(result.relaxations, u.best.rates, strict=True):
+        spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
+        lines.append(
+            f"real pole {r.name}: measured {r.rate_rad_s:.3g}{spread} 1/s, the model's {rate:.3g} 1/s"
+        )
+    return lines
 
 
 def _leg_scatter(u: Update) -> list[str]:

@@ -31,6 +31,7 @@ def identified_against_updated(result: TwinResult) -> list[Block]:
             "Measured damping ratios with 95 % intervals, and those of each updated law.",
             zeta(result.measured, result.updates),
         ),
+        *([tables.relaxation_table(result)] if result.relaxations else []),
         tables.parameter_table(result.updates),
     ]
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import exp
 
+import numpy as np
+import numpy.typing as npt
+
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
 from jackettwin.report.summary import shown_update
@@ -12,6 +15,8 @@ from jackettwin.twin import DampingExcess, TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
 from jackettwin.updating.families import Parameter
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def key_table(result: TwinResult) -> Table:
@@ -82,6 +87,37 @@ def damped_undamped_table(result: TwinResult) -> Table:
         rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
     caption = "Damped and undamped frequencies of the full updated model."
     return Table(caption, tuple(columns), tuple(rows))
+
+
+def relaxation_table(result: TwinResult) -> Table:
+    """Return measured real poles beside the updated model's nearest."""
+    rows = []
+    for i, r in enumerate(result.relaxations):
+        for u in result.updates:
+            known = None if u.uncertainty is None else u.uncertainty.predictive.rates[r.name]
+            span = UNKNOWN if known is None else " … ".join(f"{v:.3g}" for v in _interval(known))
+            spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
+            rate = float(u.best.rates[i])
+            rows.append(
+                (r.name, u.law, f"{r.rate_rad_s:.3g}{spread}", f"{rate:.3g}", span, f"{1.0 / rate:.3g}")
+            )
+    columns = (
+        "pole",
+        "law",
+        "measured rate [1/s]",
+        "best fit [1/s]",
+        "90 % interval [1/s]",
+        "time constant [s]",
+    )
+    caption = (
+        "Real poles exp(−at): measured rates beside those of the updated model, nearest by rate and shape."
+    )
+    return Table(caption, columns, tuple(rows), text_columns=2)
+
+
+def _interval(draws: FloatArray) -> tuple[float, float]:
+    low, high = np.nanquantile(draws, [0.05, 0.95])
+    return float(low), float(high)
 
 
 def parameter_table(updates: Sequence[Update]) -> Table:

@@ -18,11 +18,30 @@ from jackettwin.updating import DEFAULT_LAWS, Target
 
 @dataclass(frozen=True)
 class ModelError:
-    """Relative standard deviation by which the model itself may miss some modes."""
+    """Relative standard deviation by which the model itself may miss some modes, or rates of relaxations."""
 
-    modes: tuple[int, ...]
+    modes: tuple[int, ...] = ()
     frequency: float = 0.0
     damping: float = 0.0
+    rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class GivenRelaxation:
+    """A relaxation known from elsewhere.
+
+    Attributes
+    ----------
+    rate_rad_s : float
+        a of exp(−at).
+    rate_std_rad_s : float or None
+    shape : {channel: value}
+        At sensors of the twin; empty if it is not known.
+    """
+
+    rate_rad_s: float
+    rate_std_rad_s: float | None = None
+    shape: Mapping[str, complex] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -76,6 +95,11 @@ class UpdateSettings:
                 frequency, damping = hypot(frequency, error.frequency), hypot(damping, error.damping)
         return ModelError((mode,), frequency, damping)
 
+    @property
+    def rate_error(self) -> float:
+        """Relative standard deviation by which the model may miss the rate of a relaxation."""
+        return hypot(*(error.rate for error in self.model_errors))
+
 
 @dataclass(frozen=True)
 class TwinConfig:
@@ -101,6 +125,8 @@ class TwinConfig:
     sensors: tuple[Sensor, ...]
     records: tuple[Path, ...]
     targets: tuple[Target, ...]
+    relaxations: tuple[GivenRelaxation, ...]
+    """Targets that do not oscillate."""
     identification: IdentificationSettings
     picks: tuple[Pick, ...]
     """Poles to take instead of the automatic selection, for the records they name."""

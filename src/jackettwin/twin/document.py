@@ -11,7 +11,7 @@ from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.observe import Observation
-from jackettwin.twin.result import MeasuredMode, TwinResult
+from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
@@ -28,6 +28,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
     return {
         "name": result.name,
         "modes": [_measured(m) for m in result.measured],
+        "real_poles": [_relaxation(r) for r in result.relaxations],
         "updates": [update_document(result, i) for i in range(len(result.updates))],
         "law_probability": law_probability(result.updates),
         "identification": [
@@ -52,6 +53,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         "law": u.law,
         "parameters": _parameters(u),
         "modes": _compared(result.measured, u),
+        "real_poles": _compared_relaxations(result.relaxations, u),
         "solutions": [
             {
                 "parameters": dict(zip(names, map(float, s.theta), strict=True)),
@@ -62,6 +64,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
                 "frequency_hz": s.frequency_hz,
                 "undamped_frequency_hz": s.undamped_hz,
                 "damping_ratio": s.damping_ratio,
+                "real_pole_rate_rad_s": s.rates,
                 "at_bound": list(s.at_bound),
                 "starts_that_ended_here": s.found,
                 "extent": dict(zip(names, s.extent.tolist(), strict=True)),
@@ -110,6 +113,32 @@ def _measured(m: MeasuredMode) -> dict[str, Any]:
         "fits_frequency": m.fits_frequency,
         "fits_damping": m.fits_damping,
     }
+
+
+def _relaxation(r: MeasuredRelaxation) -> dict[str, Any]:
+    return {
+        "name": r.name,
+        "rate_rad_s": r.rate_rad_s,
+        "rate_std_rad_s": r.rate_std_rad_s,
+        "time_constant_s": 1.0 / r.rate_rad_s,
+        "records": r.records,
+        "mode_shape": _shape(r.shape, list(r.channels)) or None,
+    }
+
+
+def _compared_relaxations(measured: tuple[MeasuredRelaxation, ...], u: Update) -> list[dict[str, Any]]:
+    """Return each measured real pole beside the model's nearest, best and in the posterior."""
+    known = u.uncertainty
+    return [
+        {
+            "name": r.name,
+            "measured_rate_rad_s": r.rate_rad_s,
+            "measured_rate_std_rad_s": r.rate_std_rad_s,
+            "rate_rad_s": float(rate),
+            "posterior": None if known is None else _quantiles(known.predictive.rates[r.name]),
+        }
+        for r, rate in zip(measured, u.best.rates, strict=True)
+    ]
 
 
 def _parameters(u: Update) -> dict[str, dict[str, Any]]:

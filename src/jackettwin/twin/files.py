@@ -4,170 +4,22 @@ from __future__ import annotations
 
 from math import radians
 from pathlib import Path
-from typing import Annotated, Any, Literal
-
-from pydantic import BeforeValidator, Field
+from typing import Any
 
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import Schema, find_file, read_mapping, read_yaml, shipped, validate
+from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads.conditions import SeaState
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.files import depth_of
 from jackettwin.simulate.water_files import WaterSchema, water_members
-from jackettwin.structure import Rayleigh, Structure, read_structure
-from jackettwin.structure.files import BodySchema
-from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
+from jackettwin.structure import Rayleigh, Structure
+from jackettwin.twin.config import GivenRelaxation, ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
 from jackettwin.updating.extras import DASHPOTS, Extras
-
-Positive = Annotated[float, Field(gt=0.0)]
-Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
-Vector = tuple[float, float, float]
-
-
-class SteelSchema(Schema):
-    """Factors on the stiffness (E and G) and the density of a part."""
-
-    youngs_modulus: Positive = 1.0
-    density: Positive = 1.0
-
-
-class StructureChoice(Schema):
-    """A structure with overrides; ``steel`` is what ``jackettwin refine`` prints."""
-
-    source: str
-    rna: BodySchema | None = None
-    steel: dict[str, SteelSchema] = {}
-
-    def build(self, folder: Path) -> Structure:
-        """Return the structure, refined; its rotor–nacelle assembly is left to the caller."""
-        structure = read_structure(self.source, folder=folder)
-        for part, factors in self.steel.items():
-            with located(field="structure.steel"):
-                structure = structure.with_material(part, **factors.model_dump())
-        return structure
-
-
-StructureOrName = Annotated[
-    StructureChoice, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
-]
-
-
-class RayleighSchema(Schema):
-    """Steel damping: a least ratio and where it stands."""
-
-    ratio: Ratio
-    frequency_hz: Positive
-
-
-class DampingSchema(Schema):
-    """``damping``."""
-
-    rayleigh: RayleighSchema
-
-
-class SupportSchema(Schema):
-    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale.
-
-    ``shared`` parameters have one value for all tie groups; ``scatter`` says by how much, in ln θ, the others
-    may be expected to differ between them.
-    """
-
-    law: str | None = None
-    tie: Literal["all", "horizontal-vertical", "per-leg"] = "all"
-    stiffness: str | None = None
-    shared: list[str] = []
-    scatter: dict[str, Annotated[float, Field(gt=0.0, le=3.0)]] = {}
-
-
-class SensorSchema(Schema):
-    """A sensor: where a channel of the record sits in the structure."""
-
-    channel: str
-    node: str | None = None
-    height_m: float | None = None
-    direction: Vector
-
-
-class TargetSchema(Schema):
-    """A mode known from elsewhere."""
-
-    mode: Annotated[int, Field(ge=1, le=50)]
-    frequency_hz: Positive | None = None
-    frequency_std_hz: Positive | None = None
-    damping_ratio: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
-    damping_ratio_std: Positive | None = None
-    correlation: Annotated[float, Field(gt=-1.0, lt=1.0)] = 0.0
-
-
-class ModelErrorSchema(Schema):
-    """How well the model itself can be expected to meet some modes."""
-
-    modes: list[Annotated[int, Field(ge=1, le=50)]]
-    frequency: Ratio = 0.0
-    damping: Ratio = 0.0
-
-
-class PriorSchema(Schema):
-    """A lognormal prior."""
-
-    median: Positive
-    log_std: Positive
-
-
-class UpdateSchema(Schema):
-    """``update``."""
-
-    laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
-    method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: Annotated[int, Field(ge=1, le=10000)] = 32
-    seed: Annotated[int, Field(ge=0)] = 0
-    particles: Annotated[int, Field(ge=20, le=100000)] = 150
-    sampler: Literal["smc", "nested"] = "smc"
-    bounds: dict[str, tuple[float, float]] = {}
-    priors: dict[str, PriorSchema] = {}
-    weighting: Literal["auto", "relative", "covariance"] = "auto"
-    modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
-    damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
-    model_error: list[ModelErrorSchema] = []
-    mac_std: Positive | None = None
-    dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
-    rotor: str | None = None
-    shaft: Literal["locked", "free"] = "locked"
-    wind_speed_m_s: Positive | None = None
-    water: list[Literal["water_mass", "water_damping"]] = []
-    steel_damping: Literal["fixed", "free"] = "fixed"
-
-
-class SeaSchema(Schema):
-    """``sea``: the mean sea of the records, a JONSWAP spectrum."""
-
-    hs_m: Positive
-    tp_s: Positive
-    direction_deg: float = 0.0
-
-
-class TwinSchema(Schema):
-    """A twin file."""
-
-    structure: StructureOrName
-    rna: BodySchema | None = None
-    beam: Literal["euler-bernoulli", "timoshenko"] | None = None
-    rotary_inertia: bool | None = None
-    subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
-    gravity: bool = False
-    damping: DampingSchema | None = None
-    water: WaterSchema | None = None
-    sea: SeaSchema | None = None
-    support: SupportSchema = SupportSchema()
-    sensors: list[SensorSchema] = []
-    records: list[str] = []
-    targets: list[TargetSchema] = []
-    identification: dict[str, Any] = {}
-    update: UpdateSchema = UpdateSchema()
 
 
 def shipped_twins() -> tuple[str, ...]:
@@ -216,6 +68,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         _check_update(schema.update)
     with located(field="support"):
         _check_ties(schema.support, schema.update)
+    targets, relaxations = _targets(schema)
     damping = schema.damping.rayleigh if schema.damping is not None else None
     structure = _structure(schema, path.parent)
     return TwinConfig(
@@ -235,11 +88,30 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
-        targets=tuple(Target(**target.model_dump()) for target in schema.targets),
+        targets=targets,
+        relaxations=relaxations,
         identification=_identification(schema.identification),
         picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
         update=_update_settings(schema, path.parent),
     )
+
+
+def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxation, ...]]:
+    """Return the targets that are modes, and those that are relaxations."""
+    channels, built = [sensor.channel for sensor in schema.sensors], []
+    for i, target in enumerate(schema.targets):
+        with located(field=f"targets.{i}"):
+            built.append(target.build(channels))
+    modes = tuple(target for target in built if isinstance(target, Target))
+    relaxations = tuple(target for target in built if isinstance(target, GivenRelaxation))
+    if relaxations and not modes:
+        raise InputError(
+            "relaxations alone do not fix the supports of a structure",
+            field="targets",
+            value=f"{len(relaxations)} without mode",
+            remedy="give at least one mode as well: {mode: 1, frequency_hz: …}",
+        )
+    return modes, relaxations
 
 
 def _identification(given: dict[str, Any]) -> IdentificationSettings:
@@ -360,7 +232,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         weighting=u.weighting,
         modes=tuple(u.modes),
         damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
-        model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping) for e in u.model_error),
+        model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping, e.rate) for e in u.model_error),
         mac_std=u.mac_std,
         dashpots=_dashpots(u),
         rotor=None if u.rotor is None else _beside(u.rotor, folder),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, pi
 
 from jackettwin.errors import InputError, located
 from jackettwin.twin.config import ModelError, TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.updating import Residuals, Target
 
 _FAR_ABOVE = 3.0
@@ -29,15 +29,26 @@ def target_modes(
     InputError
         If a target is far above all of them.
     """
+    most = _FAR_ABOVE * highest_hz
     for place, target in enumerate(config.targets):
-        if (target.frequency_hz or 0.0) > _FAR_ABOVE * highest_hz:
+        if (target.frequency_hz or 0.0) > most:
             raise InputError(
                 "is far above the modes of the model",
                 file=config.path,
                 field=f"targets.{place}.frequency_hz",
                 value=target.frequency_hz,
-                allowed=f"up to {_FAR_ABOVE * highest_hz:.3g} Hz here",
+                allowed=f"up to {most:.3g} Hz here",
                 remedy="give Hz, not mHz, rad/s or cycles a minute",
+            )
+    for given in config.relaxations:
+        if given.rate_rad_s > 2.0 * pi * most:
+            raise InputError(
+                "relaxes far faster than the modes of the model oscillate",
+                file=config.path,
+                field="targets.rate_rad_s",
+                value=given.rate_rad_s,
+                allowed=f"up to {2.0 * pi * most:.3g} rad/s here",
+                remedy="give rad/s: one over the relaxation time in seconds",
             )
     return tuple(
         MeasuredMode(
@@ -101,14 +112,20 @@ def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighti
     )
 
 
-def residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residuals:
-    """Return the residuals of all measured modes; what takes no part in the fit is None."""
+def residuals(
+    config: TwinConfig, measured: tuple[MeasuredMode, ...], relaxations: tuple[MeasuredRelaxation, ...] = ()
+) -> Residuals:
+    """Return the residuals of all measured modes; what takes no part in the fit is None.
+
+    They are relative if any of the data, relaxations among them, has no standard deviation.
+    """
     errors = [config.update.model_error(m.mode) for m in measured]
     complete = all(
         (m.frequency_std_hz is not None or e.frequency > 0.0 or not m.fits_frequency)
         and (m.damping_ratio_std is not None or e.damping > 0.0 or not m.fits_damping)
         for m, e in zip(measured, errors, strict=True)
     )
+    complete &= all(r.rate_std_rad_s is not None or config.update.rate_error > 0.0 for r in relaxations)
     weighting = config.update.weighting
     if weighting == "covariance" and not complete:
         raise InputError(
@@ -116,7 +133,7 @@ def residuals(config: TwinConfig, measured: tuple[MeasuredMode, ...]) -> Residua
             file=config.path,
             field="update.weighting",
             value=weighting,
-            remedy="give frequency_std_hz and damping_ratio_std, or weighting: relative",
+            remedy="give frequency_std_hz, damping_ratio_std and rate_std_rad_s, or weighting: relative",
         )
     relative = weighting == "relative" or not complete
     with located(file=config.path):

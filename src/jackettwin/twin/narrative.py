@@ -6,12 +6,15 @@ from math import hypot
 
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.updating import Update
 
 
 def assumptions(
-    config: TwinConfig, measured: tuple[MeasuredMode, ...], wind: float | None
+    config: TwinConfig,
+    measured: tuple[MeasuredMode, ...],
+    relaxations: tuple[MeasuredRelaxation, ...],
+    wind: float | None,
 ) -> tuple[str, ...]:
     """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
     s = config.structure
@@ -26,9 +29,11 @@ def assumptions(
         f"The support law acts on the three translations of {len(s.reactions)} reaction nodes "
         f"(tie: {config.tie}).",
         "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
-        f"Fitted: {', '.join(filter(None, map(_fitted, measured)))}.",
+        f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
     ]
-    for e in config.update.model_errors:
+    if relaxations and config.update.rate_error:
+        lines.append(f"Model error of relaxations: {100 * config.update.rate_error:.3g} % on the rate.")
+    for e in (e for e in config.update.model_errors if e.modes):
         lines.append(
             f"Model error of modes {', '.join(map(str, e.modes))}: {100 * e.frequency:.3g} % on frequency, "
             f"{100 * e.damping:.3g} % on damping."
@@ -53,6 +58,15 @@ def assumptions(
 def _fitted(m: MeasuredMode) -> str:
     what = [word for word, flag in (("f", m.fits_frequency), ("ζ", m.fits_damping)) if flag]
     return f"{m.label} ({' and '.join(what)})" if what else ""
+
+
+def _relaxed(r: MeasuredRelaxation) -> str:
+    return f"{r.name} (relaxation at {r.rate_rad_s:.3g} rad/s)"
+
+
+def without_relaxation(laws: tuple[str, ...]) -> tuple[str, ...]:
+    """Return why laws were left out of an update to real poles."""
+    return tuple(f"{law}: left out, a structure on it has no real poles." for law in laws)
 
 
 def cautions(

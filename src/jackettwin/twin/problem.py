@@ -11,12 +11,15 @@ from jackettwin.soil.support import Support
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured
+from jackettwin.twin.relaxations import relaxation_targets
+from jackettwin.twin.result import MeasuredRelaxation
 from jackettwin.twin.rotor import RotorDamping, States
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import Problem, family, joint, support_model
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.joint import Growth
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
 
 
@@ -31,12 +34,14 @@ class Evidence:
         What the records say; None if the twin file gives targets.
     states : {operating state: residuals and factors of the parameters}
     rotor : RotorDamping
+    relaxations : tuple of MeasuredRelaxation
     """
 
     assembly: Assembly
     found: Measured | None
     states: States
     rotor: RotorDamping
+    relaxations: tuple[MeasuredRelaxation, ...] = ()
 
 
 def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
@@ -48,7 +53,15 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
         If bounds, priors, ties or pile heads do not fit the law.
     """
     model = law_model(config, evidence, law)
-    return tied_problem(config, model, evidence.states, shapes=_shapes(config, model, evidence))
+    relaxations = relaxation_targets(
+        config,
+        model,
+        evidence.relaxations,
+        sensors=() if evidence.found is None else evidence.found.sensors,
+        relative=any(residuals.relative for residuals, _ in evidence.states.values()),
+    )
+    shapes = _shapes(config, model, evidence)
+    return tied_problem(config, model, evidence.states, shapes=shapes, relaxations=relaxations)
 
 
 def tied_problem(
@@ -57,6 +70,7 @@ def tied_problem(
     states: States,
     *,
     shapes: tuple[ShapeTarget, ...] = (),
+    relaxations: tuple[RelaxationTarget, ...] = (),
     errors: Mapping[str, float] | None = None,
     growth: Growth | None = None,
 ) -> Problem:
@@ -67,6 +81,7 @@ def tied_problem(
             model,
             states,
             shapes=shapes,
+            relaxations=relaxations,
             shared=tuple(name for name in config.shared if name in law),
             scatter={name: scale for name, scale in config.scatter.items() if name in law},
             errors=errors,
@@ -98,6 +113,7 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
             bounds=_of_law(given.bounds, own),
             priors=_of_law({**evidence.rotor.priors, **given.priors}, own),
             highest_mode=max(mode for residuals, _ in states.values() for mode in residuals.modes),
+            fastest_rate=max((r.rate_rad_s for r in evidence.relaxations), default=0.0),
             extras=extras,
             heads=_heads(config),
             head_priors=not relative,

@@ -11,7 +11,7 @@ from pydantic import Field
 from jackettwin.errors import located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure import Structure
-from jackettwin.twin.files import StructureOrName
+from jackettwin.twin.schema import StructureOrName
 from jackettwin.updating.refinement import Refinement, Stage
 from jackettwin.updating.steel import Factor
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
@@ -11,6 +14,8 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
 from jackettwin.twin.observe import Observation
 from jackettwin.updating import Update
+
+ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,30 @@ class MeasuredMode:
     fits_frequency: bool
     fits_damping: bool
     correlation: float = 0.0
+
+
+@dataclass(frozen=True)
+class MeasuredRelaxation:
+    """A measured real pole, exp(−at).
+
+    Attributes
+    ----------
+    name : str
+        ``a1``, ``a2``, … by rate.
+    rate_rad_s : float
+    rate_std_rad_s : float or None
+    channels : at which its shape is known
+    shape : (n_channels,) complex, empty if it is not known
+    records : int
+        In how many records it was found; 0 if it was given as a target.
+    """
+
+    name: str
+    rate_rad_s: float
+    rate_std_rad_s: float | None
+    channels: tuple[str, ...]
+    shape: ComplexArray
+    records: int
 
 
 @dataclass(frozen=True)
@@ -98,6 +127,8 @@ class TwinResult:
         For each record, the label of each identified mode; empty without a counterpart in the model.
     measured : tuple of MeasuredMode
         In the order of mode numbers.
+    relaxations : tuple of MeasuredRelaxation
+        Real poles that the supports were updated to, too, by rate.
     updates : tuple of Update
         One a law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
@@ -114,6 +145,7 @@ class TwinResult:
     observations: tuple[Observation, ...]
     names: tuple[tuple[str, ...], ...]
     measured: tuple[MeasuredMode, ...]
+    relaxations: tuple[MeasuredRelaxation, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
     assumptions: tuple[str, ...]

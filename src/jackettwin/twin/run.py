@@ -11,8 +11,9 @@ from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
 from jackettwin.twin.measure import PAIRED_MODES, Measured, measure
-from jackettwin.twin.narrative import assumptions, cautions
+from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import Evidence, law_problem
+from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Update, numbered_modes, update
@@ -54,13 +55,17 @@ def run_twin(
         if found is None
         else recorded_modes(config, found, labels)
     )
+    relaxations = measured_relaxations(config, found)
     wind = mean_wind(config, found)
-    states = operating_states(config, measured, found, residuals(config, measured), wind)
-    evidence = Evidence(assembly, found, states, rotor_damping(config, assembly, numbered, wind))
+    fitted = residuals(config, measured, relaxations)
+    states = operating_states(config, measured, found, fitted, wind)
+    evidence = Evidence(assembly, found, states, rotor_damping(config, assembly, numbered, wind), relaxations)
+    wanted = laws or config.update.laws
     updates = []
-    for law in laws or config.update.laws:
+    for law in relaxing(config, wanted) if relaxations else wanted:
         step(f"update {law}")
         updates.append(_update(config, evidence, law, shown=tuple(m.mode for m in measured)))
+    left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
         assembly=assembly,
@@ -70,10 +75,11 @@ def run_twin(
         observations=() if found is None else found.observations,
         names=() if found is None else _names(found, labels),
         measured=measured,
+        relaxations=relaxations,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
-        assumptions=assumptions(config, measured, wind),
-        warnings=cautions(config, found, measured, tuple(updates)),
+        assumptions=assumptions(config, measured, relaxations, wind),
+        warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates))),
     )
 
 

@@ -75,13 +75,15 @@ class Family:
 
     ``build(values, reference_hz)`` returns the law; ``reference_hz`` is where storage stiffness and loss
     factor are stated. ``rows(values, reference_hz)`` returns the numbers of many laws at once, (n, width)
-    as in :mod:`jackettwin.soil.coefficients`, and d row/d ln θ (n, width, n_parameters).
+    as in :mod:`jackettwin.soil.coefficients`, and d row/d ln θ (n, width, n_parameters). ``relaxes`` says
+    whether a structure on it has real poles; a springpot's relaxation is a continuum.
     """
 
     name: str
     parameters: tuple[Parameter, ...]
     build: Callable[[FloatArray, float], Law]
     rows: Callable[[FloatArray, float], tuple[FloatArray, FloatArray]]
+    relaxes: bool = True
 
 
 def _kelvin_voigt_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
@@ -163,6 +165,7 @@ FAMILIES: Mapping[str, Family] = {
             (Parameter("k", *_K), Parameter("alpha", 1e-4, 0.5, "-")),
             lambda v, f0: Springpot(float(v[0]), float(v[1]), 2.0 * pi * f0),
             _springpot_rows,
+            relaxes=False,
         ),
     )
 }

@@ -14,6 +14,7 @@ from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
+from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.scatter import Legs, ScatteredPrior
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
@@ -60,6 +61,7 @@ def joint(
     *,
     per_state: tuple[str, ...] = (),
     shapes: tuple[ShapeTarget, ...] = (),
+    relaxations: tuple[RelaxationTarget, ...] = (),
     shared: tuple[str, ...] = (),
     scatter: Mapping[str, float] | None = None,
     errors: Mapping[str, float] | None = None,
@@ -75,6 +77,8 @@ def joint(
         Parameters with a value of their own in each state, named ``parameter@state``.
     shapes : tuple of ShapeTarget
         Measured shapes, in the first state; its residuals hold their modes, too.
+    relaxations : tuple of RelaxationTarget
+        Measured real poles, in the first state.
     shared : tuple of str
         Parameters of the law with one value for all tie groups: every leg its stiffness, all one loss factor.
     scatter : {parameter of the law: s₀}, optional
@@ -115,7 +119,8 @@ def joint(
                 weights[row, place[GROWTH]] = growth.days.get(state, 0.0)
         shifts = np.log([factors.get(name, 1.0) for name in names])
         common = _common_errors(residuals.names, place)
-        built.append(State(state, residuals, weights, shifts, common, () if i else shapes))
+        beside = ((), ()) if i else (shapes, relaxations)
+        built.append(State(state, residuals, weights, shifts, common, *beside))
     problem = Problem(model, tuple(built), parameters, _prior(model, parameters, scatter or {}))
     _no_priors_without_deviations(problem)
     return problem

@@ -33,6 +33,8 @@ Lognormal = tuple[float, float]
 
 _ROOM = 1.2
 """The band ends this much above the highest mode on pinned supports, which supports can only lower."""
+_BEYOND = 2.0
+"""And this much above the fastest measured relaxation."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,8 @@ class SupportModel:
         The last numbered mode inside the condensed model's band.
     extras : Extras
         Free parameters beside those of the law: they follow them in ``parameters``.
+    fastest_rate : float
+        Relaxations up to this rate [rad/s] are well inside the band, too.
     """
 
     assembly: Assembly
@@ -84,12 +88,13 @@ class SupportModel:
     reference_hz: float
     highest_mode: int
     extras: Extras = Extras()
+    fastest_rate: float = 0.0
 
     def reaching(self, mode: int) -> SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""
         if mode <= self.highest_mode:
             return self
-        condensed = _condensed(self.assembly, self.feet, self.rayleigh, self.extras, mode)
+        condensed = _condensed(self.assembly, self.feet, self.rayleigh, self.extras, mode, self.fastest_rate)
         return replace(self, condensed=condensed, highest_mode=mode)
 
     def laws(self, theta: FloatArray) -> list[Law]:
@@ -244,6 +249,7 @@ def support_model(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     priors: Mapping[str, Lognormal] | None = None,
     highest_mode: int = 8,
+    fastest_rate: float = 0.0,
     extras: Extras | None = None,
     heads: Support | None = None,
     head_priors: bool = False,
@@ -260,6 +266,8 @@ def support_model(
         Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
     highest_mode : int
         The last numbered mode that will be asked for.
+    fastest_rate : float
+        Of the real poles that will be asked for [rad/s].
     extras : Extras, optional
         Nacelle dashpots and steel damping to update as well.
     heads : Support, optional
@@ -285,7 +293,7 @@ def support_model(
     known |= {p.name for p in extras.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
-    condensed = _condensed(assembly, groups, rayleigh, extras, highest_mode)
+    condensed = _condensed(assembly, groups, rayleigh, extras, highest_mode, fastest_rate)
     low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
     extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
     return SupportModel(
@@ -298,11 +306,17 @@ def support_model(
         first_hz,
         highest_mode,
         extras,
+        fastest_rate,
     )
 
 
 def _condensed(
-    assembly: Assembly, groups: Feet, rayleigh: Rayleigh, extras: Extras, highest_mode: int
+    assembly: Assembly,
+    groups: Feet,
+    rayleigh: Rayleigh,
+    extras: Extras,
+    highest_mode: int,
+    fastest_rate: float,
 ) -> Condensed:
     # distinct stand-in laws, so that every tie group stays a group of its own
     stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(groups.suffixes))]
@@ -315,7 +329,8 @@ def _condensed(
         ),
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
-    return condense(system, below_hz=_ROOM * float(pinned_hz[-1]), spread=tuple(extras.water.values()))
+    below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
+    return condense(system, below_hz=below_hz, spread=tuple(extras.water.values()))
 
 
 def _informed(

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from jackettwin.response.numbered import NumberedModes, numbered_poles
 from jackettwin.soil.coefficients import law_stiffness, static_rows
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.relaxations import RelaxationTarget
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,6 +31,8 @@ class Predictive:
     support : {name: (n_draws,)}
         Of each tie group, as data see it: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at
         the first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth's.
+    rates : {name: (n_draws,)}
+        Of measured relaxations [rad/s].
     """
 
     modes: tuple[int, ...]
@@ -37,9 +40,15 @@ class Predictive:
     damping_ratio: FloatArray
     undamped_hz: FloatArray
     support: Mapping[str, FloatArray]
+    rates: Mapping[str, FloatArray]
 
 
-def predict_quantities(model: SupportModel, theta: FloatArray, modes: tuple[int, ...]) -> Predictive:
+def predict_quantities(
+    model: SupportModel,
+    theta: FloatArray,
+    modes: tuple[int, ...],
+    relaxations: tuple[RelaxationTarget, ...] = (),
+) -> Predictive:
     """Return the quantities at draws θ (n_draws, n_parameters) of the model's parameters."""
     damped = _from_first(model, theta, modes, undamped=False)
     undamped = _from_first(model, theta, modes, undamped=True)
@@ -50,6 +59,7 @@ def predict_quantities(model: SupportModel, theta: FloatArray, modes: tuple[int,
         -damped.poles.real / size,
         np.abs(undamped.poles) / (2.0 * pi),
         support_quantities(model, theta),
+        {r.name: r.nearest(model, theta).rate for r in relaxations},
     )
 
 

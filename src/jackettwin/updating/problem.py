@@ -8,9 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.response.numbered import NumberedModes
+from jackettwin.response.relaxation import Relaxation
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import Prior
+from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
 
@@ -42,6 +44,7 @@ class State:
         all states share
     shapes : tuple of ShapeTarget
         Of modes that the residuals hold, too.
+    relaxations : tuple of RelaxationTarget
     """
 
     name: str
@@ -50,30 +53,41 @@ class State:
     shifts: FloatArray
     errors: FloatArray
     shapes: tuple[ShapeTarget, ...] = ()
+    relaxations: tuple[RelaxationTarget, ...] = ()
 
     @property
     def names(self) -> list[str]:
-        """What each residual is of: frequencies and damping ratios, then shapes."""
-        return [*self.residuals.names, *(f"MAC{shape.mode}" for shape in self.shapes)]
+        """What each residual is of: frequencies and damping ratios, then shapes, then relaxations."""
+        shapes = (f"MAC{shape.mode}" for shape in self.shapes)
+        return [*self.residuals.names, *shapes, *(relaxation.name for relaxation in self.relaxations)]
 
     @property
     def log_normalisation(self) -> float:
         """−log of the density of zero residuals."""
-        return self.residuals.log_normalisation + sum(shape.log_normalisation for shape in self.shapes)
+        shapes = sum(shape.log_normalisation for shape in self.shapes)
+        relaxations = sum(relaxation.log_normalisation for relaxation in self.relaxations)
+        return self.residuals.log_normalisation + shapes + relaxations
 
-    def values(self, z: FloatArray, modes: NumberedModes) -> FloatArray:
+    @property
+    def weighted(self) -> bool:
+        """Whether every value has a standard deviation."""
+        return self.residuals.weighted and all(r.log_std is not None for r in self.relaxations)
+
+    def values(self, z: FloatArray, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the residuals (n, n_data) of points z (n, d) whose modes are known."""
         of = self.residuals.modes.index
-        columns = [shape.values(modes.shapes[:, of(shape.mode)])[:, None] for shape in self.shapes]
+        columns = [shape.values(modes.shapes[:, of(shape.mode)]) for shape in self.shapes]
+        columns += [r.values(found.rate) for r, found in zip(self.relaxations, relaxed, strict=True)]
         poles = self.residuals.values(modes.poles, shift=z @ self.errors.T)
-        return np.concatenate([poles, *columns], axis=1)
+        return np.concatenate([poles, *(column[:, None] for column in columns)], axis=1)
 
-    def jacobian(self, modes: NumberedModes) -> FloatArray:
+    def jacobian(self, modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> FloatArray:
         """Return the derivatives (n_data, d) of the residuals at the first of the points."""
         own = [self.residuals.jacobian(modes.poles[0], modes.slopes[0])]
         for shape in self.shapes:
             i = self.residuals.modes.index(shape.mode)
             own.append(shape.jacobian(modes.shapes[0, i], modes.shape_slopes[0, i])[None])
+        own += [r.jacobian(found)[None] for r, found in zip(self.relaxations, relaxed, strict=True)]
         rows = np.concatenate(own) @ self.weights
         rows[: self.residuals.count] += self.residuals.shift_jacobian(self.errors)
         return rows
@@ -104,7 +118,7 @@ class Problem:
     @property
     def weighted(self) -> bool:
         """Whether every value has a standard deviation, so that there is a likelihood."""
-        return not self.relative and all(state.residuals.weighted for state in self.states)
+        return not self.relative and all(state.weighted for state in self.states)
 
     @property
     def negligible(self) -> float:
@@ -143,19 +157,22 @@ class Problem:
         The priors that are not flat follow the data's residuals.
         """
         values, rows = [], []
-        found = self._modes(z[None], near, slopes=True)
+        found, lost = self._modes(z[None], near, slopes=True), False
         for state, modes in zip(self.states, found, strict=True):
             jacobian = np.zeros((len(state.names), z.size))
             value = np.full(len(state.names), _LOST)
-            if not np.isnan(modes.poles).any():
-                value, jacobian = state.values(z[None], modes)[0], state.jacobian(modes)
+            relaxed = self.relaxed(z[None], state, slopes=True)
+            if _complete(modes, relaxed)[0]:
+                value = state.values(z[None], modes, relaxed)[0]
+                jacobian = state.jacobian(modes, relaxed)
+            else:
+                lost = True
             values.append(value)
             rows.append(jacobian)
         if not self.relative:
             value, jacobian = self.prior.rows(z)
             values.append(value)
             rows.append(jacobian)
-        lost = any(np.isnan(modes.poles).any() for modes in found)
         return np.concatenate(values), np.concatenate(rows), None if lost else found
 
     def anchor(self, z: FloatArray) -> Found | None:
@@ -167,7 +184,7 @@ class Problem:
         """Return the cost (n,), (8.4) or χ² with the normal priors, at points (n, d)."""
         cost = np.zeros(len(z))
         for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
-            known, r = _known_residuals(state, z, modes)
+            known, r = self._known_residuals(state, z, modes)
             cost[known] += (r * r).sum(axis=1)
             cost[~known] += len(state.names) * _LOST**2
         if not self.relative:
@@ -178,7 +195,7 @@ class Problem:
         """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
         log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)
         for state, modes in zip(self.states, found, strict=True):
-            known, r = _known_residuals(state, z, modes)
+            known, r = self._known_residuals(state, z, modes)
             log_l[known] += -0.5 * (r * r).sum(axis=1) - state.log_normalisation
             log_l[~known] = NEVER
         return log_l, found
@@ -202,11 +219,29 @@ class Problem:
             )
         return tuple(found)
 
+    def relaxed(self, z: FloatArray, state: State, *, slopes: bool = False) -> tuple[Relaxation, ...]:
+        """Return the model's relaxations of one state at points (n, d)."""
+        if not state.relaxations:
+            return ()
+        vectors = self.vectors(z, state)
+        return tuple(r.nearest(self.model, vectors, slopes=slopes) for r in state.relaxations)
 
-def _known_residuals(state: State, z: FloatArray, modes: NumberedModes) -> tuple[BoolArray, FloatArray]:
-    """Return which points have every mode, (n,), and the residuals of these."""
-    known: BoolArray = np.asarray(~np.isnan(modes.poles).any(axis=1))
-    return known, state.values(z[known], replace(modes, poles=modes.poles[known], shapes=modes.shapes[known]))
+    def _known_residuals(
+        self, state: State, z: FloatArray, modes: NumberedModes
+    ) -> tuple[BoolArray, FloatArray]:
+        """Return which points have every mode and relaxation, (n,), and the residuals of these."""
+        relaxed = self.relaxed(z, state)
+        known = _complete(modes, relaxed)
+        some = replace(modes, poles=modes.poles[known], shapes=modes.shapes[known])
+        return known, state.values(z[known], some, tuple(found.some(known) for found in relaxed))
+
+
+def _complete(modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> BoolArray:
+    """Return at which points (n,) the model has every mode and every relaxation."""
+    complete = ~np.isnan(modes.poles).any(axis=1)
+    for found in relaxed:
+        complete &= ~np.isnan(found.rate)
+    return np.asarray(complete)
 
 
 def _some(found: NumberedModes, which: list[int]) -> NumberedModes:

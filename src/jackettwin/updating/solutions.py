@@ -42,6 +42,7 @@ class Solution:
     cost : float
         Sum of squared residuals.
     frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
+    rates : (n_relaxations,) of the measured relaxations [rad/s]
     locked_damper : bool
         An undamped frequency is more than 5 % from the damped one.
     locks_within : bool
@@ -59,6 +60,7 @@ class Solution:
     frequency_hz: FloatArray
     undamped_hz: FloatArray
     damping_ratio: FloatArray
+    rates: FloatArray
     locked_damper: bool
     locks_within: bool
     at_bound: tuple[str, ...]
@@ -190,6 +192,7 @@ def _solution(problem: Problem, end: End, found: int) -> Solution:
         frequency_hz=damped,
         undamped_hz=undamped,
         damping_ratio=np.asarray(-poles.real / np.abs(poles)),
+        rates=np.array([found.rate[0] for found in problem.relaxed(end.z[None], problem.states[0])]),
         locked_damper=_locked(poles, undamped),
         locks_within=any(_locked(*_damped_and_undamped(problem, z)) for z in points),
         at_bound=tuple(p.name for p, flag in zip(problem.parameters, on_bound, strict=True) if flag),

@@ -207,7 +207,9 @@ def _uncertainty(
         log_theta=z,
         verdicts=identifiability(problem, z, seed=seed),
         next_measurements=next_measurements(problem, z),
-        predictive=predict_quantities(model, _first(problem, _thinned(z)), (*known, *beyond)),
+        predictive=predict_quantities(
+            model, _first(problem, _thinned(z)), (*known, *beyond), problem.states[0].relaxations
+        ),
         profiles=tuple(profile(problem, best.theta, j) for j in range(len(problem.parameters))),
     )
 

@@ -1,0 +1,203 @@
+"""What a twin file may hold: one schema for each of its keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from jackettwin.errors import InputError, located
+from jackettwin.files import Schema
+from jackettwin.simulate.water_files import WaterSchema
+from jackettwin.structure import Structure, read_structure
+from jackettwin.structure.files import BodySchema
+from jackettwin.twin.config import GivenRelaxation
+from jackettwin.updating import DEFAULT_LAWS, Target
+
+Positive = Annotated[float, Field(gt=0.0)]
+Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
+Vector = tuple[float, float, float]
+
+_OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s", "mode_shape"}
+"""What only a relaxation among the targets has."""
+
+
+class SteelSchema(Schema):
+    """Factors on the stiffness (E and G) and the density of a part."""
+
+    youngs_modulus: Positive = 1.0
+    density: Positive = 1.0
+
+
+class StructureChoice(Schema):
+    """A structure with overrides; ``steel`` is what ``jackettwin refine`` prints."""
+
+    source: str
+    rna: BodySchema | None = None
+    steel: dict[str, SteelSchema] = {}
+
+    def build(self, folder: Path) -> Structure:
+        """Return the structure, refined; its rotor–nacelle assembly is left to the caller."""
+        structure = read_structure(self.source, folder=folder)
+        for part, factors in self.steel.items():
+            with located(field="structure.steel"):
+                structure = structure.with_material(part, **factors.model_dump())
+        return structure
+
+
+StructureOrName = Annotated[
+    StructureChoice, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
+]
+
+
+class RayleighSchema(Schema):
+    """Steel damping: a least ratio and where it stands."""
+
+    ratio: Ratio
+    frequency_hz: Positive
+
+
+class DampingSchema(Schema):
+    """``damping``."""
+
+    rayleigh: RayleighSchema
+
+
+class SupportSchema(Schema):
+    """``support``: the law to report first, what shares parameters, and pile heads that the laws scale.
+
+    ``shared`` parameters have one value for all tie groups; ``scatter`` says by how much, in ln θ, the others
+    may be expected to differ between them.
+    """
+
+    law: str | None = None
+    tie: Literal["all", "horizontal-vertical", "per-leg"] = "all"
+    stiffness: str | None = None
+    shared: list[str] = []
+    scatter: dict[str, Annotated[float, Field(gt=0.0, le=3.0)]] = {}
+
+
+class SensorSchema(Schema):
+    """A sensor: where a channel of the record sits in the structure."""
+
+    channel: str
+    node: str | None = None
+    height_m: float | None = None
+    direction: Vector
+
+
+class TargetSchema(Schema):
+    """A mode known from elsewhere, or a relaxation: ``rate_rad_s`` and its shape at the sensors."""
+
+    mode: Annotated[int, Field(ge=1, le=50)] | None = None
+    frequency_hz: Positive | None = None
+    frequency_std_hz: Positive | None = None
+    damping_ratio: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
+    damping_ratio_std: Positive | None = None
+    correlation: Annotated[float, Field(gt=-1.0, lt=1.0)] = 0.0
+    rate_rad_s: Positive | None = None
+    rate_std_rad_s: Positive | None = None
+    mode_shape: dict[str, float | tuple[float, float]] = {}
+
+    def build(self, channels: list[str]) -> Target | GivenRelaxation:
+        """Return the target.
+
+        Parameters
+        ----------
+        channels : of the twin's sensors
+
+        Raises
+        ------
+        InputError
+            If it is neither a mode nor a relaxation, or its shape is not at the sensors.
+        """
+        given = {name for name in self.model_fields_set if getattr(self, name) is not None}
+        if self.mode is not None and not given & _OF_RELAXATIONS:
+            values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode"})
+            return Target(mode=self.mode, **values)
+        if self.rate_rad_s is None or given - _OF_RELAXATIONS:
+            raise InputError(
+                "one target is a mode or a relaxation",
+                value=sorted(given),
+                remedy="a mode: {mode, frequency_hz, …}; a relaxation: {rate_rad_s, rate_std_rad_s}",
+            )
+        strangers = [channel for channel in self.mode_shape if channel not in channels]
+        if strangers:
+            raise InputError(
+                "no sensor of the twin has this channel",
+                field="mode_shape",
+                value=strangers,
+                allowed=", ".join(channels) or None,
+                remedy="say under sensors: where it sits",
+            )
+        shape = {n: complex(*v) if isinstance(v, tuple) else complex(v) for n, v in self.mode_shape.items()}
+        return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, shape)
+
+
+class ModelErrorSchema(Schema):
+    """How well the model itself can be expected to meet some modes, or the rates of relaxations."""
+
+    modes: list[Annotated[int, Field(ge=1, le=50)]] = []
+    frequency: Ratio = 0.0
+    damping: Ratio = 0.0
+    rate: Ratio = 0.0
+
+
+class PriorSchema(Schema):
+    """A lognormal prior."""
+
+    median: Positive
+    log_std: Positive
+
+
+class UpdateSchema(Schema):
+    """``update``."""
+
+    laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
+    method: Literal["least-squares", "nelder-mead"] = "least-squares"
+    starts: Annotated[int, Field(ge=1, le=10000)] = 32
+    seed: Annotated[int, Field(ge=0)] = 0
+    particles: Annotated[int, Field(ge=20, le=100000)] = 150
+    sampler: Literal["smc", "nested"] = "smc"
+    bounds: dict[str, tuple[float, float]] = {}
+    priors: dict[str, PriorSchema] = {}
+    weighting: Literal["auto", "relative", "covariance"] = "auto"
+    modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
+    damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
+    model_error: list[ModelErrorSchema] = []
+    mac_std: Positive | None = None
+    dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
+    rotor: str | None = None
+    shaft: Literal["locked", "free"] = "locked"
+    wind_speed_m_s: Positive | None = None
+    water: list[Literal["water_mass", "water_damping"]] = []
+    steel_damping: Literal["fixed", "free"] = "fixed"
+
+
+class SeaSchema(Schema):
+    """``sea``: the mean sea of the records, a JONSWAP spectrum."""
+
+    hs_m: Positive
+    tp_s: Positive
+    direction_deg: float = 0.0
+
+
+class TwinSchema(Schema):
+    """A twin file."""
+
+    structure: StructureOrName
+    rna: BodySchema | None = None
+    beam: Literal["euler-bernoulli", "timoshenko"] | None = None
+    rotary_inertia: bool | None = None
+    subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
+    gravity: bool = False
+    damping: DampingSchema | None = None
+    water: WaterSchema | None = None
+    sea: SeaSchema | None = None
+    support: SupportSchema = SupportSchema()
+    sensors: list[SensorSchema] = []
+    records: list[str] = []
+    targets: list[TargetSchema] = []
+    identification: dict[str, Any] = {}
+    update: UpdateSchema = UpdateSchema()
