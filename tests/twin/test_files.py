@@ -51,6 +51,11 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         ("support: {tie: all}\n", "support: {tie: all}\nsupport: {tie: all}\n", r"'support' is given twice"),
         ("targets:", "records: [a.parquet]\ntargets:", r"give records or targets"),
         ("{mode: 4", "[mode: 4", r"line 6"),
+        (
+            "targets:",
+            "update: {modes: [1, 99]}\ntargets:",
+            r"update\.modes: measured modes are paired with the model's first 12.*\[99\].*as targets",
+        ),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,14 +13,16 @@ from jackettwin.errors import InputError
 from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate
 from jackettwin.report.follow_page import build_follow_page
+from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
-from jackettwin.twin import TwinConfig, read_twin
+from jackettwin.twin import TwinConfig, follow, read_twin
 from jackettwin.twin.assembled import assembled
+from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.follow import follow_modes, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
 from jackettwin.twin.followed import Followed, RecordModes
 from jackettwin.twin.measure import Sighting
-from jackettwin.updating import family, support_model
+from jackettwin.updating import Problem, family, numbered_modes, support_model
 
 MODES, TRUTH = (1, 2, 4), np.array([3e9, 0.1])
 F_STD, ZETA_STD = 5e-4, 0.1
@@ -133,3 +136,72 @@ def test_the_page_shows_parameters_and_the_statement(followed: Followed, tmp_pat
     assert "Falling: k changes by" in text
     assert "2025-01-03" in text
     assert "parameters_through_time" in text
+
+
+@pytest.fixture
+def shaped(config: TwinConfig, assembly: Assembly, records: list[RecordModes]) -> list[RecordModes]:
+    """The same records with shapes at two heights, the second's worse, and a relaxation in each."""
+    x, y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+    sensors = tuple(
+        Sensor(f"{height:g}{axis}", direction, height_m=height)
+        for height in (144.0, 77.0)
+        for axis, direction in (("x", x), ("y", y))
+    )
+    names = tuple(sensor.channel for sensor in sensors)
+    numbered = numbered_modes(assembly, max(MODES))
+    motion = observation_matrix(assembly, sensors) @ numbered.shapes
+    turned = []
+    for i, record in enumerate(records[:2]):
+        sightings = {
+            mode: replace(
+                seen,
+                estimate=replace(seen.estimate, mode_shape=motion[:, mode - 1] + 0.1j * i),
+                mac=1.0 - 0.1 * i,
+                channels=names,
+            )
+            for mode, seen in record.sightings.items()
+        }
+        relaxation = GivenRelaxation(3.3 + 0.1 * i, 0.3, dict.fromkeys(names, 0.5 - 0.5j))
+        turned.append(replace(record, sightings=sightings, sensors=sensors, relaxations=(relaxation,)))
+    return turned
+
+
+def test_shapes_and_real_poles_are_followed_and_kept(
+    config: TwinConfig,
+    assembly: Assembly,
+    shaped: list[RecordModes],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each day's problem holds the clearest shapes so far, and after a file the same ones."""
+    problems: list[Problem] = []
+
+    def sampled(problem: Problem, **_: object) -> object:
+        problems.append(problem)
+        d = len(problem.parameters)
+        return SimpleNamespace(log_theta=np.zeros((3, d)), interval=lambda: np.ones((d, 2)))
+
+    monkeypatch.setattr(follow, "sample_posterior", sampled)
+    with_shapes = replace(config, update=replace(config.update, mac_std=0.02, model_errors=()))
+    first = follow_modes(with_shapes, assembly, shaped[:1], each="record")
+    write_json(follow_document(first), tmp_path / "followed.json")
+    again = read_followed(tmp_path / "followed.json")
+    follow_modes(with_shapes, assembly, shaped[1:], each="record", prior=again)
+    follow_modes(with_shapes, assembly, shaped, each="record")
+    names = ["f1", "ζ1", "f2", "ζ2", "f4", "ζ4", "MAC1", "MAC2", "MAC4", "a1"]
+    assert [problem.data_names for problem in problems] == [names] * 4
+    states = [problem.states[0] for problem in problems]
+    for state in states[1:]:
+        for here, at_first in zip(state.shapes, states[0].shapes, strict=True):
+            # the first record's are the clearest throughout; JSON keeps every digit
+            np.testing.assert_array_equal(here.shape, at_first.shape)
+    rates = [state.relaxations[0].rate for state in states]
+    assert rates[0] == rates[2] == pytest.approx(3.3) and rates[1] == rates[3] > rates[0]
+    assert states[1].relaxations[0].shape is not None
+
+
+def test_a_law_without_real_poles_cannot_follow_them(
+    config: TwinConfig, assembly: Assembly, shaped: list[RecordModes]
+) -> None:
+    with pytest.raises(InputError, match="no structure on this law has real poles"):
+        follow_modes(config, assembly, shaped, law="springpot")

@@ -3,14 +3,12 @@
 import json
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
-from jackettwin.identification.estimate import RealPole
 from jackettwin.report.tables_updating import relaxation_table
 from jackettwin.twin import TwinConfig, TwinResult, read_twin, run_document, run_twin, update_document
 from jackettwin.twin.config import GivenRelaxation
@@ -116,22 +114,22 @@ def test_documents_and_tables_say_both_rates(result: TwinResult) -> None:
     assert len(relaxation_table(result).rows) == 2
 
 
-def observation(*poles: tuple[float, float, list[complex]], names: tuple[str, ...] = ("x", "y")) -> object:
-    """What one record says: rates, deviations of ln a, shapes."""
-    found = tuple(RealPole(a, a * s, (a, a), np.array(shape, complex), 1.0) for a, s, shape in poles)
-    channels = tuple(SimpleNamespace(name=name) for name in names)
-    return SimpleNamespace(identification=SimpleNamespace(real_poles=found, channels=channels))
+def shown(*poles: tuple[float, float, tuple[float, float]]) -> tuple[GivenRelaxation, ...]:
+    """What one record shows: rates, deviations of ln a, shapes at two channels."""
+    return tuple(GivenRelaxation(a, a * s, {"x": shape[0] + 0j, "y": shape[1] + 0j}) for a, s, shape in poles)
+
+
+def in_records(*records: tuple[GivenRelaxation, ...]) -> Measured:
+    return Measured((), (), {}, (), records)
 
 
 def test_records_share_relaxations(config: TwinConfig) -> None:
     """One in two of three records, another shape at its rate in one, a third in two."""
-    x, y = [1.0, 0.1], [-0.1, 1.0]
-    records = (
-        observation((3.0, 0.1, x), (3.1, 0.2, y)),
-        observation((3.3, 0.2, x), (6.0, 0.1, y)),
-        observation((6.6, 0.1, y), names=("x", "y")),
+    x, y = (1.0, 0.1), (-0.1, 1.0)
+    seen = in_records(
+        shown((3.0, 0.1, x), (3.1, 0.2, y)), shown((3.3, 0.2, x), (6.0, 0.1, y)), shown((6.6, 0.1, y))
     )
-    found = measured_relaxations(config, Measured(records, (), {}, ()))  # type: ignore[arg-type]
+    found = measured_relaxations(config, seen)
     assert [(one.name, one.records) for one in found] == [("a1", 2), ("a2", 2)]
     # precision weights 4 : 1; χ² = (ln 1.1)²/(0.1² + 0.2²) < 1 does not widen the deviation
     assert np.log(found[0].rate_rad_s) == pytest.approx(np.log(3.0) + 0.2 * np.log(1.1))
@@ -141,7 +139,7 @@ def test_records_share_relaxations(config: TwinConfig) -> None:
 
 
 def test_scatter_between_records_widens_the_deviation(config: TwinConfig) -> None:
-    records = tuple(observation((a, 0.01, [1.0, 0.0])) for a in (2.0, 2.2, 2.4))
-    (found,) = measured_relaxations(config, Measured(records, (), {}, ()))  # type: ignore[arg-type]
+    records = tuple(shown((a, 0.01, (1.0, 0.0))) for a in (2.0, 2.2, 2.4))
+    (found,) = measured_relaxations(config, in_records(*records))
     scatter = np.log([2.0, 2.2, 2.4]).std(ddof=1)
     assert found.rate_std_rad_s == pytest.approx(found.rate_rad_s * scatter / np.sqrt(3.0))

@@ -103,3 +103,21 @@ def test_bad_options(jacket15: Assembly, steel: Rayleigh, options: dict, message
 def test_unknown_law_suggests() -> None:
     with pytest.raises(InputError, match="did you mean 'zener'"):
         family("zenner")
+
+
+def test_modes_that_the_steel_overdamps_are_named(jacket15: Assembly) -> None:
+    """β = 0.05/(2π 0.1832 Hz) = 43 ms; the band may reach βω = 0.3, a relaxation half of that."""
+    steel = Rayleigh.minimum(0.05, 0.1832)
+    with pytest.raises(
+        InputError, match=r"mode: .*too strong for so high a mode \(got 40\); allowed: 1 to \d+ with"
+    ):
+        support_model(jacket15, family=family("kelvin-voigt"), rayleigh=steel, highest_mode=40)
+    with pytest.raises(InputError, match=r"rate_rad_s: .*so fast a relaxation.*up to 3.45 rad/s with"):
+        support_model(
+            jacket15, family=family("kelvin-voigt"), rayleigh=steel, highest_mode=5, fastest_rate=5.0
+        )
+
+
+def test_modes_that_the_structure_has_not_are_named(jacket15: Assembly) -> None:
+    with pytest.raises(InputError, match=r"mode: the structure has fewer modes \(got 2000\)"):
+        support_model(jacket15, family=family("kelvin-voigt"), rayleigh=Rayleigh(), highest_mode=2000)

@@ -120,6 +120,28 @@ def test_a_valley_counts_once_and_names_its_locked_end(models: dict[str, Support
     assert best.locked_damper or best.locks_within
 
 
+def test_a_search_that_does_not_settle_stops_and_says_so(
+    models: dict[str, SupportModel], frequencies_alone: Residuals
+) -> None:
+    """One start finds every solution once: it would double for ever, and is allowed one evaluation."""
+    problem, told = single(models["kelvin-voigt"], frequencies_alone), list[str]()
+    stopped = search(problem, starts=1, most_evaluations=1, progress=told.append)
+    assert stopped.starts == 1 and stopped.spent is not None and stopped.spent > 1
+    assert stopped.statement.startswith(f"Not settled after {stopped.spent} evaluations: 1 starts")
+    assert told == ["1 of 1 starts, 0 distinct solutions before them"]
+    settled = search(problem, starts=1, progress=told.append)
+    assert settled.spent is None and settled.starts > 1 and len(told) == 1 + settled.starts
+    assert "Not settled" not in settled.statement
+
+
+def test_interrupting_a_search_ends_it(models: dict[str, SupportModel], frequencies_alone: Residuals) -> None:
+    def interrupt(_: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        search(single(models["kelvin-voigt"], frequencies_alone), starts=1, progress=interrupt)
+
+
 def test_unknown_method(models: dict[str, SupportModel], table_6_1: Residuals) -> None:
     with pytest.raises(InputError, match="unknown method"):
         search(single(models["zener"], table_6_1), method="newton")  # type: ignore[arg-type]

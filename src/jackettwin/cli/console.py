@@ -6,6 +6,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import click
@@ -63,9 +64,21 @@ def _plain(text: str) -> str:
     return text.replace("[", r"\[")
 
 
+@dataclass(frozen=True)
+class Step:
+    """Announces the next step when called; ``within`` says how far the present one is."""
+
+    announce: Callable[[str], None]
+    within: Callable[[str], None]
+
+    def __call__(self, what: str) -> None:
+        """Announce the next step."""
+        self.announce(what)
+
+
 @contextmanager
-def progress(total: int, title: str) -> Iterator[Callable[[str], None]]:
-    """Yield a function that announces the next of ``total`` steps; the bar is shown on stderr."""
+def progress(total: int, title: str) -> Iterator[Step]:
+    """Yield what announces the next of ``total`` steps; the bar is shown on stderr."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -76,12 +89,12 @@ def progress(total: int, title: str) -> Iterator[Callable[[str], None]]:
         task = bar.add_task(title, total=total)
         started = False
 
-        def step(what: str) -> None:
+        def announce(what: str) -> None:
             nonlocal started
             bar.update(task, description=what, advance=1 if started else 0)
             started = True
 
-        yield step
+        yield Step(announce, lambda what: bar.update(task, description=what))
         bar.update(task, completed=total, description=title)
 
 

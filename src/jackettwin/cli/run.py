@@ -39,7 +39,7 @@ def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: st
     if simulate:
         config = replace(config, records=_simulated(set_file, folder / "records"), targets=())
     with progress(count_steps(config) + 1, config.name) as step:
-        result = run_twin(config, compare=True, step=step)
+        result = run_twin(config, compare=True, step=step, within=step.within)
         step("write the report")
         document = run_document(result, report=str(folder / "report.html"))
         with atomic_folder(folder) as temporary:

@@ -24,7 +24,7 @@ def update_command(twin: str, law: str | None, as_json: bool) -> None:
     config = read_twin(twin)
     laws = (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
-        result = run_twin(config, laws=laws, step=step)
+        result = run_twin(config, laws=laws, step=step, within=step.within)
     if as_json:
         print_json(update_document(result, 0))
     else:

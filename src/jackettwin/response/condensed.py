@@ -22,7 +22,7 @@ the truncated modes from static solutions. Nothing is approximated but the tail 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi
+from math import inf, pi
 from typing import Any
 
 import numpy as np
@@ -189,6 +189,11 @@ def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()
     )
 
 
+def widest_band_hz(beta: float) -> float:
+    """Return how far a band may reach [Hz] with stiffness-proportional damping β [s] of the steel."""
+    return _STEEPEST / (2.0 * pi * beta) if beta > 0.0 else inf
+
+
 def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
     """Refuse steel that is overdamped inside the band.
 
@@ -202,7 +207,7 @@ def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
         If b·|λ| exceeds what the moments of the truncated modes allow.
     """
     worst = float(rayleigh[:, 1].max(initial=0.0))
-    if worst * radius > _STEEPEST:
+    if radius > 2.0 * pi * widest_band_hz(worst):
         raise InputError(
             "stiffness-proportional damping of the steel is too strong for the band of the modes asked for",
             field="damping.rayleigh",

@@ -14,6 +14,10 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Target
+from jackettwin.updating.solutions import MOST_EVALUATIONS
+
+PAIRED_MODES = 12
+"""Modes of the model that measured modes may be paired with."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,8 @@ class UpdateSettings:
     laws: tuple[str, ...] = DEFAULT_LAWS
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
     starts: int = 32
+    most_evaluations: int = MOST_EVALUATIONS
+    """Of the model, after which the search adds no further starts."""
     seed: int = 0
     particles: int = 150
     sampler: Literal["smc", "nested"] = "smc"

@@ -75,6 +75,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
             "statement": u.search.statement,
             "starts": u.search.starts,
             "missed_share_95": u.search.missed_share_95,
+            "settled": u.search.spent is None,
         },
         "identifiability": dict.fromkeys(names)
         if known is None

@@ -15,7 +15,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.files import depth_of
 from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure
-from jackettwin.twin.config import GivenRelaxation, ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.config import PAIRED_MODES, GivenRelaxation, ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
@@ -174,6 +174,15 @@ def _check_update(update: UpdateSchema) -> None:
                 )
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
+    beyond = [mode for mode in update.modes if mode > PAIRED_MODES]
+    if beyond:
+        raise InputError(
+            f"measured modes are paired with the model's first {PAIRED_MODES} on pinned feet",
+            field="modes",
+            value=beyond,
+            allowed=f"1 to {PAIRED_MODES}",
+            remedy="give higher ones as targets: {mode, frequency_hz, …}",
+        )
 
 
 def _dashpots(update: UpdateSchema) -> tuple[str, ...]:
@@ -224,6 +233,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         laws=tuple(dict.fromkeys([*first, *u.laws])),
         method=u.method,
         starts=u.starts,
+        most_evaluations=u.most_evaluations,
         seed=u.seed,
         particles=u.particles,
         sampler=u.sampler,

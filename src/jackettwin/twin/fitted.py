@@ -27,10 +27,19 @@ def target_modes(
     Raises
     ------
     InputError
-        If a target is far above all of them.
+        If a target is none of them or far above.
     """
     most = _FAR_ABOVE * highest_hz
     for place, target in enumerate(config.targets):
+        if target.mode > len(labels):
+            raise InputError(
+                "the structure has fewer modes",
+                file=config.path,
+                field=f"targets.{place}.mode",
+                value=target.mode,
+                allowed=f"1 to {len(labels)}",
+                remedy="leave the higher ones out, or divide its members (subdivide)",
+            )
         if (target.frequency_hz or 0.0) > most:
             raise InputError(
                 "is far above the modes of the model",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC
+from functools import partial
 from itertools import groupby
 from typing import Literal
 
@@ -20,12 +21,13 @@ from jackettwin.errors import InputError
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Day, Followed, RecordModes, since_first
-from jackettwin.twin.measure import PAIRED_MODES, Measured, measure
-from jackettwin.twin.problem import Evidence, law_model, tied_problem
-from jackettwin.twin.rotor import States, mean_wind, operating_states, rotor_damping
+from jackettwin.twin.measure import Measured, measure, placed_sensors
+from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
+from jackettwin.twin.relaxations import measured_relaxations, relaxing
+from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Problem, SupportModel, numbered_modes
 from jackettwin.updating.drift import Drift, find_drift
 from jackettwin.updating.joint import Growth
@@ -99,18 +101,22 @@ def follow_modes(
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
     wind = mean_wind(config, _measured(everything)) if prior is None else prior.wind_m_s
     law = law or (config.update.laws[0] if prior is None else prior.law)
-    data = _states(config, everything, labels, wind)
     rotor = rotor_damping(config, assembly, numbered, wind)
-    model = law_model(config, Evidence(assembly, None, data, rotor), law)
-    parameters = _problem(config, model, data).parameters
+    evidence = partial(_evidence, config, assembly, rotor, labels, wind)
+    at_last = evidence(everything)
+    if at_last.relaxations:
+        relaxing(config, (law,))
+    model = law_model(config, at_last, law)
+    parameters = model_problem(config, at_last, model).parameters
     if prior is not None:
         _agree(config, prior, law, model, [p.name for p in parameters])
     days = past
     for batch in batches:
         step(f"update after {batch[-1].name}")
         known = [*known, *batch]
-        problem = _problem(config, model, _states(config, known, labels, wind))
-        days = (*days, _known_after(config, batch, problem))
+        now = evidence(known)
+        reaching = model.reaching(max(m for r, _ in now.states.values() for m in r.modes))
+        days = (*days, _known_after(config, batch, model_problem(config, now, reaching)))
     return Followed(
         name=config.name,
         law=law,
@@ -136,7 +142,15 @@ def _record_modes(config: TwinConfig, found: Measured) -> list[RecordModes]:
                 value=seen.record.name,
                 remedy="give start_utc in the record's description",
             )
-        records.append(RecordModes(config.records[i].stem, start, found.of_record(i)))
+        records.append(
+            RecordModes(
+                config.records[i].stem,
+                start,
+                found.of_record(i),
+                placed_sensors(config, seen.record),
+                found.relaxations[i],
+            )
+        )
     return records
 
 
@@ -179,11 +193,24 @@ def _states(
 def _measured(records: Sequence[RecordModes]) -> Measured:
     modes = sorted({mode for record in records for mode in record.sightings})
     sightings = {m: tuple(r.sightings[m] for r in records if m in r.sightings) for m in modes}
-    return Measured((), (), sightings, ())
+    sensors = {sensor.channel: sensor for record in reversed(records) for sensor in record.sensors}
+    relaxations = tuple(record.relaxations for record in records)
+    return Measured((), tuple(sensors.values()), sightings, (), relaxations)
 
 
-def _problem(config: TwinConfig, model: SupportModel, states: States) -> Problem:
-    return tied_problem(config, model.reaching(max(m for r, _ in states.values() for m in r.modes)), states)
+def _evidence(
+    config: TwinConfig,
+    assembly: Assembly,
+    rotor: RotorDamping,
+    labels: tuple[str, ...],
+    wind: float | None,
+    records: Sequence[RecordModes],
+) -> Evidence:
+    """Return what some records say, as a law is fitted to it."""
+    found = _measured(records)
+    relaxations = measured_relaxations(config, found)
+    states = _states(config, records, labels, wind)
+    return Evidence(assembly, found, states, rotor, relaxations)
 
 
 def _known_after(config: TwinConfig, batch: tuple[RecordModes, ...], problem: Problem) -> Day:
@@ -201,7 +228,7 @@ def _drift(
     labels: tuple[str, ...],
     wind: float | None,
 ) -> Drift | None:
-    """Return the slope of all stiffness through the days, each day's data by themselves."""
+    """Return the slope of all stiffness through the days' frequencies and damping, each by itself."""
     if len(days) < FEWEST_DAYS:
         return None
     exact = replace(config, update=replace(config.update, model_errors=()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,12 +14,16 @@ from pydantic import AwareDatetime, Field
 from jackettwin.errors import InputError
 from jackettwin.files import Schema, validate
 from jackettwin.identification import ModalEstimate
+from jackettwin.response.sensors import Sensor
+from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.followed import Day, Followed, RecordModes
 from jackettwin.twin.measure import Sighting
 from jackettwin.updating.drift import Drift
 from jackettwin.version import __version__
 
 Positive = Annotated[float, Field(gt=0.0)]
+ShapeSchema = dict[str, tuple[float, float]]
+"""A shape, {channel: (re, im)}."""
 
 
 class ModeSchema(Schema):
@@ -31,28 +36,67 @@ class ModeSchema(Schema):
     mac: float
     duration_s: Positive
     wind_speed_m_s: float | None
+    mode_shape: ShapeSchema = {}
 
     def build(self) -> Sighting:
-        """Return the sighting; its shape is not kept."""
+        """Return the sighting."""
         covariance = None if self.log_covariance is None else np.array(self.log_covariance)
         estimate = ModalEstimate(
             self.frequency_hz,
             self.damping_ratio,
-            np.zeros(0, complex),
+            np.array([complex(*value) for value in self.mode_shape.values()], complex),
             1.0,
             0.0,
             1.0,
             log_covariance=covariance,
         )
-        return Sighting(estimate, self.mac, self.duration_s, self.wind_speed_m_s)
+        return Sighting(estimate, self.mac, self.duration_s, self.wind_speed_m_s, tuple(self.mode_shape))
+
+
+class RealPoleSchema(Schema):
+    """``days[].records[].real_poles[]``."""
+
+    rate_rad_s: Positive
+    rate_std_rad_s: Positive | None
+    mode_shape: ShapeSchema = {}
+
+    def build(self) -> GivenRelaxation:
+        """Return the relaxation."""
+        shape = {name: complex(*value) for name, value in self.mode_shape.items()}
+        return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, shape)
+
+
+class SensorSchema(Schema):
+    """``days[].records[].sensors[]``: where a channel sits, turned as the record was."""
+
+    channel: str
+    direction: tuple[float, float, float]
+    node: str | None
+    height_m: float | None
+
+    def build(self) -> Sensor:
+        """Return the sensor."""
+        return Sensor(self.channel, self.direction, self.node, self.height_m)
 
 
 class RecordSchema(Schema):
-    """``days[].records[]``."""
+    """``days[].records[]``; runs before shapes were followed have no sensors."""
 
     name: str
     time_utc: AwareDatetime
     modes: list[ModeSchema]
+    sensors: list[SensorSchema] = []
+    real_poles: list[RealPoleSchema] = []
+
+    def build(self) -> RecordModes:
+        """Return what the record shows."""
+        return RecordModes(
+            self.name,
+            self.time_utc,
+            {mode.mode: mode.build() for mode in self.modes},
+            tuple(sensor.build() for sensor in self.sensors),
+            tuple(pole.build() for pole in self.real_poles),
+        )
 
 
 class ParameterSchema(Schema):
@@ -71,11 +115,8 @@ class DaySchema(Schema):
 
     def build(self) -> Day:
         """Return the day."""
-        records = tuple(
-            RecordModes(r.name, r.time_utc, {m.mode: m.build() for m in r.modes}) for r in self.records
-        )
         return Day(
-            records,
+            tuple(record.build() for record in self.records),
             {name: p.median for name, p in self.parameters.items()},
             {name: p.interval_90 for name, p in self.parameters.items()},
         )
@@ -147,6 +188,23 @@ def _day(day: Day) -> dict[str, Any]:
                 "name": record.name,
                 "time_utc": record.time_utc.isoformat(),
                 "modes": [_mode(mode, seen) for mode, seen in record.sightings.items()],
+                "sensors": [
+                    {
+                        "channel": s.channel,
+                        "direction": list(s.direction),
+                        "node": s.node,
+                        "height_m": s.height_m,
+                    }
+                    for s in record.sensors
+                ],
+                "real_poles": [
+                    {
+                        "rate_rad_s": r.rate_rad_s,
+                        "rate_std_rad_s": r.rate_std_rad_s,
+                        "mode_shape": _shape(tuple(r.shape), r.shape.values()),
+                    }
+                    for r in record.relaxations
+                ],
             }
             for record in day.records
         ],
@@ -167,7 +225,12 @@ def _mode(mode: int, seen: Sighting) -> dict[str, Any]:
         "mac": seen.mac,
         "duration_s": seen.duration_s,
         "wind_speed_m_s": seen.wind_m_s,
+        "mode_shape": _shape(seen.channels, e.mode_shape.tolist()) if seen.channels else {},
     }
+
+
+def _shape(channels: tuple[str, ...], values: Iterable[complex]) -> dict[str, list[float]]:
+    return {name: [value.real, value.imag] for name, value in zip(channels, values, strict=True)}
 
 
 def _drift(followed: Followed, drift: Drift) -> dict[str, Any]:

@@ -9,6 +9,8 @@ from datetime import datetime
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.response.sensors import Sensor
+from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.measure import Sighting
 from jackettwin.updating.drift import Drift
 
@@ -22,11 +24,13 @@ STIFFNESS = "N/m"
 
 @dataclass(frozen=True)
 class RecordModes:
-    """The model's modes seen in one record."""
+    """The model's modes and the real poles seen in one record; ``sensors`` are where its channels sit."""
 
     name: str
     time_utc: datetime
     sightings: Mapping[int, Sighting]
+    sensors: tuple[Sensor, ...] = ()
+    relaxations: tuple[GivenRelaxation, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -6,30 +6,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from jackettwin.errors import located
-from jackettwin.identification import ModalEstimate
+from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.many_records.fusion import average
 from jackettwin.identification.many_records.sightings import sightings as columns
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.config import GivenRelaxation, TwinConfig
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.updating import Target
 from jackettwin.updating.pairing import pair
 
-PAIRED_MODES = 12
-"""Modes of the model that measured modes may be paired with."""
-
 
 @dataclass(frozen=True)
 class Sighting:
-    """A model mode seen in one record."""
+    """A model mode seen in one record; ``channels`` are those of its shape."""
 
     estimate: ModalEstimate
     mac: float
     duration_s: float
     wind_m_s: float | None = None
+    channels: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -42,12 +40,14 @@ class Measured:
     sensors : tuple of Sensor
     sightings : {mode number from 1: its sightings, one a record at most}
     numbers : for each record, the mode number of each identified mode; None if the model lacks it
+    relaxations : for each record, the real poles it shows
     """
 
     observations: tuple[Observation, ...]
     sensors: tuple[Sensor, ...]
     sightings: dict[int, tuple[Sighting, ...]]
     numbers: tuple[tuple[int | None, ...], ...]
+    relaxations: tuple[tuple[GivenRelaxation, ...], ...] = ()
 
     def of_record(self, i: int) -> dict[int, Sighting]:
         """Return the modes seen in one record, {mode number: sighting}."""
@@ -85,22 +85,36 @@ def measure(
     numbers = []
     for seen in observations:
         found = seen.identification
-        by_channel = {s.channel: s for s in _sensors(config, seen.record)}
-        places = tuple(by_channel[c.name] for c in found.channels)
+        by_channel = {s.channel: s for s in placed_sensors(config, seen.record)}
+        names = tuple(c.name for c in found.channels)
+        places = tuple(by_channel[name] for name in names)
         with located(file=config.path):
             shapes = observation_matrix(assembly, places) @ numbered.shapes
         pairs = pair(found.modes, numbered.frequency_hz, shapes)
         for mode, (index, likeness) in pairs.items():
             sightings.setdefault(mode + 1, []).append(
-                Sighting(found.modes[index], likeness, found.duration_s, _wind(seen.record))
+                Sighting(found.modes[index], likeness, found.duration_s, _wind(seen.record), names)
             )
         number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
     return Measured(
         tuple(observations),
-        _sensors(config, observations[0].record),
+        placed_sensors(config, observations[0].record),
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
         tuple(numbers),
+        tuple(_relaxations(seen.identification) for seen in observations),
+    )
+
+
+def _relaxations(found: Identification) -> tuple[GivenRelaxation, ...]:
+    names = [channel.name for channel in found.channels]
+    return tuple(
+        GivenRelaxation(
+            pole.rate_rad_s,
+            pole.rate_std_rad_s,
+            dict(zip(names, map(complex, pole.mode_shape), strict=True)),
+        )
+        for pole in found.real_poles
     )
 
 
@@ -116,7 +130,7 @@ def fuse(mode: int, sightings: tuple[Sighting, ...]) -> Target:
     return Target(mode, f, f * mean.log_std[0], zeta, zeta * mean.log_std[1], mean.correlation)
 
 
-def _sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:
+def placed_sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:
     """Return the sensors behind the channels; they point as the record's channels do once turned."""
     given = {s.channel: s for s in config.sensors}
     return tuple(

@@ -52,7 +52,11 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
     InputError
         If bounds, priors, ties or pile heads do not fit the law.
     """
-    model = law_model(config, evidence, law)
+    return model_problem(config, evidence, law_model(config, evidence, law))
+
+
+def model_problem(config: TwinConfig, evidence: Evidence, model: SupportModel) -> Problem:
+    """Return the residuals of all operating states against the parameters of a model."""
     relaxations = relaxation_targets(
         config,
         model,
@@ -60,7 +64,7 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
         sensors=() if evidence.found is None else evidence.found.sensors,
         relative=any(residuals.relative for residuals, _ in evidence.states.values()),
     )
-    shapes = _shapes(config, model, evidence)
+    shapes = measured_shapes(config, model, evidence)
     return tied_problem(config, model, evidence.states, shapes=shapes, relaxations=relaxations)
 
 
@@ -131,26 +135,26 @@ def _heads(config: TwinConfig) -> Support | None:
         return read_support(source, config.structure, folder=config.path.parent)
 
 
-def _shapes(config: TwinConfig, model: SupportModel, evidence: Evidence) -> tuple[ShapeTarget, ...]:
-    """Return the shape of each fitted mode where it is most like the model's."""
+def measured_shapes(config: TwinConfig, model: SupportModel, evidence: Evidence) -> tuple[ShapeTarget, ...]:
+    """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
     found = evidence.found
     first, _ = next(iter(evidence.states.values()))
     if config.update.mac_std is None or found is None or first.relative:
         return ()
     by_channel = {sensor.channel: sensor for sensor in found.sensors}
-    channels = {
-        id(mode): seen.identification.channels
-        for seen in found.observations
-        for mode in seen.identification.modes
-    }
     shapes = []
     for mode in first.modes:
-        best = max(found.sightings[mode], key=lambda seen: seen.mac).estimate
-        places = tuple(by_channel[c.name] for c in channels[id(best)] if c.name in by_channel)
-        if len(places) == best.mode_shape.size:
+        best = max(found.sightings[mode], key=lambda seen: seen.mac)
+        places = tuple(by_channel[name] for name in best.channels if name in by_channel)
+        if places and len(places) == best.estimate.mode_shape.size:
             shapes.append(
                 ShapeTarget.seen(
-                    model, mode, best.frequency_hz, places, best.mode_shape, config.update.mac_std
+                    model,
+                    mode,
+                    best.estimate.frequency_hz,
+                    places,
+                    best.estimate.mode_shape,
+                    config.update.mac_std,
                 )
             )
     return tuple(shapes)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from math import hypot
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.errors import InputError, located
 from jackettwin.identification.mac import mac
@@ -31,8 +30,9 @@ def measured_relaxations(config: TwinConfig, found: Measured | None) -> tuple[Me
     if found is None:
         fused = [_as_measured(given, records=0) for given in config.relaxations]
     else:
-        least = _LEAST_SHARE * len(found.observations)
-        fused = [_as_measured(_fused(seen), len(seen)) for seen in _seen(found) if len(seen) >= least]
+        least = _LEAST_SHARE * len(found.relaxations)
+        groups = _distinct(found.relaxations)
+        fused = [_as_measured(_fused(seen), len(seen)) for seen in groups if len(seen) >= least]
     ordered = sorted(fused, key=lambda one: one.rate_rad_s)
     return tuple(replace(one, name=f"a{i + 1}") for i, one in enumerate(ordered))
 
@@ -78,13 +78,9 @@ def relaxing(config: TwinConfig, laws: tuple[str, ...]) -> tuple[str, ...]:
     return kept
 
 
-def _seen(found: Measured) -> list[Seen]:
+def _distinct(records: tuple[tuple[GivenRelaxation, ...], ...]) -> list[Seen]:
     """Return the distinct relaxations of all records, each in one record once at most, the surest first."""
-    sightings = [
-        (i, GivenRelaxation(pole.rate_rad_s, pole.rate_std_rad_s, _by_channel(names, pole.mode_shape)))
-        for i, names in enumerate([c.name for c in o.identification.channels] for o in found.observations)
-        for pole in found.observations[i].identification.real_poles
-    ]
+    sightings = [(i, one) for i, shown in enumerate(records) for one in shown]
     groups: list[Seen] = []
     for record, one in sorted(sightings, key=lambda seen: _log_std(seen[1])):
         apart = [np.inf if record in group else _apart(one, next(iter(group.values()))) for group in groups]
@@ -94,10 +90,6 @@ def _seen(found: Measured) -> list[Seen]:
         else:
             groups.append({record: one})
     return groups
-
-
-def _by_channel(names: list[str], shape: npt.NDArray[np.complex128]) -> dict[str, complex]:
-    return dict(zip(names, map(complex, shape), strict=True))
 
 
 def _log_std(one: GivenRelaxation) -> float:

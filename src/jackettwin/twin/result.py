@@ -127,14 +127,14 @@ class TwinResult:
         For each record, the label of each identified mode; empty without a counterpart in the model.
     measured : tuple of MeasuredMode
         In the order of mode numbers.
-    relaxations : tuple of MeasuredRelaxation
-        Real poles that the supports were updated to, too, by rate.
     updates : tuple of Update
         One a law; each covers the modes of ``measured``.
     excess : tuple of tuple of DampingExcess
         For each update, every mode with measured damping.
     assumptions, warnings : tuple of str
         Sentences for the report.
+    relaxations : tuple of MeasuredRelaxation
+        Real poles that the supports were updated to, too, by rate.
     """
 
     name: str
@@ -145,11 +145,11 @@ class TwinResult:
     observations: tuple[Observation, ...]
     names: tuple[tuple[str, ...], ...]
     measured: tuple[MeasuredMode, ...]
-    relaxations: tuple[MeasuredRelaxation, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
     assumptions: tuple[str, ...]
     warnings: tuple[str, ...]
+    relaxations: tuple[MeasuredRelaxation, ...] = ()
 
     @property
     def record(self) -> Record | None:

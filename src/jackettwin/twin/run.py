@@ -8,9 +8,9 @@ import numpy as np
 
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin.assembled import assembled
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
-from jackettwin.twin.measure import PAIRED_MODES, Measured, measure
+from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
@@ -25,6 +25,7 @@ def run_twin(
     laws: tuple[str, ...] | None = None,
     compare: bool = False,
     step: Callable[[str], None] = lambda _: None,
+    within: Callable[[str], None] = lambda _: None,
 ) -> TwinResult:
     """Identify the records of a twin (or take its targets) and update its supports under each law.
 
@@ -36,6 +37,8 @@ def run_twin(
         Identify the first record by every method, to set side by side.
     step : callable
         Told what is being done, once a step; ``count_steps`` says how many there are.
+    within : callable
+        Told how far a step is, as often as there is something to say.
 
     Raises
     ------
@@ -64,7 +67,8 @@ def run_twin(
     updates = []
     for law in relaxing(config, wanted) if relaxations else wanted:
         step(f"update {law}")
-        updates.append(_update(config, evidence, law, shown=tuple(m.mode for m in measured)))
+        shown = tuple(m.mode for m in measured)
+        updates.append(_update(config, evidence, law, shown, within))
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -75,11 +79,11 @@ def run_twin(
         observations=() if found is None else found.observations,
         names=() if found is None else _names(found, labels),
         measured=measured,
-        relaxations=relaxations,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
         assumptions=assumptions(config, measured, relaxations, wind),
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates))),
+        relaxations=relaxations,
     )
 
 
@@ -92,7 +96,16 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
     return 1 + len(config.records) + len(laws or config.update.laws)
 
 
-def _update(config: TwinConfig, evidence: Evidence, law: str, *, shown: tuple[int, ...]) -> Update:
+def _update(
+    config: TwinConfig,
+    evidence: Evidence,
+    law: str,
+    shown: tuple[int, ...],
+    within: Callable[[str], None],
+) -> Update:
+    def progress(what: str) -> None:
+        within(f"{law}: {what}")
+
     how = config.update
     return update(
         law_problem(config, evidence, law),
@@ -102,6 +115,8 @@ def _update(config: TwinConfig, evidence: Evidence, law: str, *, shown: tuple[in
         particles=how.particles,
         sampler=how.sampler,
         seed=how.seed,
+        most_evaluations=how.most_evaluations,
+        progress=progress,
     )
 
 

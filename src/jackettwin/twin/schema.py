@@ -14,6 +14,7 @@ from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import BodySchema
 from jackettwin.twin.config import GivenRelaxation
 from jackettwin.updating import DEFAULT_LAWS, Target
+from jackettwin.updating.solutions import MOST_EVALUATIONS
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -157,13 +158,14 @@ class UpdateSchema(Schema):
     laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
     starts: Annotated[int, Field(ge=1, le=10000)] = 32
+    most_evaluations: Annotated[int, Field(ge=1, le=10**9)] = MOST_EVALUATIONS
     seed: Annotated[int, Field(ge=0)] = 0
     particles: Annotated[int, Field(ge=20, le=100000)] = 150
     sampler: Literal["smc", "nested"] = "smc"
     bounds: dict[str, tuple[float, float]] = {}
     priors: dict[str, PriorSchema] = {}
     weighting: Literal["auto", "relative", "covariance"] = "auto"
-    modes: list[Annotated[int, Field(ge=1, le=50)]] = [1, 2, 3, 4, 5]
+    modes: list[Annotated[int, Field(ge=1)]] = [1, 2, 3, 4, 5]
     damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
     model_error: list[ModelErrorSchema] = []
     mac_std: Positive | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -31,11 +31,14 @@ class End:
         Without the pull to the middle.
     settled : bool
         Whether it is a minimum: nothing lower nearby, and the same cost from a cold start.
+    evaluations : int
+        Of the model, that the search took.
     """
 
     z: FloatArray
     cost: float
     settled: bool
+    evaluations: int = 0
 
 
 class Path:
@@ -75,19 +78,25 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
     gives a valley one lowest point. Known solutions are deflated (Farrell et al. 2015): the residuals are
     multiplied by :math:`\prod_i (1 + σ²/\|z - z_i\|²)`, and the end is polished without that.
     """
+    taken = 0
     if known:
-        start = _least_squares(problem, start, _deflated(problem, known), tolerance=1e-3, evaluations=60)
+        start, taken = _least_squares(
+            problem, start, _deflated(problem, known), tolerance=1e-3, evaluations=60
+        )
     z = start
     for tolerance in (1e-3, 1e-8):
         here = Path(problem).total(z)
-        z = _least_squares(problem, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
-    free = _least_squares(problem, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
+        z, n = _least_squares(problem, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
+        taken += n
+    free, n = _least_squares(problem, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
+    taken += n
     back = z
     if np.abs(free - z).max() >= _POINT:
         # in a valley it slides back; from a point that the pulled search was too slow to reach it does not
         pull = _pulled(problem, problem.allowance(Path(problem).total(free)))
-        back = _least_squares(problem, free, pull, tolerance=1e-8)
-    return _judged(problem, free if np.abs(free - back).max() < _POINT else z)
+        back, n = _least_squares(problem, free, pull, tolerance=1e-8)
+        taken += n
+    return replace(_judged(problem, free if np.abs(free - back).max() < _POINT else z), evaluations=taken)
 
 
 def settle(problem: Problem, end: End) -> End:
@@ -98,7 +107,7 @@ def settle(problem: Problem, end: End) -> End:
     if weakest**2 > problem.negligible:
         return end
     pull = _pulled(problem, problem.allowance(end.cost))
-    z = _least_squares(problem, end.z, pull, tolerance=1e-12, evaluations=1000)
+    z, _ = _least_squares(problem, end.z, pull, tolerance=1e-12, evaluations=1000)
     return _judged(problem, z)
 
 
@@ -111,7 +120,7 @@ def descend_simplex(problem: Problem, start: FloatArray) -> End:
         bounds=list(zip(problem.prior.low, problem.prior.high, strict=True)),
         options={"xatol": 1e-5, "fatol": 1e-14, "maxfev": 600},
     )
-    return End(np.asarray(fit.x), float(fit.fun), bool(np.isfinite(fit.fun)))
+    return End(np.asarray(fit.x), float(fit.fun), bool(np.isfinite(fit.fun)), int(fit.nfev))
 
 
 def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -> tuple[FloatArray, float]:
@@ -155,7 +164,8 @@ def _least_squares(
     *,
     tolerance: float,
     evaluations: int = _EVALUATIONS,
-) -> FloatArray:
+) -> tuple[FloatArray, int]:
+    """Return where least squares end, and how many evaluations that took."""
     values, jacobian = rows_of(Path(problem))
     fit = least_squares(
         values,
@@ -168,7 +178,7 @@ def _least_squares(
         gtol=1e-14,
         max_nfev=evaluations,
     )
-    return np.asarray(fit.x)
+    return np.asarray(fit.x), int(fit.nfev)
 
 
 def _pulled(problem: Problem, allowance: float) -> Callable[[Path], tuple[Rows, Rows]]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.response.condensed import Condensed, condense
+from jackettwin.response.condensed import Condensed, condense, widest_band_hz
 from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
@@ -330,7 +330,40 @@ def _condensed(
     )
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
     below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
+    _check_band(rayleigh, pinned_hz, highest_mode, fastest_rate)
     return condense(system, below_hz=below_hz, spread=tuple(extras.water.values()))
+
+
+def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fastest_rate: float) -> None:
+    """Refuse modes that the structure has not, and modes and rates that its steel would overdamp."""
+    if len(pinned_hz) < highest_mode:
+        raise InputError(
+            "the structure has fewer modes",
+            field="mode",
+            value=highest_mode,
+            allowed=f"1 to {len(pinned_hz)}",
+            remedy="leave the higher ones out, or divide its members (subdivide)",
+        )
+    widest = widest_band_hz(rayleigh.beta)
+    reached = int(np.searchsorted(_ROOM * pinned_hz, widest))
+    remedy = "leave them out, or state less damping (damping.rayleigh)"
+    if reached < highest_mode:
+        raise InputError(
+            "the steel's damping grows with frequency, too strong for so high a mode",
+            field="mode",
+            value=highest_mode,
+            allowed=f"1 to {reached} with this damping",
+            remedy=remedy,
+        )
+    fastest = 2.0 * pi * widest / _BEYOND
+    if fastest_rate > fastest:
+        raise InputError(
+            "the steel's damping grows with frequency, too strong for so fast a relaxation",
+            field="rate_rad_s",
+            value=fastest_rate,
+            allowed=f"up to {fastest:.3g} rad/s with this damping",
+            remedy=remedy,
+        )
 
 
 def _informed(

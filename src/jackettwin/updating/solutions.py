@@ -24,6 +24,8 @@ LOCKED_DAMPER = 0.05
 """Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
 _MOST = 16
 """Starts are doubled up to this many times their number while a solution has been found only once."""
+MOST_EVALUATIONS = 40_000
+"""And while so many evaluations of the model have not been spent: half a minute."""
 _HOPELESS = 4
 """So many times the starts without any minimum are enough."""
 _DEFLATED = 6
@@ -80,20 +82,25 @@ class Search:
         Further descents, with the known solutions deflated.
     missed_share_95 : float
         A solution that was missed draws less than this share of the starts, with 95 % confidence.
+    spent : int or None
+        Evaluations after which the search stopped, although some solution had been found only once; None if
+        it ended by itself.
     """
 
     solutions: tuple[Solution, ...]
     starts: int
     deflated: int
     missed_share_95: float
+    spent: int | None = None
 
     @property
     def statement(self) -> str:
         """How complete the list is, in a sentence."""
         n = len(self.solutions)
         once = sum(s.found == 1 for s in self.solutions)
+        unsettled = "" if self.spent is None else f"Not settled after {self.spent:,} evaluations: "
         return (
-            f"{self.starts} starts and {self.deflated} deflated descents ended in "
+            f"{unsettled}{self.starts} starts and {self.deflated} deflated descents ended in "
             f"{n} distinct solution{'s' if n > 1 else ''}"
             f"{f', {once} of them found only once' if once else ', each found more than once'}; "
             f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
@@ -107,7 +114,8 @@ def search(
     method: Method = "least-squares",
     starts: int = 32,
     seed: int = 0,
-    progress: Callable[[], None] | None = None,
+    most_evaluations: int = MOST_EVALUATIONS,
+    progress: Callable[[str], None] | None = None,
 ) -> Search:
     """Return the distinct solutions, best first.
 
@@ -118,8 +126,10 @@ def search(
     ----------
     method : {"least-squares", "nelder-mead"}
         Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
+    most_evaluations : int
+        Of the model, after which no further starts are added to the first ones.
     progress : callable, optional
-        Called after each start.
+        Told after each start how far the search is.
 
     Raises
     ------
@@ -135,16 +145,21 @@ def search(
     deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
     run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
-    ends: list[End] = []
-    n = starts
+    valleys: list[tuple[End, int]] = []
+    n, tried, spent = starts, 0, 0
     while True:
-        for point in points[len(ends) : n]:
-            ends.append(run(problem, point))
+        new: list[tuple[End, int]] = []
+        for point in points[tried:n]:
+            if tried >= starts and spent >= most_evaluations:
+                break
+            end = run(problem, point)
+            tried, spent = tried + 1, spent + end.evaluations
+            new += [(end, 1)] if end.settled else []
             if progress is not None:
-                progress()
-        valleys = gather(problem, [(end, 1) for end in ends if end.settled])
+                progress(f"{tried} of {n} starts, {len(valleys)} distinct solutions before them")
+        valleys = gather(problem, [*valleys, *new])
         enough = all(count > 1 for _, count in valleys) if valleys else n >= _HOPELESS * starts
-        if 2 * n > len(points) or enough:
+        if enough or 2 * n > len(points) or spent >= most_evaluations:
             break
         n *= 2
     if deflated:
@@ -159,9 +174,10 @@ def search(
     valleys = gather(problem, [(settle(problem, end), count) for end, count in kept])
     return Search(
         tuple(_solution(problem, end, count) for end, count in valleys),
-        len(ends),
+        tried,
         deflated,
-        1.0 - (1.0 - _CONFIDENCE) ** (1.0 / len(ends)),
+        1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
+        None if enough or spent < most_evaluations else spent,
     )
 
 

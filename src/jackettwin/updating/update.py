@@ -21,7 +21,7 @@ from jackettwin.updating.posterior import Posterior, sample_posterior
 from jackettwin.updating.predictive import Predictive, predict_quantities
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.profile import Profile, profile
-from jackettwin.updating.solutions import Method, Search, Solution, search
+from jackettwin.updating.solutions import MOST_EVALUATIONS, Method, Search, Solution, search
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -124,7 +124,8 @@ def update(
     particles: int = 150,
     sampler: Sampler = "smc",
     seed: int = 0,
-    progress: Callable[[], None] | None = None,
+    most_evaluations: int = MOST_EVALUATIONS,
+    progress: Callable[[str], None] | None = None,
 ) -> Update:
     """Return every solution of one law, the best one recomputed on the full model, and what is known of it.
 
@@ -137,18 +138,31 @@ def update(
         not agree.
     sampler : {"smc", "nested"}
         Tempered sequential Monte Carlo, or dynesty.
+    most_evaluations : int
+        After which the search adds no further starts.
+    progress : callable, optional
+        Told what is being done, and how far it is.
 
     Raises
     ------
     NumericalError
         If no start can follow the target modes.
     """
-    found = search(problem, method=method, starts=starts, seed=seed, progress=progress)
+    found = search(
+        problem,
+        method=method,
+        starts=starts,
+        seed=seed,
+        most_evaluations=most_evaluations,
+        progress=progress,
+    )
     best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
     uncertainty = None
     if problem.weighted:
+        if progress is not None:
+            progress("posterior")
         posterior, status = _posterior(problem, sampler, particles, seed)
         uncertainty = _uncertainty(problem, model, shown, best, posterior, status, seed)
     theta = _first(problem, np.log(best.theta)[None])[0]
