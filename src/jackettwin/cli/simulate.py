@@ -12,6 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
 from jackettwin.simulate.rotor_limits import rotor_notes
+from jackettwin.updating.budget import beyond_literature
 
 DEFAULT_SCENARIO = "parked"
 
@@ -29,12 +30,19 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     path = _record_path(out or f"out/{chosen.name}")
     done = simulate(chosen)
     write_record(done.record, path)
+    notes = [*rotor_notes(chosen), *chosen.asset.support.notes, *_unusual_shares(done)]
     if as_json:
-        print_json({**done.document(), "record": str(path)})
+        print_json({**done.document(), "record": str(path), "notes": notes})
     else:
         _print(done, path)
-        for note in (*rotor_notes(chosen), *chosen.asset.support.notes):
+        for note in notes:
             output.print(f"note: {note}")
+
+
+def _unusual_shares(done: Simulation) -> list[str]:
+    """Return which sources damp the first bending modes more or less than the literature has it."""
+    modes = done.record.metadata["true_modes"]
+    return [note for m in modes for note in beyond_literature(m["label"], m["damping_by_source"])]
 
 
 def _record_path(out: str) -> Path:

@@ -7,7 +7,7 @@ across the range of each point and interpolated between these.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -31,8 +31,20 @@ class SeaSeries(NamedTuple):
     acceleration: FloatArray
 
 
-def sea_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int) -> SeaSeries:
+def sea_series(
+    sea: AirySea,
+    points: FloatArray,
+    *,
+    period: float,
+    n_times: int,
+    scattered: ComplexArray | None = None,
+) -> SeaSeries:
     """Return what ``sea`` does at points (n, 3) at ``n_times`` even times of one ``period`` [s].
+
+    Parameters
+    ----------
+    scattered : (n, n_waves), optional
+        What wide members make of every wave's acceleration (``diffraction.scattered``).
 
     Raises
     ------
@@ -40,12 +52,13 @@ def sea_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int)
         If a component is not on a line of the period, or the times are too few for the shortest wave.
     """
     lines = _lines(sea, period, n_times)
+    inertia = np.ones(1) if scattered is None else scattered
     along = np.outer(points[:, 0], np.cos(sea.direction)) + np.outer(points[:, 1], np.sin(sea.direction))
     steady = sea.amplitude * np.exp(1j * (sea.phase - sea.k * along))
     still = sea.stretching == "none"
     eta = np.zeros((n_times, points.shape[0])) if still else _transformed(steady, lines, n_times).T
     if sea.stretching != "wheeler":
-        fields = _fields(sea, steady, points[:, 2], lines, n_times)
+        fields = _fields(sea, steady, points[:, 2], lines, n_times, inertia)
         both = np.einsum("mf,fpt->tpm", _mixing(sea), fields, optimize=True)
         return SeaSeries(eta, both[..., :3], both[..., 3:])
     level = np.minimum((points[:, 2] - eta) * sea.depth / (sea.depth + eta), 0.0)
@@ -54,7 +67,7 @@ def sea_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int)
     mixing = _mixing(sea)
     fields = np.empty((mixing.shape[1], LEVELS, points.shape[0], n_times))
     for j, node in enumerate(nodes):
-        fields[:, j] = _fields(sea, steady, middle + node * half, lines, n_times)
+        fields[:, j] = _fields(sea, steady, middle + node * half, lines, n_times, inertia)
     both = between_levels(level, middle, half, nodes, fields, mixing)
     return SeaSeries(eta, both[..., :3], both[..., 3:])
 
@@ -83,7 +96,12 @@ def _mixing(sea: AirySea) -> FloatArray:
 
 
 def _fields(
-    sea: AirySea, steady: ComplexArray, z: FloatArray, lines: npt.NDArray[np.intp], n_times: int
+    sea: AirySea,
+    steady: ComplexArray,
+    z: FloatArray,
+    lines: npt.NDArray[np.intp],
+    n_times: int,
+    inertia: npt.NDArray[Any],
 ) -> FloatArray:
     """Return velocity, then acceleration, at one level a point, (n_fields, n_points, n_times).
 
@@ -93,7 +111,7 @@ def _fields(
     u, w = sea.omega * horizontal * steady, 1j * sea.omega * vertical * steady
     one = np.ptp(sea.direction) == 0.0
     components = [u, w] if one else [u * np.cos(sea.direction), u * np.sin(sea.direction), w]
-    components += [1j * sea.omega * component for component in components]
+    components += [1j * sea.omega * inertia * component for component in components]
     return np.array([_transformed(component, lines, n_times) for component in components])
 
 

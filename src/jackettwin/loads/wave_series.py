@@ -10,6 +10,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.loads.current import Current
+from jackettwin.loads.diffraction import scattered
 from jackettwin.loads.ends import Ends, end_forces
 from jackettwin.loads.morison import MorisonPoints, above_bed, point_forces, wetness
 from jackettwin.loads.sea_series import sea_series
@@ -64,6 +65,7 @@ def wave_series(
     current: Current | None = None,
     ends: tuple[Ends, FloatArray] | None = None,
     keep_motion: bool = False,
+    diffraction: bool = False,
 ) -> WaveSeries:
     """Return the loads of waves that repeat after ``period`` [s].
 
@@ -79,6 +81,8 @@ def wave_series(
         Ends of members and the work of forces on them.
     keep_motion : bool
         Keep the water's motion at the points: 30 MB for ten minutes on a jacket.
+    diffraction : bool
+        Let members scatter waves by their own diameter (MacCamy & Fuchs); of Airy waves alone.
     """
     random = isinstance(waves, AirySea) and waves.omega.size > 1
     n_times = 2 * int(np.ceil(0.5 * period / step)) if random else _REGULAR_SAMPLES
@@ -90,8 +94,9 @@ def wave_series(
     for start in range(0, grid.weight.size, _CHUNK):
         here = slice(start, start + _CHUNK)
         part = some_points(grid, here)
-        if isinstance(waves, AirySea) and random:
-            surface, u, du = sea_series(waves, part.points, period=period, n_times=n_times)
+        if isinstance(waves, AirySea) and (random or diffraction):
+            wide = scattered(waves.k, part.diameter) if diffraction else None
+            surface, u, du = sea_series(waves, part.points, period=period, n_times=n_times, scattered=wide)
         else:
             surface = waves.surface(part.points, t)
             u, du = waves.motion(part.points, t)

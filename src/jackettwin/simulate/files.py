@@ -196,6 +196,7 @@ def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | No
             gamma=None if w.type in REGULAR else _peakedness(w),
             spreading=w.spreading,
             relative_velocity=w.relative_velocity,
+            diffraction=_scatters(w),
             current=current,
             ends=ends,
         )
@@ -240,6 +241,19 @@ def _size(w: WavesSchema) -> tuple[float, float]:
         if getattr(w, name) is None:
             raise InputError("required key is missing", field=name, remedy=f"add {name!r}")
     return getattr(w, needed[0]), getattr(w, needed[1])
+
+
+def _scatters(w: WavesSchema) -> bool:
+    """Return whether members scatter waves; steep ones have no theory of it here."""
+    if w.diffraction == "maccamy-fuchs" and w.type in ("stokes5", "stream"):
+        raise InputError(
+            f"not known for waves of type {w.type}",
+            field="diffraction",
+            value=w.diffraction,
+            allowed="none",
+            remedy="take airy, jonswap or pierson-moskowitz, or leave it out",
+        )
+    return w.diffraction == "maccamy-fuchs"
 
 
 def _peakedness(w: WavesSchema) -> float | None:

@@ -65,6 +65,7 @@ class Sea:
     gamma: float | None = None
     spreading: float | None = None
     relative_velocity: str = "linearised"
+    diffraction: bool = False
     """How drag knows the motion of the structure: ``none``, ``linearised`` or ``full``."""
     current: Current | None = None
     ends: EndCoefficients = EndCoefficients()

@@ -80,6 +80,7 @@ class WavesSchema(Schema):
     seed: Seed = 0
     stretching: Literal["none", "vertical", "extrapolated", "wheeler"] | None = None
     relative_velocity: Literal["none", "linearised", "full"] = "linearised"
+    diffraction: Literal["none", "maccamy-fuchs"] = "none"
 
 
 class CurrentSchema(Schema):

@@ -21,10 +21,10 @@ def sea_warnings(sea: Sea, structure: Structure) -> list[str]:
     length = 2.0 * np.pi / float(wave_number(2.0 * np.pi / sea.period_s, sea.depth_m))
     found = []
     name, diameter = _widest(structure, sea.coefficients, sea.depth_m)
-    if diameter > WIDEST * length:
+    if diameter > WIDEST * length and not sea.diffraction:
         found.append(
             f"member {name} is {diameter:.1f} m wide, over {WIDEST:g} of the wave length {length:.0f} m: "
-            "it scatters waves, and Morison's equation overstates their force"
+            "it scatters waves, and Morison's equation overstates their force (waves.diffraction)"
         )
     highest = highest_wave(length, sea.depth_m)
     if sea.waves == "airy" and sea.height_m > highest:

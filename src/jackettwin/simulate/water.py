@@ -153,6 +153,7 @@ def water_loads(
         current=sea.current,
         ends=ends,
         keep_motion=keep_motion,
+        diffraction=sea.diffraction and waves is not None,
     )
     return WaterLoads(series, grid, waves)
 
