@@ -77,7 +77,7 @@ def test_the_newer_format_reads_the_same(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("1\t\t1\t\t4\t\t1\t\t1\t\t1", "1\t\t1\t\t4\t\t1\t\t1\t\t1r", "unsupported member type .rectangular"),
+        ("1\t\t1\t\t4\t\t1\t\t1\t\t1", "1\t\t1\t\t4\t\t1\t\t1\t\t7", "unsupported member type .unknown"),
         ("1\t\t1\t\t4\t\t1\t\t1\t\t1", "1\t\t1\t\t99\t\t1\t\t1\t\t1", "no such joint .got '99'"),
         (
             "1.7             0.080",

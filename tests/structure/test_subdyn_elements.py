@@ -16,6 +16,7 @@ from jackettwin.soil import own_support
 from jackettwin.structure import Structure, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.eigen import lowest_modes
+from jackettwin.structure.rectangles import rectangular_section
 from jackettwin.structure.two_node import BeamSection, beam_matrices
 
 # six significant figures are printed
@@ -27,6 +28,7 @@ HEADERS = {
     "NInterf": "IJointID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss",
     "NMembers": "MemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType COSMID",
     "NPropSets": "PropSetID YoungE ShearG MatDens XsecD XsecT",
+    "NPropSetsRec": "PropSetID YoungE ShearG MatDens XsecSa XsecSb XsecT",
     "NXPropSets": "PropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0",
     "NCablePropSets": "PropSetID EA MatDens T0 CtrlChannel",
     "NRigidPropSets": "PropSetID MatDens",
@@ -258,6 +260,38 @@ def test_planes_of_an_arbitrary_beam() -> None:
     assert lift @ M @ lift == pytest.approx(7850 * 0.2 * L)
 
 
+def test_a_rectangular_cantilever(tmp_path: Path) -> None:
+    """SD_CantileverBeam_Rectangular (OpenFAST 4.1): frequencies in its deck, to a thousandth of a hertz."""
+    deck = read_deck(
+        tmp_path,
+        NJoints="1 0 0 0 1 0 0 0 0; 2 7.112 0 0 1 0 0 0 0; 3 14.224 0 0 1 0 0 0 0; 4 21.336 0 0 1 0 0 0 0; "
+        "5 27.415 0 0 1 0 0 0 0; 6 28.448 0 0 1 0 0 0 0; 7 33.585 0 10.6 1 0 0 0 0",
+        NInterf="1 1 1 1 1 1 1",
+        NMembers="1 1 2 1 1 1r 0; 2 2 3 1 1 1r 0; 3 3 4 1 1 1r 0; 4 4 5 1 1 1r 0; "
+        "5 5 6 2 2 3 -1; 6 6 7 2 2 3 -1",
+        NPropSetsRec="1 3.44e9 1.3231e9 895.4479 12.43 7.08 0",
+        NRigidPropSets="2 0",
+        NCmass="7 1.93e6 0 0 0 0 0 0 0 0 0",
+    )
+    held = reduced(deck, 6)[1]
+    np.testing.assert_allclose(held[:4], [0.977, 1.437, 4.668, 5.979], atol=5e-4)
+
+
+def test_a_square_box_bends_and_twists_as_thin_walls_do(tmp_path: Path) -> None:
+    """A = 4at, I = 2a³t/3, J = a³t of the middle line; Cowper's coefficient of a square box is 0.436."""
+    a, t = 2.0, 0.01
+    section = rectangular_section(a + t, a + t, t, poisson_ratio=0.3)
+    # walls of a two-hundredth: (t/a)² of the second moment
+    np.testing.assert_allclose(
+        [section.A, section.I_x, section.I_y, section.J],
+        [4 * a * t, 2 * a**3 * t / 3, 2 * a**3 * t / 3, a**3 * t],
+        rtol=1e-4,
+    )
+    assert section.A_x / section.A == pytest.approx(0.436, abs=5e-4)
+    with pytest.raises(InputError, match="below half the shorter side"):
+        rectangular_section(2.0, 1.0, 0.5, poisson_ratio=0.3)
+
+
 def test_members_with_a_division_of_their_own(tmp_path: Path) -> None:
     """MDivSize 1.25 m cuts five metres in four, and only where it is given."""
     deck = read_deck(
@@ -275,8 +309,8 @@ def test_members_with_a_division_of_their_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"NMembers": "1 1 2 1 1 1r 0; 2 2 3 1 1 1 -1"}, "rectangular section.*arbitrary one"),
-        ({"NMembers": "1 1 2 1 1 -1 0; 2 2 3 1 1 1 -1"}, "rectangular section"),
+        ({"NMembers": "1 1 2 1 1 1r 0; 2 2 3 1 1 1 -1"}, "MemberID 1: no such property set .got '1'"),
+        ({"NMembers": "1 1 2 1 1 -1 0; 2 2 3 1 1 1 -1"}, "rectangular section.*1r"),
         ({"NMembers": "1 1 2 1 2 1 -1; 2 2 3 1 1 1 -1"}, "same at both ends"),
         ({"NMembers": "1 1 2 5 5 2 -1; 2 2 3 1 1 1 -1"}, "no such property set .got '5'"),
         ({"NJoints": "1 0 0 0 1 0 0 0 0; 2 0 0 5 2 0 0 1 0; 3 0 0 9 1 0 0 0 0"}, "universal"),

@@ -247,13 +247,14 @@ class Structure:
 
     def _check_connected(self) -> None:
         """Refuse nodes that members and rigid links do not join to the first member."""
-        if not self.members:
+        if not self.joined:
             raise InputError("a structure needs members", field="members", value=[], remedy="add members")
         neighbours: dict[str, list[str]] = {name: [] for name in self.nodes}
         for a, b in self.joined:
             neighbours[a].append(b)
             neighbours[b].append(a)
-        reached, stack = {self.members[0].start}, [self.members[0].start]
+        first = self.joined[0][0]
+        reached, stack = {first}, [first]
         while stack:
             for name in neighbours[stack.pop()]:
                 if name not in reached:

@@ -27,8 +27,8 @@ def read_subdyn(path: Path) -> Structure:
     Raises
     ------
     InputError
-        If the file is incomplete, or holds what has no equal here: rectangular sections, universal joints,
-        several transition pieces.
+        If the file is incomplete, or holds what has no equal here: universal joints, several transition
+        pieces.
     """
     deck = read_deck(path)
     femmod = deck.scalar("FEMMod", "1")

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, RigidLink, Section, Vector
+from jackettwin.structure.rectangles import rectangular_section
 from jackettwin.structure.subdyn_joints import link_groups, member_ends, read_joints, with_hinges
 from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
 from jackettwin.structure.two_node import (
@@ -28,9 +29,10 @@ from jackettwin.structure.two_node import (
 
 FloatArray = npt.NDArray[np.float64]
 
-_TUBE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "2", "3", "4", "5"
-_BEAMS = (*_TUBE, _ARBITRARY)
-_REFUSED = {"1r": "rectangular section", "-1": "rectangular section"}
+_TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"
+_BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)
+_REFUSED = {"-1": "rectangular section by its older number"}
+_RECTANGLE_KEYS = ("younge", "shearg", "matdens", "xsecsa", "xsecsb", "xsect")
 _TUBE_KEYS = ("younge", "shearg", "matdens", "xsecd", "xsect")
 _SPRING_KEYS = tuple(f"k{i}{j}" for i in range(1, 7) for j in range(i, 7))
 
@@ -71,7 +73,7 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
         start, end = ends[name]
         if kind in _TUBE:
             _add_tube(parts, tables, row, (start, end), 1 if alike else pieces[name])
-        elif kind == _ARBITRARY:
+        elif kind in (_RECTANGLE, _ARBITRARY):
             _add_beam(parts, tables, row, (start, end), pieces[name], shear=shear)
         elif kind == _CABLE:
             parts.elements.append(_cable(parts, tables, row, (start, end)))
@@ -96,8 +98,8 @@ def _unsupported(deck: Deck, row: Row, kind: str) -> InputError:
         file=deck.path,
         field=f"MemberID {row['memberid']}.MType",
         value=kind,
-        allowed="1, 1c (circular beam), 2 (cable), 3 (rigid link), 4 (arbitrary beam), 5 (spring)",
-        remedy="give a rectangular section as an arbitrary one: areas, shear areas, J",
+        allowed="1, 1c (circular beam), 1r (rectangle), 2 (cable), 3 (rigid link), 4 (any beam), 5 (spring)",
+        remedy="give a rectangular section as 1r",
     )
 
 
@@ -107,6 +109,7 @@ class _Tables:
 
     deck: Deck
     tubes: dict[str, Row]
+    rectangles: dict[str, Row]
     arbitrary: dict[str, Row]
     cables: dict[str, Row]
     rigid: dict[str, Row]
@@ -131,12 +134,22 @@ class _Tables:
 
 
 def _tables(deck: Deck) -> _Tables:
-    def rows(*keywords: str, key: str = "propsetid", columns: tuple[str, ...] = ()) -> dict[str, Row]:
-        return {row[key]: row for row in deck.table(*keywords, columns=columns)}
+    def rows(
+        *keywords: str, key: str = "propsetid", columns: tuple[str, ...] = (), nth: int = 0
+    ) -> dict[str, Row]:
+        return {row[key]: row for row in deck.table(*keywords, columns=columns, nth=nth)}
+
+    # OpenFAST 4 gave both tables of sections one keyword
+    named = deck.find("NPropSetsRec") is not None
 
     return _Tables(
         deck,
         tubes=rows("NPropSetsCyl", "NPropSets", columns=("propsetid", *_TUBE_KEYS)),
+        rectangles=rows(
+            "NPropSetsRec" if named else "NPropSets",
+            columns=("propsetid", *_RECTANGLE_KEYS),
+            nth=0 if named else 1,
+        ),
         arbitrary=rows("NXPropSets"),
         cables=rows("NCablePropSets"),
         rigid=rows("NRigidPropSets"),
@@ -208,26 +221,39 @@ def _add_beam(
     name = row["memberid"]
     if row["mpropsetid1"] != row["mpropsetid2"]:
         raise InputError(
-            "an arbitrary section cannot change along a member",
+            "such a section cannot change along a member",
             file=tables.deck.path,
             field=f"MemberID {name}",
             value=[row["mpropsetid1"], row["mpropsetid2"]],
         )
-    p = tables.find(tables.arbitrary, row, "mpropsetid1")
-    E, G, rho, A, A_x, A_y, I_x, I_y, I_p = tables.values(
-        p, "younge", "shearg", "matdens", "xseca", "xsecasx", "xsecasy", "xsecjxx", "xsecjyy", "xsecj0"
-    )
-    # decks before OpenFAST 4.1 have one number for inertia and torsion
-    J = tables.values(p, "xsecjt")[0] if "xsecjt" in p else I_p
+    (E, G, rho), section = _rectangle(tables, row) if _kind(row) == _RECTANGLE else _any_section(tables, row)
     nodes = _along(parts, name, ends, pieces)
     axes = _axes(parts, tables, row, ends)
     for k, pair in enumerate(zip(nodes, nodes[1:], strict=False), start=1):
         a, b = (np.array(parts.nodes[node]) for node in pair)
-        section = BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
         L = float(np.linalg.norm(b - a))
         K, M = beam_matrices(axes, L, section, E=E, G=G, rho=rho, shear=shear)
         piece = name if pieces == 1 else f"{name}/{k}"
         parts.elements.append(two_node_element(piece, "beam", pair, K, M))
+
+
+def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+    """Return E, G, ρ and the section of an arbitrary beam."""
+    p = tables.find(tables.arbitrary, row, "mpropsetid1")
+    A, A_x, A_y, I_x, I_y, I_p = tables.values(
+        p, "xseca", "xsecasx", "xsecasy", "xsecjxx", "xsecjyy", "xsecj0"
+    )
+    # decks before OpenFAST 4.1 have one number for inertia and torsion
+    J = tables.values(p, "xsecjt")[0] if "xsecjt" in p else I_p
+    return tables.values(p, "younge", "shearg", "matdens"), BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
+
+
+def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+    """Return E, G, ρ and the section of a rectangular beam."""
+    p = tables.find(tables.rectangles, row, "mpropsetid1")
+    E, G, rho, a, b, t = tables.values(p, *_RECTANGLE_KEYS)
+    with located(file=tables.deck.path, field=f"PropSetID {row['mpropsetid1']}"):
+        return [E, G, rho], rectangular_section(a, b, t, poisson_ratio=0.5 * E / G - 1.0)
 
 
 def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> FloatArray:

@@ -24,14 +24,12 @@ class Deck:
     path: Path
     lines: tuple[str, ...]
 
-    def find(self, *keywords: str) -> int | None:
-        """Return the number of the first line whose second word is one of the keywords."""
+    def find(self, *keywords: str, nth: int = 0) -> int | None:
+        """Return the number of a line whose second word is one of the keywords: the nth after the first."""
         wanted = {keyword.lower() for keyword in keywords}
-        for number, line in enumerate(self.lines):
-            words = line.split()
-            if len(words) > 1 and words[1].lower() in wanted:
-                return number
-        return None
+        words = (line.split() for line in self.lines)
+        found = [at for at, word in enumerate(words) if len(word) > 1 and word[1].lower() in wanted]
+        return found[nth] if nth < len(found) else None
 
     def scalar(self, keyword: str, default: str) -> str:
         """Return the value that stands before a keyword."""
@@ -48,13 +46,15 @@ class Deck:
                 return tuple(to_float(word, self.path, f"line {at}.{keyword}") for word in before)
         return ()
 
-    def table(self, *keywords: str, required: bool = False, columns: tuple[str, ...] = ()) -> tuple[Row, ...]:
+    def table(
+        self, *keywords: str, required: bool = False, columns: tuple[str, ...] = (), nth: int = 0
+    ) -> tuple[Row, ...]:
         """Return the rows of the table whose count line has one of the keywords; keys are the header's.
 
         ``columns`` are the first keys by position, for headers that name the first column only or name them
-        otherwise: SubDyn itself reads by position.
+        otherwise: SubDyn itself reads by position. ``nth`` tells tables of one keyword apart.
         """
-        number = self.find(*keywords)
+        number = self.find(*keywords, nth=nth)
         if number is None:
             if required:
                 raise InputError(
