@@ -11,7 +11,7 @@ from jackettwin.soil.support import Spring, Support, pinned
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.structure.model import STEEL, Member, PointMass, Reaction, Section, Structure
-from jackettwin.updating import family, support_model
+from jackettwin.updating import Residuals, Target, family, joint, support_model
 from jackettwin.updating.feet import TIES, feet, priors_of
 from jackettwin.updating.model import SupportModel
 
@@ -126,3 +126,54 @@ def test_a_monopile_is_numbered_clamped_and_fitted_on_its_pile_head(monopile: As
 def test_a_monopile_needs_springs_that_hold_rotations(monopile: Assembly) -> None:
     with pytest.raises(InputError, match="support.stiffness: .*turns over.*6×6"):
         support_model(monopile, family=family("maxwell-3"), rayleigh=Rayleigh.minimum(0.005, 0.25))
+
+
+def split(jacket15: Assembly, **options: object) -> SupportModel:
+    steel, law = Rayleigh.minimum(0.0055, F1), family("maxwell-3")
+    tie = "per-leg-horizontal-vertical"
+    return support_model(jacket15, family=law, rayleigh=steel, tie=tie, highest_mode=2, **options)
+
+
+def test_legs_split_into_two_sides_are_the_others_at_equal_values(jacket15: Assembly) -> None:
+    """Equal legs are the tie of horizontal and vertical supports; equal sides that of legs."""
+    steel, law = Rayleigh.minimum(0.0055, F1), family("maxwell-3")
+    model, sides, legs = split(jacket15), np.array([2e9, 0.1, 4e9, 0.05]), np.arange(1.0, 5.0)
+    apart = support_model(jacket15, family=law, rayleigh=steel, tie="horizontal-vertical", highest_mode=2)
+    own = support_model(jacket15, family=law, rayleigh=steel, tie="per-leg", highest_mode=2)
+    by_leg = np.stack([1e9 * legs, 0.05 * legs], axis=1)
+    pairs = (
+        (np.tile(sides, 4), apart, sides),
+        (np.tile(by_leg, 2).ravel(), own, by_leg.ravel()),
+    )
+    for theta, other, same in pairs:
+        poles = model.predict(theta, (1, 2)).poles
+        np.testing.assert_allclose(poles, other.predict(same, (1, 2)).poles, rtol=1e-9)
+
+
+def test_bounds_and_priors_of_a_side_are_every_legs(jacket15: Assembly) -> None:
+    model = split(
+        jacket15,
+        bounds={"k": (1e8, 1e11), "k_vertical": (1e9, 1e10), "k_foot_2_vertical": (2e9, 3e9)},
+        priors={"loss_factor_horizontal": (0.1, 0.5)},
+    )
+    low = {p.name: p.low for p in model.parameters}
+    assert (low["k_foot_1_horizontal"], low["k_foot_1_vertical"], low["k_foot_2_vertical"]) == (1e8, 1e9, 2e9)
+    medians = {p.name: p.median for p in model.parameters}
+    assert medians["loss_factor_foot_3_horizontal"] == 0.1 and medians["loss_factor_foot_3_vertical"] is None
+
+
+def test_a_side_is_shared_or_scatters_by_itself(jacket15: Assembly) -> None:
+    data = Residuals((Target(1, 0.18, 0.001), Target(2, 0.183, 0.001)), relative=False)
+    given = joint(
+        split(jacket15),
+        {"": (data, {})},
+        shared=("loss_factor", "k_horizontal"),
+        scatter={"k_vertical": 0.3},
+    )
+    names = [p.name for p in given.parameters]
+    assert names == ["k_horizontal", "loss_factor", *(f"k_foot_{i}_vertical" for i in range(1, 5))]
+    (legs,) = given.prior.legs
+    assert legs.name == "k_vertical" and legs.columns.tolist() == [2, 3, 4, 5]
+    both = joint(split(jacket15), {"": (data, {})}, scatter={"k": 0.3}).prior.legs
+    assert [group.name for group in both] == ["k_horizontal", "k_vertical"]
+    assert [group.columns.tolist() for group in both] == [[0, 4, 8, 12], [2, 6, 10, 14]]

@@ -20,6 +20,7 @@ from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, U
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
 from jackettwin.updating.extras import DASHPOTS, Extras
+from jackettwin.updating.feet import SIDES, SPLIT_LEGS
 
 
 def shipped_twins() -> tuple[str, ...]:
@@ -135,7 +136,9 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
 
 
 def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
-    known = sorted({p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters})
+    sides = ("", *SIDES) if support.tie == SPLIT_LEGS else ("",)
+    laws = (*DEFAULT_LAWS, *update.laws)
+    known = sorted({p.name + side for law in laws for p in family(law).parameters for side in sides})
     for field, names in (("shared", support.shared), ("scatter", [*support.scatter])):
         for name in names:
             if name not in known:

@@ -79,7 +79,7 @@ def tied_problem(
     growth: Growth | None = None,
 ) -> Problem:
     """Return the problem of a model in some states, its legs tied as the twin says."""
-    law = {p.name for p in model.family.parameters}
+    law = {p.name + side for p in model.family.parameters for side in ("", *model.feet.sides)}
     with located(file=config.path):
         return joint(
             model,

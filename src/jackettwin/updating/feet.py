@@ -18,10 +18,11 @@ FloatArray = npt.NDArray[np.float64]
 Group = tuple[tuple[int, ...], tuple[str, ...]]
 """The DOFs and the feet that share parameters."""
 
-TIES = ("all", "horizontal-vertical", "per-leg")
+SPLIT_LEGS = "per-leg-horizontal-vertical"
+TIES = ("all", "horizontal-vertical", "per-leg", SPLIT_LEGS)
 _HORIZONTAL, _VERTICAL = (0, 1, 3, 4, 5), (2,)
 """A pile's sway and rotation are one spring; its axis is another."""
-_SIDES = {"_horizontal": _HORIZONTAL, "_vertical": _VERTICAL}
+SIDES = {"_horizontal": _HORIZONTAL, "_vertical": _VERTICAL}
 _EVERY = (0, 1, 2, 3, 4, 5)
 _TRANSLATIONS = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 
@@ -38,6 +39,7 @@ class Feet:
     ----------
     suffixes : of each group's parameters
     patterns : (group, node, 6×6) of every foot
+    sides : of each group, ``_horizontal`` or ``_vertical`` where every leg is split into both; else empty
     stiffness : (n_groups,) storage stiffness [N/m] of each group in the support the patterns come from, or
         None: then they are plain translations
     loss_factor : of that support at the reference frequency
@@ -46,6 +48,7 @@ class Feet:
 
     suffixes: tuple[str, ...]
     patterns: tuple[tuple[int, str, FloatArray], ...]
+    sides: tuple[str, ...]
     stiffness: tuple[float, ...] | None = None
     loss_factor: tuple[float, ...] | None = None
     masses: tuple[tuple[str, FloatArray], ...] = ()
@@ -63,7 +66,7 @@ def feet(
 
     Parameters
     ----------
-    tie : {"all", "horizontal-vertical", "per-leg"}
+    tie : one of ``TIES``
     heads : Support, optional
         Pile heads whose 6×6 storage stiffness at ``reference_hz`` the laws scale: a law's stiffness is then
         the head's along its axis (horizontally for ``_horizontal``), and all else keeps its proportion.
@@ -90,7 +93,9 @@ def feet(
     if tie == "per-leg":
         groups = {f"_{node}": (_EVERY, (node,)) for node in nodes}
     elif tie == "horizontal-vertical":
-        groups = {suffix: (dofs, nodes) for suffix, dofs in _SIDES.items()}
+        groups = {suffix: (dofs, nodes) for suffix, dofs in SIDES.items()}
+    elif tie == SPLIT_LEGS:
+        groups = {f"_{node}{side}": (dofs, (node,)) for node in nodes for side, dofs in SIDES.items()}
     plain = Feet(
         tuple(groups),
         tuple(
@@ -98,6 +103,7 @@ def feet(
             for g, (dofs, members) in enumerate(groups.values())
             for node in members
         ),
+        sides=tuple(side for _ in nodes for side in SIDES) if tie == SPLIT_LEGS else ("",) * len(groups),
     )
     return plain if heads is None else _on_heads(plain, list(groups.values()), heads, reference_hz or 1.0)
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.updating.families import Parameter
+from jackettwin.updating.feet import SIDES
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
@@ -81,6 +82,7 @@ def joint(
         Measured real poles, in the first state.
     shared : tuple of str
         Parameters of the law with one value for all tie groups: every leg its stiffness, all one loss factor.
+        Where legs are split, ``k_vertical`` is shared by the legs' vertical springs.
     scatter : {parameter of the law: s₀}, optional
         Those of all tie groups have a common mean, about which they scatter by an unknown standard deviation
         of ln θ, about s₀ (:mod:`jackettwin.updating.scatter`).
@@ -128,13 +130,27 @@ def joint(
 
 def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...]) -> dict[str, str]:
     """Return {the model's name: the problem's} of shared parameters; refuse what is none of the law's."""
-    law = [p.name for p in model.family.parameters]
+    law = {p.name + side: None for side in ("", *model.feet.sides) for p in model.family.parameters}
     for name in given:
         if name not in law:
             raise InputError(
                 "the law has no such parameter", field="support", value=name, allowed=", ".join(law)
             )
-    return {name + suffix: name for name in shared for suffix in model.feet.suffixes}
+    return {member: name for name in shared for members in _members(model, name) for member in members}
+
+
+def _members(model: SupportModel, name: str) -> list[list[str]]:
+    """Return the parameters that a name stands for, those of legs split into two sides apart by side.
+
+    ``k`` is every leg's; ``k_vertical`` that of every leg's vertical spring.
+    """
+    feet, law = model.feet, [p.name for p in model.family.parameters]
+    by_side: dict[str, list[str]] = {}
+    for suffix, side in zip(feet.suffixes, feet.sides, strict=True):
+        for own in law:
+            if name in (own, own + side):
+                by_side.setdefault(side, []).append(own + suffix)
+    return list(by_side.values())
 
 
 def _common_errors(data: list[str], place: Mapping[str, int]) -> FloatArray:
@@ -151,9 +167,11 @@ def _prior(model: SupportModel, parameters: tuple[Parameter, ...], scatter: Mapp
     place = {p.name: i for i, p in enumerate(parameters)}
     legs = []
     for name, scale in scatter.items():
-        columns = [place[name + suffix] for suffix in model.feet.suffixes if name + suffix in place]
-        if len(columns) > 1:
-            legs.append(Legs(name, np.array(columns, dtype=np.intp), scale))
+        for members in _members(model, name):
+            columns = [place[member] for member in members if member in place]
+            if len(columns) > 1:
+                side = next((s for s in SIDES if members[0].endswith(s) and not name.endswith(s)), "")
+                legs.append(Legs(name + side, np.array(columns, dtype=np.intp), scale))
     box = BoxPrior.of(parameters)
     return ScatteredPrior(box, tuple(legs)) if legs else box
 

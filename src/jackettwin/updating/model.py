@@ -258,10 +258,10 @@ def support_model(
 
     Parameters
     ----------
-    tie : {"all", "horizontal-vertical", "per-leg"}
+    tie : {"all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical"}
         Which translations share parameters.
     bounds : dict, optional
-        Narrower or wider bounds by parameter name (with or without the tie's suffix).
+        Narrower or wider bounds by parameter name: with the tie's suffix, that of its side, or none.
     priors : dict, optional
         Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
     highest_mode : int
@@ -285,11 +285,11 @@ def support_model(
     suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
     derived = priors_of(groups, first_hz) if head_priors else {}
     parameters = tuple(
-        _informed(replace(p, name=p.name + suffix), p.name, bounds, priors, derived)
-        for suffix in suffixes
+        _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
+        for suffix, side in zip(suffixes, groups.sides, strict=True)
         for p in family.parameters
-    ) + tuple(_informed(p, p.name, bounds, priors, {}) for p in extras.parameters)
-    known = {p.name + suffix for p in family.parameters for suffix in ("", *suffixes)}
+    ) + tuple(_informed(p, (), bounds, priors, {}) for p in extras.parameters)
+    known = {p.name + suffix for p in family.parameters for suffix in ("", *groups.sides, *suffixes)}
     known |= {p.name for p in extras.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
@@ -368,13 +368,14 @@ def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fa
 
 def _informed(
     p: Parameter,
-    family_name: str,
+    also_known_as: tuple[str, ...],
     bounds: Mapping[str, tuple[float, float]],
     priors: Mapping[str, Lognormal],
     derived: Mapping[str, Lognormal],
 ) -> Parameter:
-    low, high = bounds.get(p.name, bounds.get(family_name, (p.low, p.high)))
-    median, log_std = priors.get(p.name, priors.get(family_name, (p.median, p.log_std)))
+    names = (p.name, *also_known_as)
+    low, high = next((bounds[name] for name in names if name in bounds), (p.low, p.high))
+    median, log_std = next((priors[name] for name in names if name in priors), (p.median, p.log_std))
     if median is None and p.name in derived and low <= derived[p.name][0] <= high:
         median, log_std = derived[p.name]
     return Parameter(p.name, low, high, p.unit, median, log_std)
