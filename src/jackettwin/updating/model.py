@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
@@ -11,30 +10,22 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.response.condensed import Condensed, condense, widest_band_hz
+from jackettwin.response.condensed import Condensed
 from jackettwin.response.follow import follow
-from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
+from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
-from jackettwin.soil.support import Support, standing
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
+from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.extras import Extras
 from jackettwin.updating.families import Family, Parameter
-from jackettwin.updating.feet import Feet, feet, priors_of
+from jackettwin.updating.feet import Feet
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
-
-Lognormal = tuple[float, float]
-"""Median and standard deviation of ln θ."""
-
-_ROOM = 1.2
-"""The band ends this much above the highest mode on pinned supports, which supports can only lower."""
-_BEYOND = 2.0
-"""And this much above the fastest measured relaxation."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +85,9 @@ class SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""
         if mode <= self.highest_mode:
             return self
-        condensed = _condensed(self.assembly, self.feet, self.rayleigh, self.extras, mode, self.fastest_rate)
+        condensed = condensed_for(
+            self.assembly, self.feet, self.rayleigh, self.extras, mode, self.fastest_rate
+        )
         return replace(self, condensed=condensed, highest_mode=mode)
 
     def laws(self, theta: FloatArray) -> list[Law]:
@@ -233,160 +226,3 @@ class ExactModes:
     def damping_ratio(self) -> FloatArray:
         """−Re λ/|λ|."""
         return np.asarray(-self.poles.real / np.abs(self.poles))
-
-
-def numbered_modes(assembly: Assembly, number: int) -> UndampedModes:
-    """Return the undamped modes whose order numbers all modes: on pinned feet, a monopile's clamped."""
-    return undamped_modes(build_system(assembly, standing(assembly.structure)), number)
-
-
-def support_model(
-    assembly: Assembly,
-    *,
-    family: Family,
-    rayleigh: Rayleigh,
-    tie: str = "all",
-    bounds: Mapping[str, tuple[float, float]] | None = None,
-    priors: Mapping[str, Lognormal] | None = None,
-    highest_mode: int = 8,
-    fastest_rate: float = 0.0,
-    extras: Extras | None = None,
-    heads: Support | None = None,
-    head_priors: bool = False,
-) -> SupportModel:
-    """Return the model with one law on the feet: their three translations, or what pile heads hold.
-
-    Parameters
-    ----------
-    tie : {"all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical"}
-        Which translations share parameters.
-    bounds : dict, optional
-        Narrower or wider bounds by parameter name: with the tie's suffix, that of its side, or none.
-    priors : dict, optional
-        Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
-    highest_mode : int
-        The last numbered mode that will be asked for.
-    fastest_rate : float
-        Of the real poles that will be asked for [rad/s].
-    extras : Extras, optional
-        Nacelle dashpots and steel damping to update as well.
-    heads : Support, optional
-        Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.feet.feet`).
-    head_priors : bool
-        Whether the heads give priors to the parameters that have none.
-
-    Raises
-    ------
-    InputError
-        If the tie is unknown, the structure has no reaction nodes, or a bound is wrong.
-    """
-    first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
-    groups = feet(assembly.structure, tie, heads=heads, reference_hz=first_hz)
-    suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
-    derived = priors_of(groups, first_hz) if head_priors else {}
-    parameters = tuple(
-        _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
-        for suffix, side in zip(suffixes, groups.sides, strict=True)
-        for p in family.parameters
-    ) + tuple(_informed(p, (), bounds, priors, {}) for p in extras.parameters)
-    known = {p.name + suffix for p in family.parameters for suffix in ("", *groups.sides, *suffixes)}
-    known |= {p.name for p in extras.parameters}
-    for field, names in (("bounds", bounds), ("priors", priors)):
-        _no_unknown(field, names, known, family)
-    condensed = _condensed(assembly, groups, rayleigh, extras, highest_mode, fastest_rate)
-    low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
-    extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
-    return SupportModel(
-        assembly,
-        rayleigh,
-        family,
-        parameters,
-        groups,
-        condensed,
-        first_hz,
-        highest_mode,
-        extras,
-        fastest_rate,
-    )
-
-
-def _condensed(
-    assembly: Assembly,
-    groups: Feet,
-    rayleigh: Rayleigh,
-    extras: Extras,
-    highest_mode: int,
-    fastest_rate: float,
-) -> Condensed:
-    # distinct stand-in laws, so that every tie group stays a group of its own
-    stand_ins: list[Law] = [Prony(k0=1e9 + i) for i in range(len(groups.suffixes))]
-    system = build_system(
-        assembly,
-        groups.support(stand_ins),
-        rayleigh=rayleigh,
-        dashpots=extras.springs(
-            assembly.structure.top_node, np.array([1e3 + i for i in range(len(extras.dashpots))])
-        ),
-    )
-    pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
-    below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
-    _check_band(rayleigh, pinned_hz, highest_mode, fastest_rate)
-    return condense(system, below_hz=below_hz, spread=tuple(extras.water.values()))
-
-
-def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fastest_rate: float) -> None:
-    """Refuse modes that the structure has not, and modes and rates that its steel would overdamp."""
-    if len(pinned_hz) < highest_mode:
-        raise InputError(
-            "the structure has fewer modes",
-            field="mode",
-            value=highest_mode,
-            allowed=f"1 to {len(pinned_hz)}",
-            remedy="leave the higher ones out, or divide its members (subdivide)",
-        )
-    widest = widest_band_hz(rayleigh.beta)
-    reached = int(np.searchsorted(_ROOM * pinned_hz, widest))
-    remedy = "leave them out, or state less damping (damping.rayleigh)"
-    if reached < highest_mode:
-        raise InputError(
-            "the steel's damping grows with frequency, too strong for so high a mode",
-            field="mode",
-            value=highest_mode,
-            allowed=f"1 to {reached} with this damping",
-            remedy=remedy,
-        )
-    fastest = 2.0 * pi * widest / _BEYOND
-    if fastest_rate > fastest:
-        raise InputError(
-            "the steel's damping grows with frequency, too strong for so fast a relaxation",
-            field="rate_rad_s",
-            value=fastest_rate,
-            allowed=f"up to {fastest:.3g} rad/s with this damping",
-            remedy=remedy,
-        )
-
-
-def _informed(
-    p: Parameter,
-    also_known_as: tuple[str, ...],
-    bounds: Mapping[str, tuple[float, float]],
-    priors: Mapping[str, Lognormal],
-    derived: Mapping[str, Lognormal],
-) -> Parameter:
-    names = (p.name, *also_known_as)
-    low, high = next((bounds[name] for name in names if name in bounds), (p.low, p.high))
-    median, log_std = next((priors[name] for name in names if name in priors), (p.median, p.log_std))
-    if median is None and p.name in derived and low <= derived[p.name][0] <= high:
-        median, log_std = derived[p.name]
-    return Parameter(p.name, low, high, p.unit, median, log_std)
-
-
-def _no_unknown(field: str, given: Mapping[str, object], known: set[str], family: Family) -> None:
-    for name in given:
-        if name not in known:
-            raise InputError(
-                f"no such parameter of {family.name}",
-                field=f"{field}.{name}",
-                value=name,
-                allowed=", ".join(sorted(known)),
-            )

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from jackettwin.structure.assemble import assemble
 from jackettwin.structure.check import check
 from jackettwin.structure.model import Structure
-from jackettwin.updating.model import numbered_modes
+from jackettwin.updating.band import numbered_modes
 from jackettwin.updating.steel import only_parts
 
 FloatArray = npt.NDArray[np.float64]

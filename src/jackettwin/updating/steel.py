@@ -15,7 +15,7 @@ from jackettwin.response.follow import follow
 from jackettwin.response.modal import UndampedModes
 from jackettwin.structure.assemble import assemble
 from jackettwin.structure.model import Structure
-from jackettwin.updating.model import numbered_modes
+from jackettwin.updating.band import numbered_modes
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -1,0 +1,115 @@
+"""A structure and one law to the model that is updated: its parameters, bounded and informed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from jackettwin.errors import InputError
+from jackettwin.soil.support import Support
+from jackettwin.structure.assemble import Assembly
+from jackettwin.structure.damping import Rayleigh
+from jackettwin.updating.band import condensed_for, numbered_modes
+from jackettwin.updating.extras import Extras
+from jackettwin.updating.families import Family, Parameter
+from jackettwin.updating.feet import feet, priors_of
+from jackettwin.updating.model import SupportModel
+
+Lognormal = tuple[float, float]
+"""Median and standard deviation of ln θ."""
+
+
+def support_model(
+    assembly: Assembly,
+    *,
+    family: Family,
+    rayleigh: Rayleigh,
+    tie: str = "all",
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    priors: Mapping[str, Lognormal] | None = None,
+    highest_mode: int = 8,
+    fastest_rate: float = 0.0,
+    extras: Extras | None = None,
+    heads: Support | None = None,
+    head_priors: bool = False,
+) -> SupportModel:
+    """Return the model with one law on the feet: their three translations, or what pile heads hold.
+
+    Parameters
+    ----------
+    tie : {"all", "horizontal-vertical", "per-leg", "per-leg-horizontal-vertical"}
+        Which translations share parameters.
+    bounds : dict, optional
+        Narrower or wider bounds by parameter name: with the tie's suffix, that of its side, or none.
+    priors : dict, optional
+        Lognormal priors by parameter name, as for the bounds; the others are flat in ln θ.
+    highest_mode : int
+        The last numbered mode that will be asked for.
+    fastest_rate : float
+        Of the real poles that will be asked for [rad/s].
+    extras : Extras, optional
+        Nacelle dashpots and steel damping to update as well.
+    heads : Support, optional
+        Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.feet.feet`).
+    head_priors : bool
+        Whether the heads give priors to the parameters that have none.
+
+    Raises
+    ------
+    InputError
+        If the tie is unknown, the structure has no reaction nodes, or a bound is wrong.
+    """
+    first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
+    groups = feet(assembly.structure, tie, heads=heads, reference_hz=first_hz)
+    suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
+    derived = priors_of(groups, first_hz) if head_priors else {}
+    parameters = tuple(
+        _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
+        for suffix, side in zip(suffixes, groups.sides, strict=True)
+        for p in family.parameters
+    ) + tuple(_informed(p, (), bounds, priors, {}) for p in extras.parameters)
+    known = {p.name + suffix for p in family.parameters for suffix in ("", *groups.sides, *suffixes)}
+    known |= {p.name for p in extras.parameters}
+    for field, names in (("bounds", bounds), ("priors", priors)):
+        _no_unknown(field, names, known, family)
+    condensed = condensed_for(assembly, groups, rayleigh, extras, highest_mode, fastest_rate)
+    low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
+    extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
+    return SupportModel(
+        assembly,
+        rayleigh,
+        family,
+        parameters,
+        groups,
+        condensed,
+        first_hz,
+        highest_mode,
+        extras,
+        fastest_rate,
+    )
+
+
+def _informed(
+    p: Parameter,
+    also_known_as: tuple[str, ...],
+    bounds: Mapping[str, tuple[float, float]],
+    priors: Mapping[str, Lognormal],
+    derived: Mapping[str, Lognormal],
+) -> Parameter:
+    names = (p.name, *also_known_as)
+    low, high = next((bounds[name] for name in names if name in bounds), (p.low, p.high))
+    median, log_std = next((priors[name] for name in names if name in priors), (p.median, p.log_std))
+    if median is None and p.name in derived and low <= derived[p.name][0] <= high:
+        median, log_std = derived[p.name]
+    return Parameter(p.name, low, high, p.unit, median, log_std)
+
+
+def _no_unknown(field: str, given: Mapping[str, object], known: set[str], family: Family) -> None:
+    for name in given:
+        if name not in known:
+            raise InputError(
+                f"no such parameter of {family.name}",
+                field=f"{field}.{name}",
+                value=name,
+                allowed=", ".join(sorted(known)),
+            )
