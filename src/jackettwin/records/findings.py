@@ -22,7 +22,8 @@ class Finding:
     """One fault: where, which, in a sentence, and whether ``repair`` removes it.
 
     ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
-    ``stuck``, ``changed``, ``held``, ``drift``, ``unsteady``, ``sign``, ``unreadable``, ``clock``;
+    ``stuck``, ``changed``, ``held``, ``drift``, ``unsteady``, ``sign``, ``unit``, ``unreadable``,
+    ``clock``;
     ``channel`` is None if it concerns the record.
     """
 

@@ -12,6 +12,7 @@ from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, signs
 from jackettwin.records.changes import Change, changes, described
 from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
+from jackettwin.records.gains import wrong_units
 from jackettwin.records.record import LARGEST
 
 if TYPE_CHECKING:
@@ -34,8 +35,9 @@ MOST_DRIFT = 1e9
 """A channel that drifts over more rms than this holds a drift and its rounding, no vibration."""
 PARTS = 10
 """Parts of a record whose rms are compared."""
-WEAK_RATIO = 1e-4
-"""Rms over the median of the channels of one quantity, below which a sensor is hardly alive."""
+WEAK_RATIO = 1.0 / 300.0
+"""Rms over the median of the channels of one quantity, below which a sensor is hardly alive, and above whose
+inverse it is in another unit."""
 JITTER = 0.05
 """Clock jitter as a share of the step that deserves a word."""
 
@@ -80,7 +82,8 @@ def assess(record: Record) -> Quality:
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
-    swapped = _swapped(record, slow_free)
+    groups = list(signs.parallel_groups(record, slow_free))
+    swapped = signs.swapped(record, groups)
     changed = _changed(record, slow_free)
     judged = [
         _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))
@@ -88,6 +91,8 @@ def assess(record: Record) -> Quality:
     ]
     channels = tuple(quality for quality, _, _ in judged)
     findings = [finding for _, _, found in judged for finding in found]
+    units = wrong_units(record, groups)
+    findings += [Finding("unit", str(wrong), name) for name, wrong in units.items()]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
@@ -178,34 +183,6 @@ def _score(q: ChannelQuality, sign: bool | None) -> float:
     return lost * doubt
 
 
-def _swapped(record: Record, slow_free: FloatArray) -> dict[str, bool]:
-    """Return channels that move against parallel ones: True if certain, False if in doubt."""
-    found: dict[str, bool] = {}
-    for rows, senses in _parallel(record, slow_free):
-        coherency = signs.band_coherency(slow_free[rows] * senses[:, None])
-        minority, certain = signs.against_majority(coherency)
-        found.update({record.channels[rows[i]].name: certain for i in minority})
-    return found
-
-
-def _parallel(record: Record, slow_free: FloatArray) -> Iterator[tuple[list[int], FloatArray]]:
-    """Yield groups of live accelerations along one line, with the sense of each."""
-    left = [
-        i
-        for i, channel in enumerate(record.channels)
-        if channel.quantity == "acceleration"
-        and any(channel.direction)
-        and not faults.is_constant(slow_free[i])
-    ]
-    while left:
-        first = np.array(record.channels[left[0]].direction)
-        along = {i: float(first @ np.array(record.channels[i].direction)) for i in left}
-        rows = [i for i in left if abs(along[i]) > 0.98]
-        left = [i for i in left if i not in rows]
-        if len(rows) > 1:
-            yield rows, np.sign([along[i] for i in rows])
-
-
 def _unreadable(record: Record, unreadable: npt.NDArray[np.bool_]) -> Iterator[Finding]:
     """Yield channels with infinite or absurdly large samples."""
     for channel, row in zip(record.channels, unreadable, strict=True):
@@ -215,14 +192,15 @@ def _unreadable(record: Record, unreadable: npt.NDArray[np.bool_]) -> Iterator[F
 
 
 def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
-    """Yield channels whose rms is a tiny part of that of their like."""
+    """Yield channels whose rms is a tiny part, or a huge multiple, of that of their like."""
     live = [i for i, q in enumerate(channels) if not q.dead and record.channels[i].quantity in VIBRATIONS]
     rms = {i: float(np.nanstd(record.data[i])) for i in live}
     for i in live:
         like = [rms[j] for j in live if record.channels[j].quantity == record.channels[i].quantity]
-        if rms[i] < WEAK_RATIO * float(np.median(like)):
-            text = f"rms is {rms[i] / float(np.median(like)):.1e} of that of its like: sensor or unit wrong?"
-            yield Finding("weak", text, channels[i].name)
+        ratio = rms[i] / float(np.median(like))
+        if not WEAK_RATIO <= ratio <= 1.0 / WEAK_RATIO:
+            text = f"rms is {ratio:.2g} times that of its like: sensor or unit wrong?"
+            yield Finding("weak" if ratio < 1.0 else "unit", text, channels[i].name)
 
 
 def _clock(record: Record) -> Iterator[Finding]:

@@ -15,6 +15,7 @@ from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
 from jackettwin.twin.observe import Observation, observe
+from jackettwin.twin.turned_sensors import turned_sensors
 from jackettwin.updating import Target
 from jackettwin.updating.pairing import pair
 
@@ -41,6 +42,7 @@ class Measured:
     sightings : {mode number from 1: its sightings, one a record at most}
     numbers : for each record, the mode number of each identified mode; None if the model lacks it
     relaxations : for each record, the real poles it shows
+    turned : what the model's shapes say against the signs of sensors
     """
 
     observations: tuple[Observation, ...]
@@ -48,6 +50,7 @@ class Measured:
     sightings: dict[int, tuple[Sighting, ...]]
     numbers: tuple[tuple[int | None, ...], ...]
     relaxations: tuple[tuple[GivenRelaxation, ...], ...] = ()
+    turned: tuple[str, ...] = ()
 
     def of_record(self, i: int) -> dict[int, Sighting]:
         """Return the modes seen in one record, {mode number: sighting}."""
@@ -83,6 +86,7 @@ def measure(
         observations.append(seen)
     sightings: dict[int, list[Sighting]] = {}
     numbers = []
+    turned: list[str] = []
     for seen in observations:
         found = seen.identification
         by_channel = {s.channel: s for s in placed_sensors(config, seen.record)}
@@ -95,6 +99,10 @@ def measure(
             sightings.setdefault(mode + 1, []).append(
                 Sighting(found.modes[index], likeness, found.duration_s, _wind(seen.record), names)
             )
+        turned += [
+            f"{seen.record.name}: {one.described(names)}"
+            for one in turned_sensors(found.modes, numbered.frequency_hz, shapes)
+        ]
         number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
     return Measured(
@@ -103,6 +111,7 @@ def measure(
         {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
         tuple(numbers),
         tuple(_relaxations(seen.identification) for seen in observations),
+        tuple(turned),
     )
 
 

@@ -82,7 +82,7 @@ def cautions(
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        lines += [*_strangers(found), *_wind_without_rotor(config, found, measured)]
+        lines += [*found.turned, *_strangers(found), *_wind_without_rotor(config, found, measured)]
     for u in updates:
         if u.best.locked_damper:
             lines.append(

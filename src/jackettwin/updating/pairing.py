@@ -43,6 +43,35 @@ def pair(
     """
     if not estimates or not frequency_hz.size:
         return {}
+    visible, single, likeness, apart = _compared(estimates, frequency_hz, shapes)
+    score = (likeness + 0.1 * single) * np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
+    rows, columns = linear_sum_assignment(-score)
+    return {
+        int(visible[column]): (int(row), float(likeness[row, column]))
+        for row, column in zip(rows, columns, strict=True)
+        if likeness[row, column] >= LEAST_MAC and abs(apart[row, column]) <= 2.0 * FREQUENCY_WIDTH
+    }
+
+
+def likeness_nearby(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> FloatArray:
+    """Return for each measured mode its likeness with the most alike of the model's near it; 0 if none is.
+
+    Parameters
+    ----------
+    estimates, frequency_hz, shapes
+        As those of ``pair``.
+    """
+    _, _, likeness, apart = _compared(estimates, frequency_hz, shapes)
+    best: FloatArray = np.where(np.abs(apart) <= 2.0 * FREQUENCY_WIDTH, likeness, 0.0).max(axis=1)
+    return best
+
+
+def _compared(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> tuple[npt.NDArray[np.intp], FloatArray, FloatArray, FloatArray]:
+    """Return the visible modes of the model and, per estimate and visible mode, MAC, likeness and Δ ln f."""
     measured = np.array([e.mode_shape / np.linalg.norm(e.mode_shape) for e in estimates])
     size = np.linalg.norm(shapes, axis=0)
     visible = np.flatnonzero(size >= LEAST_VISIBLE * size.max())
@@ -52,10 +81,4 @@ def pair(
         basis = la.orth(shapes[:, visible[group]])
         likeness[:, group] = (np.abs(measured.conj() @ basis) ** 2).sum(axis=1)[:, None]
     apart = np.log(np.array([e.frequency_hz for e in estimates])[:, None] / frequency_hz[visible])
-    score = (likeness + 0.1 * single) * np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
-    rows, columns = linear_sum_assignment(-score)
-    return {
-        int(visible[column]): (int(row), float(likeness[row, column]))
-        for row, column in zip(rows, columns, strict=True)
-        if likeness[row, column] >= LEAST_MAC and abs(apart[row, column]) <= 2.0 * FREQUENCY_WIDTH
-    }
+    return visible, single, likeness, apart

@@ -1,0 +1,85 @@
+"""Signs that a record can tell, and silence where it cannot.
+
+False alarms over many random structures are counted by ``qualify/sensor_faults.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jackettwin.records import Channel, Record, assess
+
+UP = (0.0, 0.0, 1.0)
+
+
+def sign_findings(record: Record) -> dict[str | None, bool]:
+    return {f.channel: f.repaired for f in assess(record).findings if f.fault == "sign"}
+
+
+def two_spans(tower: SimpleNamespace, **place: object) -> Record:
+    """Two sensors in either span of a bridge, whose first mode is antisymmetric."""
+    rng = np.random.default_rng(1)
+    modes = [tower.oscillator(rng.normal(size=24_000), f, 0.01, 20.0)[12_000:] for f in (1.0, 1.56)]
+    shapes = np.array([[0.7, 1.0, -1.0, -0.7, -0.9], [0.75, 1.0, 1.0, 0.75, 0.95]])
+    data = shapes.T @ (np.array([[5.0], [1.0]]) * modes)
+    data += 0.01 * data.std() * rng.normal(size=data.shape)
+    names = ("a_z", "b_z", "c_z", "d_z", "e_z")
+    return Record(data, 20.0, tuple(Channel(name, direction=UP, **place) for name in names))
+
+
+@pytest.mark.parametrize("place", [{}, {"height_m": 20.0}])
+def test_spans_that_move_against_each_other_are_no_swapped_signs(
+    place: dict[str, object], tower: SimpleNamespace
+) -> None:
+    assert not sign_findings(two_spans(tower, **place))
+
+
+def test_sensors_without_a_place_are_not_judged(tower: SimpleNamespace) -> None:
+    record = tower.record(3)
+    nowhere = tuple(replace(channel, height_m=None) for channel in record.channels)
+    data = record.data.copy()
+    data[1] = -data[1]
+    assert not sign_findings(replace(record, data=data, channels=nowhere))
+
+
+def test_torsion_below_bending_is_no_swapped_sign(tower: SimpleNamespace) -> None:
+    """Two sensors a floor on either side of the axis: the heights are there, the axis is not."""
+    rng = np.random.default_rng(2)
+    modes = [tower.oscillator(rng.normal(size=24_000), f, 0.01, 20.0)[12_000:] for f in (0.4, 0.5)]
+    shapes = np.array([[1.0, -0.8, 0.6, 0.55], [0.9, 1.0, 0.5, 0.6]])
+    data = shapes.T @ (np.array([[3.0], [1.0]]) * modes)
+    data += 0.01 * data.std() * rng.normal(size=data.shape)
+    channels = tuple(
+        Channel(f"f{i}_x", height_m=h, direction=(1.0, 0.0, 0.0))
+        for i, h in enumerate((40.0, 40.0, 20.0, 20.0))
+    )
+    assert not sign_findings(Record(data, 20.0, channels))
+
+
+@pytest.mark.parametrize("n_sensors", [2, 3])
+def test_sensors_at_one_node_move_together(n_sensors: int, tower: SimpleNamespace) -> None:
+    """With a third sensor it is known which one is wrong; a fourth, at another node, does not count."""
+    record = tower.record(4).select(["acc_77_x", "acc_41_x"])
+    rng = np.random.default_rng(4)
+    rows = [sign * record.data[0] for sign in (1.0, -1.0, 1.0)[:n_sensors]] + [-record.data[1]]
+    rows += 0.02 * np.std(rows[0]) * rng.normal(size=(len(rows), record.data.shape[1]))
+    names = [*(f"leg_{i}_x" for i in range(n_sensors)), "other_x"]
+    nodes = ["leg"] * n_sensors + ["other"]
+    channels = tuple(
+        Channel(name, node=node, direction=(1.0, 0.0, 0.0)) for name, node in zip(names, nodes, strict=True)
+    )
+    found = sign_findings(Record(np.array(rows), 20.0, channels))
+    assert found == ({"leg_1_x": True} if n_sensors == 3 else {next(iter(found)): False})
+    assert next(iter(found)).startswith("leg")
+
+
+def test_a_sensor_on_the_nacelle_is_not_parallel_to_a_fixed_one(tower: SimpleNamespace) -> None:
+    record = tower.record(5)
+    data = record.data.copy()
+    data[0] = -data[0]
+    turning = replace(record.channels[0], frame="nacelle")
+    assert not sign_findings(replace(record, data=data, channels=(turning, *record.channels[1:])))
