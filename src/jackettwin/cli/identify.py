@@ -155,7 +155,11 @@ def _many(
     with progress(len(files), "identify") as step:
         batch = observe_many(files, settings, folder=folder, workers=workers, step=step, **how)
     if not len(batch):
-        raise InputError(f"no record could be identified; the first: {batch.failed[0].problem}")
+        raise InputError(
+            f"none of {len(batch.failed)} records could be identified; the first: {batch.failed[0].problem}",
+            field="RECORD",
+            remedy="identify one alone to see what it lacks",
+        )
     together = fuse_batch(batch)
     if report is not None:
         build_many_page(together, batch.failed, report)

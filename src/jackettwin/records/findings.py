@@ -23,7 +23,7 @@ class Finding:
 
     ``fault`` is one of ``empty``, ``dead``, ``weak``, ``gaps``, ``spikes``, ``outliers``, ``clipped``,
     ``stuck``, ``changed``, ``held``, ``drift``, ``unsteady``, ``sign``, ``unit``, ``unreadable``,
-    ``clock``;
+    ``clock``, ``file``;
     ``channel`` is None if it concerns the record.
     """
 

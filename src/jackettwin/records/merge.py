@@ -78,7 +78,12 @@ def merge(records: Sequence[Record], *, name: str | None = None) -> Record:
         If channel names collide, only some records have a start, or they do not overlap.
     """
     if not records:
-        raise InputError("there is nothing to merge", field="records", allowed="at least one record")
+        raise InputError(
+            "there is nothing to merge",
+            field="records",
+            allowed="at least one record",
+            remedy="give the records of all loggers",
+        )
     _refuse_collisions(records)
     rate = min(record.sample_rate_hz for record in records)
     offsets = _offsets_s(records)

@@ -93,6 +93,7 @@ def assess(record: Record) -> Quality:
     findings = [finding for _, _, found in judged for finding in found]
     units = wrong_units(record, groups)
     findings += [Finding("unit", str(wrong), name) for name, wrong in units.items()]
+    findings += [Finding("file", str(text)) for text in record.metadata.get("remarks", ())]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]

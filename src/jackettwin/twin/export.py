@@ -6,6 +6,8 @@ The table holds the modes of every set in the document: ``fused``, each group, e
 from __future__ import annotations
 
 import csv
+import os
+import struct
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,10 @@ NUMBERS = {
     "damping_ratio_high_95": "1",
 }
 """Columns of numbers and their units; what is not known is empty in CSV, NaN in NetCDF."""
+
+SHAPES = ("mode_shape_real", "mode_shape_imag")
+ROWS_AT = 4
+"""Where a NetCDF-3 file says how many rows it holds."""
 
 Row = dict[str, Any]
 
@@ -103,28 +109,57 @@ def _write_csv(document: Mapping[str, Any], path: Path) -> None:
 
 
 def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
-    """Write NetCDF-3: dimensions mode and channel, one variable a column."""
-    channels = _channels(mode_rows(document))
-    sets = [row["set"] for row in mode_rows(document)]
-    with netcdf_file(str(path), "w") as file:
-        file.createDimension("mode", len(sets))
+    """Write NetCDF-3: dimensions mode (unlimited) and channel, one variable a column.
+
+    The variables along an unlimited dimension lie row by row at the file's end: SciPy writes the header and
+    what is fixed, and the rows follow as they come. No more than one of them is in memory.
+    """
+    channels = _channels(mode_rows(document)) or [""]  # a length of none would mean unlimited
+    width = max([1, *(len(row["set"].encode()) for row in mode_rows(document))])
+    layout = _row_layout(width, len(channels))
+    with netcdf_file(str(path), "w", version=2) as file:
+        file.createDimension("mode", None)
         file.createDimension("channel", len(channels))
-        _texts(file, "set", "mode", sets)
+        file.createDimension("set_length", width)
         _texts(file, "channel_name", "channel", channels)
-        columns = {key: _column(file, key, ("mode",), unit) for key, unit in NUMBERS.items()}
-        shapes = [_column(file, f"mode_shape_{part}", ("mode", "channel"), "1") for part in ("real", "imag")]
-        for i, row in enumerate(mode_rows(document)):
-            for key, column in columns.items():
-                column[i] = np.nan if row[key] is None else row[key]
-            parts = np.array([row["mode_shape"].get(name, (np.nan, np.nan)) for name in channels])
-            for column, part in zip(shapes, parts.reshape(-1, 2).T, strict=True):
-                column[i] = part
+        rows = [file.createVariable("set", "c", ("mode", "set_length"))]
+        rows += [_column(file, name, ("mode",), unit) for name, unit in NUMBERS.items()]
+        rows += [_column(file, part, ("mode", "channel"), "1") for part in SHAPES]
+        for column in rows:  # a first row, for SciPy to find the sizes; it is written over
+            column[0] = b" " if column.typecode() == "c" else 0.0
+    with path.open("r+b") as stream:
+        stream.seek(-layout.itemsize, os.SEEK_END)
+        count = 0
+        for row in mode_rows(document):
+            stream.write(_packed(row, channels, layout).tobytes())
+            count += 1
+        stream.truncate()
+        stream.seek(ROWS_AT)
+        stream.write(struct.pack(">i", count))
 
 
 def _column(file: Any, name: str, dimensions: tuple[str, ...], unit: str) -> Any:
     column = file.createVariable(name, "f8", dimensions)
     column.units = unit.encode()
     return column
+
+
+def _row_layout(width: int, n_channels: int) -> np.dtype[np.void]:
+    """Return how a row lies in the file: in the order of the variables, each padded to four bytes."""
+    numbers = [(name, ">f8") for name in NUMBERS]
+    shapes = [(part, ">f8", (n_channels,)) for part in SHAPES]
+    return np.dtype([("set", f"S{width}"), ("padding", f"V{-width % 4}"), *numbers, *shapes])
+
+
+def _packed(row: Row, channels: Sequence[str], layout: np.dtype[np.void]) -> np.ndarray[Any, Any]:
+    out = np.zeros((), dtype=layout)
+    out["set"] = row["set"].encode().ljust(layout["set"].itemsize)
+    for name in NUMBERS:
+        out[name] = np.nan if row[name] is None else row[name]
+    shape = np.array([row["mode_shape"].get(name, (np.nan, np.nan)) for name in channels]).reshape(-1, 2)
+    for part, values in zip(SHAPES, shape.T, strict=True):
+        out[part] = values
+    return out
 
 
 def _texts(file: Any, name: str, dimension: str, texts: Sequence[str]) -> None:

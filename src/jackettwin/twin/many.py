@@ -110,7 +110,12 @@ def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
             continue
         inside = sorted(p for p in source.iterdir() if p.suffix.lower() in known)
         if not inside:
-            raise InputError("folder holds no record", file=source, allowed=", ".join(sorted(known)))
+            raise InputError(
+                "folder holds no record",
+                file=source,
+                allowed=", ".join(sorted(known)),
+                remedy="give the folder that holds the files, or the files",
+            )
         files += inside
     if len(files) > 1:
         for file in files:

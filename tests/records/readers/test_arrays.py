@@ -11,8 +11,9 @@ import pytest
 from scipy import io
 
 from jackettwin.errors import InputError, MissingExtra
-from jackettwin.records import read_record
+from jackettwin.records import assess, read_record
 from jackettwin.records.readers import hdf5
+from jackettwin.records.readers.table import Unsaid
 
 ENTRY = '{"quantity": "acceleration", "unit": "g"}'
 BESIDE = f'{{"channels": {{"a": {ENTRY}, "b": {ENTRY}}}}}'
@@ -136,3 +137,52 @@ def test_pickled_objects_are_never_loaded(tmp_path: Path) -> None:
     np.savez(tmp_path / "r.npz", data=np.array([{"a": 1}], dtype=object))
     with pytest.raises(InputError, match="allow_pickle"):
         read_record(tmp_path / "r.npz")
+
+
+@pytest.mark.parametrize(("save", "extension"), [(save_mat, ".mat"), (save_h5, ".h5"), (save_npz, ".npz")])
+@pytest.mark.parametrize("units", [["g"], ["g", "m/s^2"]])
+def test_units_beside_a_matrix_hold_for_its_rows(
+    save: Any, extension: str, units: list[str], tmp_path: Path
+) -> None:
+    data = np.arange(40.0).reshape(2, 20)
+    kind: Any = {".mat": object, ".h5": "S", ".npz": str}[extension]
+    texts = {"channel_names": ["top_x", "top_y"], "units": units}
+    beside = {key: np.array(value, dtype=kind) for key, value in texts.items()}
+    save(tmp_path / f"r{extension}", data=data, fs=10.0, **beside)
+    record = read_record(tmp_path / f"r{extension}")
+    factors = np.array([[9.80665], [9.80665 if len(units) == 1 else 1.0]])
+    np.testing.assert_allclose(record.data, factors * data, rtol=1e-15)
+
+
+def test_an_attribute_of_the_matrix_is_the_unit_of_its_rows(tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "r.h5", "w") as file:
+        file["acc"] = np.arange(40.0).reshape(2, 20)
+        file["acc"].attrs["units"], file["acc"].attrs["fs"] = "mg", 10.0
+    assert read_record(tmp_path / "r.h5").data[0, 1] == pytest.approx(9.80665e-3)
+
+
+def test_units_that_do_not_fit_the_matrix_are_refused(tmp_path: Path) -> None:
+    save_npz(tmp_path / "r.npz", data=np.zeros((3, 20)), fs=10.0, units=np.array(["g", "g"]))
+    with pytest.raises(InputError, match=r"units and channels disagree.*one unit, or 3.*one unit a channel"):
+        read_record(tmp_path / "r.npz")
+
+
+def test_vectors_that_all_differ_in_length_are_refused_by_name(tmp_path: Path) -> None:
+    save_mat(tmp_path / "r.mat", acc_x=np.zeros(60), acc_y=np.zeros(59), fs=10.0)
+    with pytest.raises(InputError, match=r"vectors differ in length.*acc_x \(60\), acc_y \(59\)"):
+        read_record(tmp_path / "r.mat", Unsaid(unit="g"))
+
+
+def test_vectors_of_another_length_are_left_out_with_a_remark(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).normal(size=(3, 60))
+    save_mat(tmp_path / "r.mat", acc_x=noise[0], acc_y=noise[1], wind=noise[2, :6], fs=10.0)
+    record = read_record(tmp_path / "r.mat", Unsaid(unit="g"))
+    assert record.channel_names == ("acc_x", "acc_y")
+    assert record.metadata["remarks"] == ["vectors of another length than 60 are left out: wind (6)"]
+    assert [f.text for f in assess(record).findings if f.fault == "file"] == record.metadata["remarks"]
+
+
+def test_times_of_another_length_are_refused(tmp_path: Path) -> None:
+    save_npz(tmp_path / "r.npz", acc_x=np.zeros(60), acc_y=np.zeros(60), time=np.arange(59.0))
+    with pytest.raises(InputError, match=r"times and channels differ in length.*59.*60"):
+        read_record(tmp_path / "r.npz", Unsaid(unit="g"))

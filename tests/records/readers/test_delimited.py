@@ -119,7 +119,7 @@ def test_an_index_without_a_name_is_a_count_or_a_time(tmp_path: Path) -> None:
 def test_a_column_of_words_is_left_out_and_named(tmp_path: Path) -> None:
     record = read_text("time [s],acc_x [g],state\n0,1,idling\n0.2,2,idling\n0.4,3,parked\n", tmp_path)
     assert record.channel_names == ("acc_x",)
-    assert record.metadata["left_out"] == ["state"]
+    assert record.metadata["remarks"] == ["columns without numbers are left out: state"]
 
 
 def test_columns_without_names_are_numbered(tmp_path: Path) -> None:
@@ -162,3 +162,52 @@ def test_a_unit_in_the_name_of_the_time(tmp_path: Path) -> None:
     )
     assert record.sample_rate_hz == pytest.approx(20.0)
     assert record.start_utc is not None and record.start_utc.year == 2024
+
+
+def test_decimal_commas_between_commas_are_told_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"r\.csv: line 2: decimal commas and commas.*semicolon between"
+    ) as e:
+        read_text("time,acc_x,acc_y\n0,0,1,5,-0,25\n0,1,2,5,0,5\n", tmp_path)
+    assert e.value.allowed == "3 cells: time, acc_x, acc_y"
+
+
+def test_rows_longer_than_the_header_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"line 3: row has more cells than there are names"):
+        read_text("time,acc_x,acc_y,acc_z\n0.0,1,2,3\n0.1,1,2,3,4\n", tmp_path)
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        ("2025-01-01T12:00:00Z", "2025-01-01T12:00:01Z", "2025-01-01T12:00:02Z"),
+        ("2025-01-01 13:00:00+01:00", "2025-01-01 13:00:01+01:00", "2025-01-01 13:00:02+01:00"),
+        ("2025/01/01 12:00:00.000", "2025/01/01 12:00:01.000", "2025/01/01 12:00:02.000"),
+        ("01.01.2025 12:00:00", "01.01.2025 12:00:01", "01.01.2025 12:00:02"),
+    ],
+)
+def test_stamps_with_and_without_zone(stamps: tuple[str, ...], tmp_path: Path) -> None:
+    rows = "\n".join(f"{stamp};{k}" for k, stamp in enumerate(stamps))
+    record = read_text(f"time;acc_x [g]\n{rows}\n", tmp_path)
+    assert record.sample_rate_hz == 1.0
+    assert record.start_utc is not None and record.start_utc.isoformat() == "2025-01-01T12:00:00+00:00"
+
+
+def test_a_clock_set_back_by_an_hour_is_refused(tmp_path: Path) -> None:
+    """Local time at the end of summer: half of the stamps come twice."""
+    rows = [f"2025-10-26T02:{m:02d}:{s:02d},1" for _ in range(2) for m in range(60) for s in (0, 30)]
+    with pytest.raises(InputError, match="time stamps do not increase"):
+        read_text("time,acc_x [g]\n" + "\n".join(rows) + "\n", tmp_path)
+
+
+def test_numbers_that_stand_for_none_become_gaps(tmp_path: Path) -> None:
+    values = ["0.1", "-9999", "0.3", "-9999.0", "0.2", "-0.1"]
+    text = "time,acc_x [g],power [kW]\n" + "".join(
+        f"{0.1 * k:.1f},{v},{8000 + 400 * k if k < 5 else 9999}\n" for k, v in enumerate(values)
+    )
+    record = read_text(text, tmp_path)
+    assert np.isnan(record.data[0]).tolist() == [False, True, False, True, False, False]
+    assert np.isfinite(record.data[1]).all()
+    assert record.metadata["remarks"] == [
+        "acc_x: 2 samples read -9999, a sign for no value; declared missing"
+    ]

@@ -33,7 +33,7 @@ def test_integers_nulls_and_words(tmp_path: Path) -> None:
     (tmp_path / "r.json").write_text('{"sample_rate_hz": 5}')
     record = read_record(tmp_path / "r.parquet")
     np.testing.assert_array_equal(record.data, [[1, np.nan, 3], [1, 2, np.nan]])
-    assert record.metadata["left_out"] == ["state"]
+    assert record.metadata["remarks"] == ["columns without numbers are left out: state"]
 
 
 def test_a_file_without_numbers_is_refused(tmp_path: Path) -> None:

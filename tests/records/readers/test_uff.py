@@ -44,7 +44,11 @@ def test_other_data_sets_and_doubled_marks_are_passed_over(tmp_path: Path) -> No
 def test_a_shared_title_gets_numbers(tmp_path: Path) -> None:
     raw = (DATA / "pyuff_text.uff").read_bytes().replace(b"top_y", b"top_x")
     (tmp_path / "r.uff").write_bytes(raw)
-    assert read_record(tmp_path / "r.uff").channel_names == ("top_x_1", "top_x_2")
+    record = read_record(tmp_path / "r.uff")
+    assert record.channel_names == ("top_x_1", "top_x_2")
+    assert record.metadata["remarks"] == [
+        "2 data sets are called 'top_x': numbered top_x_1 to top_x_2 in their order"
+    ]
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,9 @@
 
 A scalar named like a rate is the rate; a vector named like a time holds the stamps; a text named
 ``description`` is the JSON of a record. A matrix holds one channel along its shorter side, named
-by the list beside it (``channel_names``, ``names``, ``channels``, ``labels``); further vectors of
-the common length are channels under their own names.
+by the list beside it (``channel_names``, ``names``, ``channels``, ``labels``), in the unit or units
+beside it (``units``, ``unit``); further vectors of the common length are channels under their own names,
+others are left out with a remark.
 """
 
 from __future__ import annotations
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
 Arrays = dict[str, npt.NDArray[Any]]
 
 NAME_LISTS = ("channel_names", "channelnames", "names", "channels", "labels")
+UNIT_LISTS = ("units", "unit", "channel_units", "unit_string")
+MUCH_SHORTER = 0.1
+"""A vector shorter than this share of the channel's length is no channel of another length."""
 STEP_KEYS = ("dt", "time_step", "step_s", "wf_increment")
 
 
@@ -51,27 +55,31 @@ def table_from_arrays(
     named = {_last(key): text for key, text in texts.items()}
     times = [key for key, value in numbers.items() if value.ndim == 1 and is_time(_last(key))]
     vectors = {key: value for key, value in numbers.items() if value.ndim == 1 and key not in times}
-    rows = _matrix_rows(numbers, named) | _common_length(vectors)
+    matrix_key, rows = _matrix_rows(numbers, named)
+    vectors, left = _common_length(vectors, len(next(iter(rows.values()))) if rows else None)
+    rows = rows | vectors
     if not rows:
         raise InputError(
-            "holds no channels", field="data", value=", ".join(arrays), allowed="a matrix or vectors"
-        )
-    lengths = Counter(len(row) for row in rows.values())
-    if len(lengths) > 1:
-        raise InputError(
-            "channels differ in length", field="data", value=sorted(lengths), remedy="store one rate a file"
+            "holds no channels",
+            field="data",
+            value=", ".join(arrays),
+            allowed="a matrix or vectors",
+            remedy="export the samples as numbers",
         )
     times_s, start = (None, None)
     if times:
+        _refuse_other_length(times[0], numbers[times[0]], next(iter(rows.values())))
         times_s, start = seconds(numbers[times[0]].astype(np.float64), time_unit(_last(times[0])))
+    found = _units(dict(units or {}), matrix_key, [name for name in rows if name not in vectors], named)
     return Table(
         names=tuple(rows),
         data=np.vstack([np.asarray(row, dtype=np.float64) for row in rows.values()]),
-        channels={name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit},
+        channels={name: ChannelEntry(unit=unit) for name, unit in found.items() if unit},
         sample_rate_hz=_rate(scalars),
         times_s=times_s,
         start_utc=parse_time(named["start_utc"][0]) if named.get("start_utc") else start,
         description=parse_description(named["description"][0]) if named.get("description") else None,
+        remarks=left,
     )
 
 
@@ -99,11 +107,11 @@ def _texts(value: npt.NDArray[Any]) -> list[str]:
     return out
 
 
-def _matrix_rows(numbers: Arrays, named: dict[str, list[str]]) -> Arrays:
-    """Return the rows of the one matrix, by the names listed beside it."""
+def _matrix_rows(numbers: Arrays, named: dict[str, list[str]]) -> tuple[str, Arrays]:
+    """Return the name of the one matrix and its rows, by the names listed beside it."""
     matrices = [(key, value) for key, value in numbers.items() if value.ndim == 2 and value.size]
     if not matrices:
-        return {}
+        return "", {}
     if len(matrices) > 1:
         raise InputError(
             "holds several matrices",
@@ -124,16 +132,61 @@ def _matrix_rows(numbers: Arrays, named: dict[str, list[str]]) -> Arrays:
             allowed=f"{len(rows)} different names",
             remedy="list one name a channel",
         )
-    return dict(zip(names, rows, strict=True))
+    return key, dict(zip(names, rows, strict=True))
 
 
-def _common_length(vectors: Arrays) -> Arrays:
-    """Return the vectors of the most frequent length, the longest if there is a tie."""
+def _units(own: dict[str, str], matrix: str, rows: list[str], named: dict[str, list[str]]) -> dict[str, str]:
+    """Return units by channel: of vectors their own, of a matrix one for all or one a row."""
+    listed = next((named[key] for key in UNIT_LISTS if named.get(key)), None)
+    listed = listed or ([own[matrix]] if own.get(matrix) else [])
+    if not listed or not rows:
+        return own
+    if len(listed) not in (1, len(rows)):
+        raise InputError(
+            "units and channels disagree",
+            field="units",
+            value=listed,
+            allowed=f"one unit, or {len(rows)}",
+            remedy="list one unit a channel",
+        )
+    return own | dict(zip(rows, listed * len(rows), strict=False))
+
+
+def _common_length(vectors: Arrays, length: int | None) -> tuple[Arrays, tuple[str, ...]]:
+    """Return the vectors of the matrix's length, else of the most frequent one, and a remark on the others.
+
+    Raises
+    ------
+    InputError
+        If no length is more frequent, and another is not much shorter.
+    """
     lengths = Counter(len(vector) for vector in vectors.values() if len(vector) > 1)
     if not lengths:
-        return {}
-    usual = max(lengths, key=lambda n: (lengths[n], n))
-    return {key: vector for key, vector in vectors.items() if len(vector) == usual}
+        return {}, ()
+    usual = length or max(lengths, key=lambda n: (lengths[n], n))
+    others = {key: len(vector) for key, vector in vectors.items() if len(vector) not in (1, usual)}
+    told = ", ".join(f"{key} ({n})" for key, n in others.items())
+    if length is None and lengths[usual] == 1 and any(n > MUCH_SHORTER * usual for n in others.values()):
+        raise InputError(
+            "vectors differ in length",
+            field="data",
+            value=", ".join(f"{key} ({len(vector)})" for key, vector in vectors.items()),
+            allowed="one length a file",
+            remedy="store one rate a file, all channels over the same time",
+        )
+    kept = {key: vector for key, vector in vectors.items() if len(vector) == usual}
+    return kept, (f"vectors of another length than {usual} are left out: {told}",) if told else ()
+
+
+def _refuse_other_length(name: str, times: npt.NDArray[Any], row: npt.NDArray[Any]) -> None:
+    if len(times) != len(row):
+        raise InputError(
+            "times and channels differ in length",
+            field=name,
+            value=len(times),
+            allowed=str(len(row)),
+            remedy="store one time a sample, or remove the times and state sample_rate_hz",
+        )
 
 
 def _rate(scalars: dict[str, float]) -> float | None:

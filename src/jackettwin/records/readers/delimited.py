@@ -59,7 +59,9 @@ def read(path: Path) -> Table:
     delimiter = _delimiter(lines[start : start + 50])
     rows = [row for row in _cells("\n".join(lines[start:]), delimiter) if any(cell.strip() for cell in row)]
     if not rows:
-        raise InputError("holds no rows", field="data", allowed="names and numbers")
+        raise InputError(
+            "holds no rows", field="data", allowed="names and numbers", remedy="export the file again"
+        )
     bare = _is_data(rows[0], delimiter)
     names, units = _numbered(rows[0]) if bare else _names_and_units(rows[0])
     body = rows if bare else rows[1:]
@@ -67,6 +69,7 @@ def read(path: Path) -> Table:
         units = {name: cell.strip() for name, cell in zip(names, body[0], strict=False) if cell.strip()}
         body = body[1:]
     first_line = start + len(rows) - len(body) + 1
+    _refuse_further_cells(names, body, delimiter, first_line)
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
     if bare and _climbs_evenly(columns[0]):
         names[0] = ""  # a count or a time, as an index without a name is
@@ -162,7 +165,12 @@ def _cells(text: str, delimiter: str) -> list[list[str]]:
     try:
         return list(csv.reader(io.StringIO(text), delimiter=delimiter, skipinitialspace=True))
     except csv.Error as error:
-        raise InputError(f"is not delimited text: {error}", remedy="export the file again") from error
+        raise InputError(
+            f"is not delimited text: {error}",
+            field="data",
+            allowed="rows of cells with one separator",
+            remedy="export the file again",
+        ) from error
 
 
 def _is_data(row: list[str], delimiter: str) -> bool:
@@ -190,8 +198,35 @@ def _names_and_units(row: list[str]) -> tuple[list[str], dict[str, str]]:
         names.pop()
     if not all(names[1:]):  # the first may be an index
         number = names.index("", 1) + 1
-        raise InputError("a column has no name", field=f"column {number}", remedy="name every column")
+        raise InputError(
+            "a column has no name",
+            field=f"column {number}",
+            value=", ".join(names),
+            allowed="one name a column",
+            remedy="name every column",
+        )
     return names, units
+
+
+def _refuse_further_cells(names: list[str], rows: list[list[str]], delimiter: str, line: int) -> None:
+    """Refuse rows with more cells than there are names: nobody knows which cell belongs to which name."""
+    for k, row in enumerate(rows):
+        if not any(cell.strip() for cell in row[len(names) :]):
+            continue
+        if delimiter == "," and len(row) > 2 * len(names) - 2:
+            problem, remedy = (
+                "decimal commas and commas between the columns",
+                "a semicolon between the columns",
+            )
+        else:
+            problem, remedy = "row has more cells than there are names", "one name a column"
+        raise InputError(
+            problem,
+            field=f"line {line + k}",
+            value=delimiter.join(row),
+            allowed=f"{len(names)} cells: {', '.join(names)}",
+            remedy=f"export the file again with {remedy}",
+        )
 
 
 def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int) -> npt.NDArray[Any]:

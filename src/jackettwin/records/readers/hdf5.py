@@ -82,7 +82,12 @@ def _h5py() -> Any:
 
 def _dataset(h5py: Any, item: Any) -> npt.NDArray[Any]:
     if item.dtype.itemsize * item.size > MOST_COMPRESSION * item.file.id.get_filesize():
-        raise InputError("announces more data than the file can hold", field=item.name, value=item.shape)
+        raise InputError(
+            "announces more data than the file can hold",
+            field=item.name,
+            value=item.shape,
+            remedy="the file is damaged: copy or export it again",
+        )
     value = np.asarray(item[()])
     if h5py.check_ref_dtype(item.dtype) is not None:  # MATLAB's cell array: one reference a cell
         return np.array([_matlab_text(np.asarray(item.file[cell][()])) for cell in value.ravel()])

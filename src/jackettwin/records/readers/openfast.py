@@ -65,7 +65,13 @@ def read_binary(path: Path) -> Table:
     source = Source(path.read_bytes())
     identifier = int(source.take("<i2", 1)[0])
     if identifier not in (WITH_TIME, WITHOUT_TIME, UNCOMPRESSED, NAME_LENGTH_IN_FILE):
-        raise InputError("is not an OpenFAST binary", field="identifier", value=identifier, allowed="1 to 4")
+        raise InputError(
+            "is not an OpenFAST binary",
+            field="identifier",
+            value=identifier,
+            allowed="1 to 4",
+            remedy="check what wrote the file; text output is .out",
+        )
     width = int(source.take("<i2", 1)[0]) if identifier == NAME_LENGTH_IN_FILE else DEFAULT_NAME_LENGTH
     n_channels, n_samples = (int(n) for n in source.take("<i4", 2))
     first, second = (float(x) for x in source.take("<f8", 2))

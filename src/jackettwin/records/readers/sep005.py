@@ -36,7 +36,13 @@ def from_sep005(signals: Sequence[Mapping[str, Any]], *, name: str = "record") -
         If a required key is missing, or channels differ in rate, length or start.
     """
     if not signals:
-        raise InputError("holds no channels", file=name, field="signals", allowed="at least one signal")
+        raise InputError(
+            "holds no channels",
+            file=name,
+            field="signals",
+            allowed="at least one signal",
+            remedy="give one dictionary a channel",
+        )
     try:
         return to_record(_table(signals), None, Path(name))
     except InputError as error:
@@ -85,7 +91,13 @@ def _table(signals: Sequence[Mapping[str, Any]]) -> Table:
     times, start = signals[0].get("time"), signals[0].get("start_timestamp")
     times_s = seconds(np.asarray(times))[0] if times is not None else None
     if times_s is not None and len(times_s) != len(rows[0]):
-        raise InputError("time and data differ in length", field="signals.0.time", value=len(times_s))
+        raise InputError(
+            "time and data differ in length",
+            field="signals.0.time",
+            value=len(times_s),
+            allowed=str(len(rows[0])),
+            remedy="give one stamp a sample, or fs instead",
+        )
     entries = {str(s["name"]): _entry(s, i) for i, s in enumerate(signals)}
     further = {str(s["name"]): extra for s in signals if (extra := {k: s[k] for k in s if k not in KNOWN})}
     return Table(
@@ -103,7 +115,13 @@ def _rate(fs: Any) -> float:
     try:
         return float(fs)
     except (ValueError, TypeError):
-        raise InputError("is not a number", field="signals.0.fs", value=fs, allowed="> 0 Hz") from None
+        raise InputError(
+            "is not a number",
+            field="signals.0.fs",
+            value=fs,
+            allowed="> 0 Hz",
+            remedy="state the sample rate in Hz",
+        ) from None
 
 
 def _entry(signal: Mapping[str, Any], i: int) -> ChannelEntry:
@@ -115,9 +133,17 @@ def _numbers(data: Any, field: str) -> np.ndarray[Any, np.dtype[np.float64]]:
     try:
         row = np.asarray(data, dtype=np.float64)
     except (ValueError, TypeError):
-        raise InputError("does not hold numbers", field=field, allowed="a vector of numbers") from None
+        raise InputError(
+            "does not hold numbers", field=field, allowed="a vector of numbers", remedy="NaN marks a gap"
+        ) from None
     if row.ndim != 1:
-        raise InputError("is not a vector", field=field, value=row.shape, allowed="one channel a dictionary")
+        raise InputError(
+            "is not a vector",
+            field=field,
+            value=row.shape,
+            allowed="one channel a dictionary",
+            remedy="make one dictionary of every row",
+        )
     return row
 
 

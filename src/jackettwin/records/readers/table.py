@@ -23,6 +23,7 @@ from jackettwin.quantities import (
 )
 from jackettwin.records.clock import regularise
 from jackettwin.records.readers.description import ChannelEntry, Description
+from jackettwin.records.readers.sentinels import without_sentinels
 from jackettwin.records.record import LARGEST, Channel, Record
 
 if TYPE_CHECKING:
@@ -66,6 +67,8 @@ class Table:
         Stamps, if the file has them, from any origin.
     description : Description, optional
         A complete description stored inside the file.
+    remarks : tuple of str
+        What the reader did that the user should know; ``metadata["remarks"]`` of the record.
     """
 
     names: tuple[str, ...]
@@ -76,6 +79,7 @@ class Table:
     times_s: FloatArray | None = None
     metadata: Mapping[str, Any] = field(default_factory=dict)
     description: Description | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def table_from_columns(
@@ -88,7 +92,7 @@ def table_from_columns(
 
     The first column is the time if its name says so, or if it has no name and does not just count
     rows; a column of datetimes is the time wherever it stands. Columns without numbers are left out
-    and named in ``metadata["left_out"]``.
+    and named in a remark.
 
     Raises
     ------
@@ -104,9 +108,18 @@ def table_from_columns(
     kept = [i for i in range(len(names)) if i != time and names[i] and columns[i].dtype.kind == "f"]
     left_out = [name for i, name in enumerate(names) if name and i != time and i not in kept]
     if left_out:
-        known["metadata"] = {**known.get("metadata", {}), "left_out": left_out}
+        known["remarks"] = (
+            *known.get("remarks", ()),
+            f"columns without numbers are left out: {', '.join(left_out)}",
+        )
     if not kept:
-        raise InputError("holds no channels", field="channels", allowed="at least one column of numbers")
+        raise InputError(
+            "holds no channels",
+            field="channels",
+            value=", ".join(names),
+            allowed="at least one column of numbers",
+            remedy="check separator and decimal sign",
+        )
     return Table(tuple(names[i] for i in kept), np.vstack([columns[i] for i in kept]), channels, **known)
 
 
@@ -180,7 +193,10 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
     names = tuple(said.channels) if said.channels else table.names
     data = table.data[[_row_of(name, table) for name in names]]
     stated = _stated_rate(table, said)
+    data, missing = _without_sentinels(names, data)
     metadata = {**table.metadata, **said.metadata}
+    if table.remarks or missing:
+        metadata["remarks"] = [*table.remarks, *missing]
     if table.times_s is not None:
         data, clock = regularise(table.times_s, data, sample_rate_hz=stated)
         stated = clock.sample_rate_hz
@@ -195,7 +211,13 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
             "(identify: or --sample-rate)",
         )
     if data.shape[1] < 2:
-        raise InputError("holds no samples", field="data", value=data.shape[1], allowed="at least 2 samples")
+        raise InputError(
+            "holds no samples",
+            field="data",
+            value=data.shape[1],
+            allowed="at least 2 samples",
+            remedy="export the record again",
+        )
     entries = [_merged(name, table.channels.get(name), (said.channels or {}).get(name)) for name in names]
     described = [_channel(name, entry, unsaid.unit) for name, entry in zip(names, entries, strict=True)]
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
@@ -211,10 +233,29 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
     )
 
 
+def _without_sentinels(names: tuple[str, ...], data: FloatArray) -> tuple[FloatArray, list[str]]:
+    """Return the data with gaps where a logger wrote a number for none, and what was found."""
+    rows, remarks = [], []
+    for name, row in zip(names, data, strict=True):
+        cleaned, value, count = without_sentinels(row)
+        rows.append(cleaned)
+        if value is not None:
+            remarks.append(
+                f"{name}: {count} samples read {value:.10g}, a sign for no value; declared missing"
+            )
+    return np.array(rows, dtype=np.float64).reshape(data.shape), remarks
+
+
 def _refuse_twins(names: tuple[str, ...]) -> None:
     for name, count in Counter(names).items():
         if count > 1:
-            raise InputError("channel name is given twice", field="channels", value=name, remedy="rename one")
+            raise InputError(
+                "channel name is given twice",
+                field="channels",
+                value=name,
+                allowed="different names",
+                remedy="rename one",
+            )
 
 
 def _row_of(name: str, table: Table) -> int:
@@ -298,7 +339,11 @@ def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, f
     largest = max(map(abs, direction))
     if not largest < float("inf"):
         raise InputError(
-            "is not a direction", field="direction", value=direction, allowed="three finite numbers"
+            "is not a direction",
+            field="direction",
+            value=direction,
+            allowed="three finite numbers",
+            remedy="write e.g. [1, 0, 0]",
         )
     if largest == 0.0:
         return (0.0, 0.0, 0.0)

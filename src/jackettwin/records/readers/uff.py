@@ -7,6 +7,7 @@ ordinates. Even abscissa in seconds only; one data set a channel.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -70,13 +71,19 @@ def read(path: Path) -> Table:
             allowed="one length and rate a file",
             remedy="export one group of channels a file",
         )
-    names = _unique([s.name for s in sets])
+    titles = [s.name for s in sets]
+    names = _unique(titles)
     return Table(
         names=names,
         data=np.vstack([s.values for s in sets]),
         channels={name: s.entry for name, s in zip(names, sets, strict=True)},
         sample_rate_hz=sets[0].sample_rate_hz,
         start_utc=parse_time(sets[0].start) if sets[0].start else None,
+        remarks=tuple(
+            f"{count} data sets are called {title!r}: numbered {title}_1 to {title}_{count} in their order"
+            for title, count in Counter(titles).items()
+            if count > 1
+        ),
     )
 
 
