@@ -115,3 +115,24 @@ def test_bad_numbers_are_named(case: Path, old: str, new: str, said: str) -> Non
     assert "case.yaml" in message and "Traceback" not in message
     assert re.search(said, message), message
     assert not case.with_name("r.parquet").exists()
+
+
+def test_what_is_odd_of_an_asset_is_noted(tmp_path: Path) -> None:
+    """A nacelle in tonnes, a pile longer than its layers, damping beyond the literature's."""
+    path = tmp_path / "odd.yaml"
+    path.write_text(
+        "structure: jacket15\n"
+        "rna: {mass_kg: 809}\n"
+        "piles: {length_m: 50, outer_diameter_m: 2.8, thickness_m: 0.06}\n"
+        "soil: {layers: [{thickness_m: 40, effective_weight_n_m3: 9e3, clay: {strength_pa: [20e3, 90e3]}}]}\n"
+        "damping: {rayleigh: {ratio: 0.05, frequency_hz: 0.2}}\n"
+        "time: {duration_s: 10, step_s: 0.05}\n"
+    )
+    out = str(tmp_path / "odd.parquet")
+    result = CliRunner().invoke(main, ["simulate", str(path), "--out", out, "--json"])
+    assert result.exit_code == 0, result.stderr
+    notes = " | ".join(json.loads(result.stdout)["notes"])
+    for said in ("is it in kg?", "the layers 40 m"):
+        assert said in notes
+    assert re.search(r"structure gives side_side_1 \d[.\d]* % damping, more than the 1 to 2 %", notes)
+    assert "water gives" not in notes  # there is none

@@ -12,6 +12,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
 from jackettwin.simulate.rotor_limits import rotor_notes
+from jackettwin.structure import assemble, check
 from jackettwin.updating.budget import beyond_literature
 
 DEFAULT_SCENARIO = "parked"
@@ -30,7 +31,9 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     path = _record_path(out or f"out/{chosen.name}")
     done = simulate(chosen)
     write_record(done.record, path)
-    notes = [*rotor_notes(chosen), *chosen.asset.support.notes, *_unusual_shares(done)]
+    asset = chosen.asset
+    odd = check(assemble(asset.structure)).warnings
+    notes = [*rotor_notes(chosen), *asset.support.notes, *odd, *_unusual_shares(done)]
     if as_json:
         print_json({**done.document(), "record": str(path), "notes": notes})
     else:
@@ -40,9 +43,14 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
 
 
 def _unusual_shares(done: Simulation) -> list[str]:
-    """Return which sources damp the first bending modes more or less than the literature has it."""
-    modes = done.record.metadata["true_modes"]
-    return [note for m in modes for note in beyond_literature(m["label"], m["damping_by_source"])]
+    """Return which of the sources there are damp the first bending modes beyond the literature's range."""
+    return [
+        note
+        for mode in done.record.metadata["true_modes"]
+        for note in beyond_literature(
+            mode["label"], {name: zeta for name, zeta in mode["damping_by_source"].items() if zeta > 0.0}
+        )
+    ]
 
 
 def _record_path(out: str) -> Path:

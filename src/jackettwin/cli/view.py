@@ -12,7 +12,7 @@ from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.records import read_record
 from jackettwin.report.view import Quantity, View, thickness_quantities, write_view
@@ -95,13 +95,14 @@ def view_command(
     sensors: tuple[Sensor, ...] = ()
     if wave is not None:
         H, T, *heading = _numbers(wave, "--wave", (2, 3))
-        passage = wave_passage(
-            system,
-            height_m=H,
-            period_s=T,
-            direction_rad=radians(*heading or [0.0]),
-            coefficients=coefficients,
-        )
+        with located(field="--wave"):
+            passage = wave_passage(
+                system,
+                height_m=H,
+                period_s=T,
+                direction_rad=radians(*heading or [0.0]),
+                coefficients=coefficients,
+            )
         motions.append(wave_motion(assembly, passage))
     if record is not None:
         measured = read_record(record)
@@ -128,7 +129,9 @@ def view_command(
 
 
 def _band(text: str) -> GrowthBand:
-    return GrowthBand(*_numbers(text, "--growth", (3,)))
+    numbers = _numbers(text, "--growth", (3,))
+    with located(field="--growth"):
+        return GrowthBand(*numbers)
 
 
 def _numbers(text: str, option: str, counts: tuple[int, ...]) -> tuple[float, ...]:
@@ -138,7 +141,10 @@ def _numbers(text: str, option: str, counts: tuple[int, ...]) -> tuple[float, ..
         values = ()
     if len(values) not in counts or not np.isfinite(values).all():
         raise InputError(
-            "not numbers joined by commas", field=option, value=text, allowed=f"{counts} of them"
+            "not numbers joined by commas",
+            field=option,
+            value=text,
+            allowed=f"{' or '.join(map(str, counts))} of them",
         )
     return values
 

@@ -14,11 +14,12 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.version import __version__
 
 Positive = Annotated[float, Field(gt=0.0)]
+Heading = Annotated[float, Field(ge=-180.0, le=180.0)]
 _SEA_SEEDS = 1_000_000
 """Wave seeds start here, sensor seeds at twice this: no two streams share a seed."""
 
@@ -37,7 +38,7 @@ class SetSchema(Schema):
     scenario: str
     bins: list[BinSchema] = Field(min_length=1)
     misalignment_deg: list[float] = Field(default=[0.0], min_length=1)
-    yaw_deg: list[float] = Field(default=[0.0], min_length=1)
+    yaw_deg: list[Heading] = Field(default=[0.0], min_length=1)
     seeds: Annotated[int, Field(ge=1, le=1000)] = 6
     first_seed: Annotated[int, Field(ge=0, lt=_SEA_SEEDS)] = 1
 
@@ -81,7 +82,8 @@ def read_set(source: str | Path) -> ScenarioSet:
     """
     path = find_file(source, "sets")
     schema = validate(SetSchema, read_yaml(path, what="set file"), file=path)
-    base = find_file(schema.scenario, "scenarios", folder=path.parent)
+    with located(file=path):
+        base = find_file(schema.scenario, "scenarios", folder=path.parent)
     data = read_yaml(base, what="scenario file")
     for index, entry in enumerate(schema.bins):
         if (entry.hs_m is None) != (entry.tp_s is None):
