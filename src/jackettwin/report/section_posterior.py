@@ -57,7 +57,8 @@ def _status(k: Uncertainty) -> str:
     return (
         f"posterior of {len(p.log_theta)} draws, R-hat at most {p.convergence.rhat.max():.3f}, "
         f"at least {min(p.convergence.ess_bulk.min(), p.convergence.ess_tail.min()):.0f} effective, "
-        f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}."
+        f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}"
+        f"{'.' if p.evidence_known else ': its runs do not agree, so that laws are not compared by it.'}"
     )
 
 

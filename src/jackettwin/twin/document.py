@@ -80,7 +80,7 @@ def update_document(result: TwinResult, index: int) -> dict[str, Any]:
         "identifiability": dict.fromkeys(names)
         if known is None
         else {v.name: v.verdict for v in known.verdicts},
-        "log_evidence": None if known is None or known.posterior is None else known.posterior.log_evidence,
+        "log_evidence": _log_evidence(known),
         **({} if known is None else _uncertainty(u, known)),
         "damping_budget": _budget(result.measured, u),
         "real_poles_rad_s": u.modes.damped.real_poles,
@@ -159,6 +159,12 @@ def _parameters(u: Update) -> dict[str, dict[str, Any]]:
         }
         for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True))
     }
+
+
+def _log_evidence(known: Uncertainty | None) -> float | None:
+    """Return ln Z, None if the posterior's runs do not agree on it."""
+    posterior = None if known is None else known.posterior
+    return posterior.log_evidence if posterior is not None and posterior.evidence_known else None
 
 
 def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:

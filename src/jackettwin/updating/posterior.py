@@ -37,7 +37,8 @@ _MOVES = 12
 _KEPT = 3
 """On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
 _LARGEST_SPREAD = 0.5
-"""Standard deviation of log Z between islands beyond which it is not known."""
+"""Standard deviation of log Z between islands beyond which it is not known. Each rung adds to it: precise
+data, with many rungs, leave the draws alone and blur the evidence."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,8 @@ class Posterior:
     log_likelihood : (n_draws,)
     log_evidence, log_evidence_std : float
         Mean over the islands and its standard deviation.
+    evidence_known : bool
+        Whether the islands agree on it.
     convergence : Convergence
         How well the islands agree.
     """
@@ -61,6 +64,7 @@ class Posterior:
     log_evidence: float
     log_evidence_std: float
     convergence: Convergence
+    evidence_known: bool = True
 
     def interval(self, level: float = 0.9) -> FloatArray:
         """Return the central interval of every parameter, (n_parameters, 2)."""
@@ -160,12 +164,11 @@ def gathered(
         If the runs do not agree: there are draws, but they are no posterior.
     """
     found, spread = convergence(z), float(log_z.std(ddof=1))
-    if found.problem is not None or not spread <= _LARGEST_SPREAD:
+    if found.problem is not None or not np.isfinite(spread):
         worst = problem.parameters[int(np.argmax(found.rhat))].name
-        why = found.problem or "runs apart"
         raise NumericalError(
-            f"the posterior did not converge: {why} ({worst}), log evidence ±{spread:.2f}; "
-            "more particles may help"
+            f"the posterior did not converge: {found.problem or 'no evidence'} ({worst}), log evidence "
+            f"±{spread:.2f}; more particles may help"
         )
     return Posterior(
         log_theta=z.reshape(-1, z.shape[2]),
@@ -174,6 +177,7 @@ def gathered(
         log_evidence=float(logsumexp(log_z) - np.log(log_z.size)),
         log_evidence_std=spread / np.sqrt(log_z.size),
         convergence=found,
+        evidence_known=spread <= _LARGEST_SPREAD,
     )
 
 

@@ -185,10 +185,11 @@ def update(
 
 def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
     """Return the probability of each law, all equally likely before; None without evidence of all."""
-    found = [u.uncertainty.posterior if u.uncertainty is not None else None for u in updates]
-    if any(posterior is None for posterior in found):
+    found = [u.uncertainty.posterior for u in updates if u.uncertainty is not None]
+    known = [posterior for posterior in found if posterior is not None and posterior.evidence_known]
+    if len(known) < len(updates):
         return None
-    log_z = np.array([posterior.log_evidence for posterior in found if posterior is not None])
+    log_z = np.array([posterior.log_evidence for posterior in known])
     probability = np.exp(log_z - logsumexp(log_z))
     return {u.law: float(p) for u, p in zip(updates, probability, strict=True)}
 
@@ -229,12 +230,16 @@ def _uncertainty(
 
 
 def _posterior(problem: Problem, sampler: Sampler, particles: int, seed: int) -> tuple[Posterior | None, str]:
-    status = "ok"
+    """Return the posterior, with twice the draws if it or its evidence is not known with the first ones."""
+    found, status = None, "ok"
     for n in (particles, 2 * particles):
         try:
             if sampler == "nested":
-                return sample_nested(problem, live=n, seed=seed), "ok"
-            return sample_posterior(problem, particles=n, seed=seed), "ok"
+                found = sample_nested(problem, live=n, seed=seed)
+            else:
+                found = sample_posterior(problem, particles=n, seed=seed)
         except NumericalError as error:
             status = str(error)
-    return None, status
+        if found is not None and found.evidence_known:
+            break
+    return found, "ok" if found is not None else status
