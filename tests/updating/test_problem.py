@@ -90,7 +90,7 @@ def test_a_damper_that_overdamps_the_mode_has_no_likelihood(model: SupportModel)
 
 
 def test_states_tell_rotor_from_soil(windy: Problem, model: SupportModel) -> None:
-    posterior = sample_posterior(windy, particles=60, islands=2, seed=3)
+    posterior = sample_posterior(windy, particles=120, islands=2, seed=3)
     low, high = posterior.interval(0.9).T
     assert (low < TRUTH).all() and (high > TRUTH).all()
     # two winds in a known proportion fix the rotor's share

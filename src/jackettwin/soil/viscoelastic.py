@@ -244,13 +244,23 @@ def zener(k0: float, c: float, k1: float) -> Prony:
 MAXWELL_3_CORNERS = (0.519, 3.153, 20.0)
 """In units of f0."""
 MAXWELL_3_WEIGHTS = (0.161, 0.128, 0.219)
+"""Branches over the static spring at a loss factor of 0.1."""
+MAXWELL_3_BRANCHES = 1j / (np.array(MAXWELL_3_CORNERS) + 1j)
+"""Response of each branch at f0."""
+MAXWELL_3_TILT = 1.5
+"""ln of what the ratio of neighbouring weights grows by as the loss factor grows by one."""
+MAXWELL_3_LARGEST = 0.8
+"""Loss factors from here on, the three branches do not hold."""
 
 
 def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
     """Return the three-branch law with storage stiffness ``k`` and ``loss_factor`` at ``f0`` [Hz].
 
-    The branches keep their corners about f0 and the ratio of their weights; their common scale s solves
-    η = s·I/(1 + s·R), with R + iI the response of the unscaled branches at f0.
+    The branches keep their corners about f0. A spring that loses more stiffens more with frequency; branches
+    at higher frequencies must grow with it for the loss factor to stay: their weights are
+    w_j exp(1.5 (η − 0.1) j). Their common scale s solves η = s·I/(1 + s·R), with R + iI the response of the
+    unscaled branches at f0. From 0.55 to 16 f0 the loss factor is then constant to 3 % for η from 0.02 to 0.3
+    and to 8 % at 0.6.
 
     Raises
     ------
@@ -259,10 +269,9 @@ def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
     """
     require_positive("f0", f0)
     require_passive("k", k)
-    w = np.array(MAXWELL_3_WEIGHTS)
-    common, response = maxwell_3_scale(loss_factor)
+    common, response, w = maxwell_3_scale(loss_factor)
     scale = float(common)
-    k0 = k / (1.0 + scale * response.real)
+    k0 = k / (1.0 + scale * float(response.real))
     return Prony(
         k0=k0, k=tuple(float(v) for v in scale * w * k0), tau=tuple(float(v) for v in maxwell_3_times(f0))
     )
@@ -273,26 +282,26 @@ def maxwell_3_times(f0: float) -> FloatArray:
     return np.asarray(1.0 / (2.0 * pi * f0 * np.array(MAXWELL_3_CORNERS)))
 
 
-def maxwell_3_scale(loss_factor: FloatArray | float) -> tuple[FloatArray, complex]:
-    """Return the common scale s of the three branches and their unscaled response R + iI at f0.
+def maxwell_3_scale(loss_factor: FloatArray | float) -> tuple[FloatArray, ComplexArray, FloatArray]:
+    """Return the branches' common scale s (...), their response R + iI at f0 (...) and weights (..., 3).
 
     Raises
     ------
     InputError
         If the loss factor is beyond what the shape can give.
     """
-    corners, w = np.array(MAXWELL_3_CORNERS), np.array(MAXWELL_3_WEIGHTS)
-    response = complex(np.sum(w * 1j / (corners + 1j)))
-    limit = response.imag / response.real
-    eta = np.asarray(loss_factor)
-    if not ((eta >= 0.0) & (eta < limit)).all():
+    eta = np.asarray(loss_factor, dtype=float)
+    if not ((eta >= 0.0) & (eta < MAXWELL_3_LARGEST)).all():
         raise InputError(
             "loss factor out of range",
             field="loss_factor",
             value=loss_factor,
-            allowed=f"0 ≤ loss_factor < {limit:.3g}",
+            allowed=f"0 ≤ loss_factor < {MAXWELL_3_LARGEST:.3g}",
         )
-    return np.asarray(eta / (response.imag - eta * response.real)), response
+    tilt = MAXWELL_3_TILT * np.multiply.outer(eta - 0.1, np.arange(3.0))
+    w = np.array(MAXWELL_3_WEIGHTS) * np.exp(tilt)
+    response = w @ MAXWELL_3_BRANCHES
+    return np.asarray(eta / (response.imag - eta * response.real)), np.asarray(response), w
 
 
 def loss_factor(law: Law, frequency_hz: FloatArray | float) -> FloatArray:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
 from jackettwin.soil.viscoelastic import (
-    MAXWELL_3_WEIGHTS,
+    MAXWELL_3_BRANCHES,
+    MAXWELL_3_TILT,
     Law,
     Springpot,
     kelvin_voigt,
@@ -106,18 +107,21 @@ def _zener_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
 def _maxwell_3_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
     rows, slopes = _empty(values, branches=3)
     k, eta = values.T
-    w = np.array(MAXWELL_3_WEIGHTS)
-    s, response = maxwell_3_scale(eta)
-    ds = eta * response.imag / (response.imag - eta * response.real) ** 2
+    s, response, w = maxwell_3_scale(eta)
+    # η times derivatives by η; those of the weights first
+    dw = MAXWELL_3_TILT * np.multiply.outer(eta, np.arange(3.0))
+    d_response = (w * dw) @ MAXWELL_3_BRANCHES
+    ds = s * (1.0 - (d_response.imag - eta * (response.real + d_response.real)) * s / eta)
     # k0 = k/(1 + sR), k_j = s w_j k0
     shrink = 1.0 / (1.0 + s * response.real)
+    dk0 = -(ds * response.real + s * d_response.real) * shrink
     k0 = k * shrink
     rows[:, K0] = k0
     rows[:, BRANCHES::2] = (s * k0)[:, None] * w
     rows[:, BRANCHES + 1 :: 2] = maxwell_3_times(reference_hz)
     slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
-    slopes[:, K0, 1] = -k0 * response.real * shrink * ds
-    slopes[:, BRANCHES::2, 1] = (k0 * shrink * ds)[:, None] * w
+    slopes[:, K0, 1] = k0 * dk0
+    slopes[:, BRANCHES::2, 1] = rows[:, BRANCHES::2] * ((ds / s + dk0)[:, None] + dw)
     return rows, slopes
 
 
