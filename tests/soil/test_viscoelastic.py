@@ -147,7 +147,7 @@ def test_three_branches_hold_any_loss_factor_like_a_springpot(eta: float, most: 
     assert np.abs(loss_factor(law, f) / eta - 1.0).max() < most
     stiffness = [x.stiffness(2j * np.pi * f0 * np.array([1.0, 4.1])).real for x in (law, exact)]
     growth = [above / at for at, above in stiffness]
-    assert growth[0] == pytest.approx(growth[1], rel=0.02)
+    assert growth[0] == pytest.approx(growth[1], rel=0.03)
 
 
 @pytest.mark.parametrize("eta", [0.01, 0.1, 0.5])
