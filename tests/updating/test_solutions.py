@@ -1,5 +1,7 @@
 """The search finds what the thesis found, from every seed, and flags locked dampers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from jackettwin.updating import Residuals, SupportModel, Target, family, single,
 from jackettwin.updating.descent import descend
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 from jackettwin.updating.solutions import search
+from jackettwin.updating.valleys import gather
 
 F_BAR, ZETA_BAR = 0.0040, 0.0067  # the thesis's own errors, tables 8.1 and 8.2
 
@@ -132,6 +135,19 @@ def test_a_search_that_does_not_settle_stops_and_says_so(
     settled = search(problem, starts=1, progress=told.append)
     assert settled.spent is None and settled.starts > 1 and len(told) == 1 + settled.starts
     assert "Not settled" not in settled.statement
+
+
+def test_ends_that_were_not_compared_are_listed_apart(
+    models: dict[str, SupportModel], frequencies_alone: Residuals
+) -> None:
+    """Two ends of one valley, the light damper's; without a step of a walk nobody knows that they are one."""
+    problem = single(models["kelvin-voigt"], frequencies_alone)
+    ends = [(descend(problem, np.log([5.76e9, c])), 1) for c in (1e5, 1e7)]
+    apart = [(replace(end, z=np.log([5.76e9, c])), 1) for (end, _), c in zip(ends, (1e5, 1e7), strict=True)]
+    together, compared = gather(problem, apart)
+    assert compared and [count for _, count in together] == [2]
+    alone, compared = gather(problem, apart, most_steps=0)
+    assert not compared and [count for _, count in alone] == [1, 1]
 
 
 def test_interrupting_a_search_ends_it(models: dict[str, SupportModel], frequencies_alone: Residuals) -> None:

@@ -157,9 +157,9 @@ def search(
             new += [(end, 1)] if end.settled else []
             if progress is not None:
                 progress(f"{tried} of {n} starts, {len(valleys)} distinct solutions before them")
-        valleys = gather(problem, [*valleys, *new])
+        valleys, compared = gather(problem, new, known=valleys)
         enough = all(count > 1 for _, count in valleys) if valleys else n >= _HOPELESS * starts
-        if enough or 2 * n > len(points) or spent >= most_evaluations:
+        if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
             break
         n *= 2
     if deflated:
@@ -171,13 +171,13 @@ def search(
         )
     kept = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
     # two ends of one valley may only be seen to be one from its middle
-    valleys = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    valleys, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
     return Search(
         tuple(_solution(problem, end, count) for end, count in valleys),
         tried,
         deflated,
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
-        None if enough or spent < most_evaluations else spent,
+        spent if not compared or (spent >= most_evaluations and not enough) else None,
     )
 
 
@@ -193,7 +193,7 @@ def _deflate(problem: Problem, valleys: list[tuple[End, int]], points: FloatArra
     for point in points:
         end = descend(problem, point, known=tuple(valley.z for valley, _ in valleys))
         if end.settled:
-            valleys = gather(problem, [*valleys, (end, 1)])
+            valleys, _ = gather(problem, [(end, 1)], known=valleys)
     return valleys
 
 

@@ -14,54 +14,80 @@ _SAME = 0.02
 """End points closer than this in every ln θ are one."""
 _STAGES = 10
 """Steps of the walk from one end point to another."""
+_MOST_STEPS = 10_000
+"""Of all walks of one gathering: a minute. Beyond, end points that may be one are listed apart."""
 _JUMP = 4.0
 """Followers that move by more than so many steps may have jumped a ridge."""
 _NARROW = 0.05
 """A solution whose ln θ the cost fixes better than this is a point, not a valley."""
 
 
-def gather(problem: Problem, ends: list[tuple[End, int]]) -> list[tuple[End, int]]:
-    """Return one end point a valley, lowest first, and how many ended in it.
+def gather(
+    problem: Problem,
+    ends: list[tuple[End, int]],
+    *,
+    known: list[tuple[End, int]] | None = None,
+    most_steps: int = _MOST_STEPS,
+) -> tuple[list[tuple[End, int]], bool]:
+    """Return one end point a valley, lowest first, and how many ended in it; and whether all were compared.
 
     Parameters
     ----------
     ends : end points and how many searches each stands for
+    known : valleys gathered before, known to be distinct
+    most_steps : of all walks between them
     """
+    before = known or []
+    distinct = {id(end) for end, _ in before}
     kept: list[tuple[End, int]] = []
-    for end, count in sorted(ends, key=lambda pair: pair[0].cost):
-        for i, (other, before) in enumerate(kept):
-            if np.abs(end.z - other.z).max() < _SAME or linked(problem, other, end):
-                kept[i] = (other, before + count)
+    left = most_steps
+    for end, count in sorted([*before, *ends], key=lambda pair: pair[0].cost):
+        for i, (other, others) in enumerate(kept):
+            if id(end) in distinct and id(other) in distinct:
+                continue
+            same = bool(np.abs(end.z - other.z).max() < _SAME)
+            if not same and left > 0:
+                same, steps = linked(problem, other, end)
+                left -= steps
+            if same:
+                kept[i] = (other, others + count)
                 break
         else:
             kept.append((end, count))
-    return kept
+    return kept, left > 0
 
 
-def linked(problem: Problem, low: End, high: End) -> bool:
-    """Return whether a walk from the higher end point to the lower one never has to climb.
+def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
+    """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
 
     One coordinate is stepped, the others follow downhill: first the one in which they lie farthest apart. A
     walk that descends on its way shows that the higher one was a shoulder, not a minimum.
     """
     span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
-    return any(_walks(problem, high, low, int(j)) for j in np.argsort(-span) if span[j] > 1e-3)
+    taken = 0
+    for j in np.argsort(-span):
+        if span[j] > 1e-3:
+            level, steps = _walks(problem, high, low, int(j))
+            taken += steps
+            if level:
+                return True, taken
+    return False, taken
 
 
-def _walks(problem: Problem, high: End, low: End, j: int) -> bool:
+def _walks(problem: Problem, high: End, low: End, j: int) -> tuple[bool, int]:
     allowance = problem.allowance(high.cost)
     here, step = high.z, abs(high.z[j] - low.z[j]) / _STAGES
-    for value in np.linspace(high.z[j], low.z[j], _STAGES + 1)[1:]:
+    for steps, value in enumerate(np.linspace(high.z[j], low.z[j], _STAGES + 1)[1:], start=1):
         there, cost = constrained(problem, here, j, float(value))
         jumped = np.abs(there - here).max() > _JUMP * step
         if cost > high.cost + allowance or (
             jumped and not _level(problem, here, there, high.cost + allowance)
         ):
-            return False
+            return False, steps
         if cost < high.cost - allowance:
-            return True
+            return True, steps
         here = there
-    return _level(problem, here, low.z, high.cost + allowance)
+    return _level(problem, here, low.z, high.cost + allowance), _STAGES
 
 
 def _level(problem: Problem, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
