@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.cli.identify import _print_findings
 
 RECORDS = Path(str(files("jackettwin") / "data" / "records"))
 
@@ -101,3 +102,17 @@ def test_methods_side_by_side(tmp_path: Path) -> None:
     code, _, err = run(record, record, "--compare")
     assert code == 2
     assert "--compare: takes one record" in err
+
+
+def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    def record(*findings: tuple[str | None, str, str]) -> dict[str, object]:
+        keys = ("channel", "fault", "text")
+        return {"quality": {"findings": [dict(zip(keys, f, strict=True)) for f in findings]}}
+
+    left = (None, "file", "vectors of another length are left out: wind (6)")
+    unit = ("acc_20_y", "unit", "it is 9.81 times too small")
+    _print_findings([record(left, unit), record(unit), record()], 3)
+    assert capsys.readouterr().out.splitlines() == [
+        "quality: acc_20_y, 2 of 3 records: it is 9.81 times too small",
+        "quality: record, 1 of 3 records: vectors of another length are left out: wind (6)",
+    ]

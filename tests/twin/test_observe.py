@@ -97,3 +97,11 @@ def test_turning_and_fixed_sensors_without_a_yaw_are_said(tmp_path: Path) -> Non
     found = seen(replace(record, channels=top, conditions={}), tmp_path / "a.parquet")
     assert any("the yaw is not known" in line for line in found.identification.warnings)
     assert {c.frame for c in found.record.channels} == {"nacelle", "global"}
+
+
+def test_sensors_without_a_place_are_named() -> None:
+    record = turned("pile_U12_s301", np.array(0.0))
+    assert _unplaced(record) == ()
+    nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
+    (note,) = _unplaced(nowhere)
+    assert note.startswith("acc_top_x, acc_top_y, acc_g77_x …: the place is not known")

@@ -262,8 +262,25 @@ def _print_many(document: Mapping[str, Any]) -> None:
     if len(failed) > _SHOWN:
         output.print(f"failed: {len(failed) - _SHOWN} more (--json lists them)")
     _print_rejected(document["rejected"])
+    _print_findings(document["records"], n)
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
+
+
+def _print_findings(records: Iterable[Mapping[str, Any]], n: int) -> None:
+    """Print in how many records each fault of each channel was found, with the first one's words."""
+    seen: dict[tuple[str | None, str], list[str]] = {}
+    for record in records:
+        for finding in record["quality"]["findings"]:
+            name, fault, text = finding["channel"], finding["fault"], finding["text"]
+            about = text.partition(":")[0] if fault == "file" else fault
+            seen.setdefault((name, about), []).append(text)
+    often = sorted(seen.items(), key=lambda item: -len(item[1]))
+    for (name, _), texts in often[:_SHOWN]:
+        where = f"{name or 'record'}, {len(texts)} of {n} records"
+        output.print(f"quality: {where}: {texts[0]}", soft_wrap=True, markup=False)
+    if len(often) > _SHOWN:
+        output.print(f"quality: {len(often) - _SHOWN} more findings (--json lists them)")
 
 
 def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int) -> None:

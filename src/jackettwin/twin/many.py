@@ -24,7 +24,7 @@ from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.processes import worker_pool
-from jackettwin.records.readers import FORMATS
+from jackettwin.records.readers import FORMATS, description_file
 from jackettwin.records.readers.table import Unsaid
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.version import __version__
@@ -214,8 +214,8 @@ def _place(folder: Path, file: Path, work: _Work) -> Path:
     """Return where the result of a record is kept."""
     stamps = [
         (p.name, p.stat().st_size, p.stat().st_mtime_ns)
-        for p in (file, file.with_suffix(".json"))
-        if p.exists()
+        for p in (file, description_file(file))
+        if p is not None and p.exists()
     ]
     key = json.dumps([str(file.resolve()), stamps, asdict(work), __version__], default=str)
     return folder / f"{file.stem}-{hashlib.sha256(key.encode()).hexdigest()[:16]}.json"

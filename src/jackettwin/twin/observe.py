@@ -23,6 +23,8 @@ from jackettwin.response.sensors import Sensor
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""
+FEWEST_TO_COMPARE = 3
+"""Sensors without a place of which it is said that they cannot be compared."""
 MOTION = ("acceleration", "velocity", "displacement")
 
 
@@ -90,7 +92,7 @@ def observe(
         found = _beside_orders(identify(ready, settings, picks=picks), orders)
         if knows_yaw(record) or record.metadata.get("axes") == "rotor":
             found = along_axes(found)
-        found = replace(found, warnings=(*notes, *found.warnings))
+        found = replace(found, warnings=(*notes, *found.warnings), notes=(*found.notes, *_unplaced(chosen)))
         compared = compare_methods(ready, found, settings) if compare and found.modes else None
         return Observation(ready, quality, found, compared)
 
@@ -135,6 +137,18 @@ def in_rotor_axes(record: Record, source: Record) -> tuple[Record, tuple[str, ..
     if not lost:
         return turned, ()
     return turned, (f"left out, no second horizontal channel at the same place: {', '.join(lost)}",)
+
+
+def _unplaced(record: Record) -> tuple[str, ...]:
+    """Say that signs and units were not judged, where several sensors do not say where they sit."""
+    nowhere = [c.name for c in record.channels if c.node is None and c.height_m is None]
+    if len(nowhere) < FEWEST_TO_COMPARE:
+        return ()
+    names = ", ".join(nowhere[:3]) + (" …" if len(nowhere) > 3 else "")
+    return (
+        f"{names}: the place is not known (height_m or node in the JSON beside the record): swapped signs "
+        "and wrong units are not looked for",
+    )
 
 
 def moving_channels(record: Record) -> Record:

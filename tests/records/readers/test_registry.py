@@ -151,3 +151,17 @@ def test_constant_and_empty_channels_are_read_for_quality_to_judge(record: Recor
     write_record(Record(data, 12.5, record.channels), tmp_path / "r.parquet")
     back = read_record(tmp_path / "r.parquet").data
     assert (back[0] == 3.0).all() and np.isnan(back[1]).all()
+
+
+def test_one_description_serves_a_folder(record: Record, tmp_path: Path) -> None:
+    """A record's own JSON goes before it, and it may choose channels."""
+    for name in ("a", "b"):
+        write_record(record, tmp_path / f"{name}.parquet")
+    (tmp_path / "a.json").rename(tmp_path / "records.json")
+    assert read_record(tmp_path / "a.parquet").channels == record.channels
+    (tmp_path / "records.json").write_text(
+        '{"sample_rate_hz": 12.5, "channels": {"acc_top_x": {"unit": "g", "height_m": 90.0}}}',
+        encoding="utf-8",
+    )
+    assert [c.height_m for c in read_record(tmp_path / "a.parquet").channels] == [90.0]
+    assert read_record(tmp_path / "b.parquet").channels == record.channels

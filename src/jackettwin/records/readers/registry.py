@@ -13,6 +13,9 @@ from jackettwin.records.readers.description import description_text, read_descri
 from jackettwin.records.readers.table import Table, Unsaid, to_record
 from jackettwin.records.record import Record
 
+SHARED_DESCRIPTION = "records.json"
+"""Describes every record of its folder that has no JSON of its own."""
+
 
 @dataclass(frozen=True)
 class Format:
@@ -42,10 +45,11 @@ FORMATS = (
 
 
 def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
-    """Read a record in any known format, with the ``NAME.json`` beside it if there is one.
+    """Read a record in any known format, with the JSON that describes it if there is one.
 
-    The JSON chooses and describes channels and wins over what the file says of them; a
-    contradiction in the sample rate is an error. Numbers are brought to SI units; what is not a
+    That is ``NAME.json`` beside it, else ``records.json`` in its folder, for all records there. The JSON
+    chooses and describes channels and wins over what the file says of them; a contradiction in the sample
+    rate is an error. Numbers are brought to SI units; what is not a
     finite number, or is beyond 1e15, becomes a missing sample (NaN).
 
     Parameters
@@ -61,8 +65,8 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
     path = Path(path)
     form = _format_of(path)
     _refuse_unreadable(path)
-    beside = path.with_suffix(".json")
-    description = read_description(beside) if beside.is_file() else None
+    beside = description_file(path)
+    description = read_description(beside) if beside is not None else None
     try:
         table = form.read(path)
     except JackettwinError as error:
@@ -77,6 +81,14 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
         return to_record(table, description, path, unsaid)
     except InputError as error:
         raise error.at(file=path) from None
+
+
+def description_file(path: Path) -> Path | None:
+    """Return the JSON that describes a record: its own, else that of its folder, else None."""
+    for beside in (path.with_suffix(".json"), path.with_name(SHARED_DESCRIPTION)):
+        if beside.is_file():
+            return beside
+    return None
 
 
 def write_record(record: Record, path: Path | str) -> None:
