@@ -13,6 +13,7 @@ from jackettwin.identification import IdentificationSettings, mac
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, observe
+from jackettwin.twin.observe import _unplaced
 
 RECORDS = files("jackettwin") / "data" / "records"
 
