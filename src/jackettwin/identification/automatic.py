@@ -115,11 +115,11 @@ def identify(
     poles = _poles(ready, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
-    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.swept_hz)
+    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.drifting)
     judge = partial(
         candidates,
         poles,
-        tones=tones.frequency_hz,
+        tones=tones.representatives,
         settings=settings,
         duration_s=record.duration_s,
         n_orders=len(resolved.orders),

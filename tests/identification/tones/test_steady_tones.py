@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.identification.tones.steady_tones import sinusoid, steady_tones, without_tones
+from jackettwin.identification.tones.sinusoid import sinusoid
+from jackettwin.identification.tones.steady_tones import steady_tones, without_tones
 
 RATE = 5.0
 T = np.arange(3000) / RATE
@@ -26,15 +27,16 @@ def test_frequency_between_lines_is_found():
 
 
 def test_a_lightly_damped_mode_is_no_tone(rng):
-    """Forty records; the chance of one false tone is below 1 in 1,000 each."""
-    assert [steady_tones(light_mode(rng), RATE)[0] for _ in range(40)] == [()] * 40
+    """Of 4,500 such records, ζ from 0.2 %, none was taken; 5 % of those of ζ = 0.2 % had D above 25."""
+    light = [steady_tones(light_mode(rng, zeta), RATE) for zeta in (0.005, 0.002) for _ in range(20)]
+    assert [found[:2] for found in light] == [((), ())] * 40
 
 
 @pytest.mark.parametrize("tone_hz", [0.1537, 0.27, 0.33, 0.9001, 1.8])
 def test_a_tone_as_strong_as_the_mode_is_found_and_taken_out(rng, tone_hz):
     y = light_mode(rng)
     tone = np.sqrt(2.0) * y.std(axis=1, keepdims=True) * np.sin(2.0 * np.pi * tone_hz * T + 0.3)
-    (found,), left = steady_tones(y + tone, RATE)
+    (found,), _, left = steady_tones(y + tone, RATE)
     # a fiftieth of a line
     assert found == pytest.approx(tone_hz, abs=0.02 / 600.0)
     assert np.std(left - y) < 0.1 * np.std(y)
@@ -63,7 +65,7 @@ def two_light_modes(rng):
 
 
 def test_lightly_damped_modes_of_many_sensors_are_no_tones(rng):
-    """In 120 other records D stays below 14; 25 makes a tone."""
+    """In 120 other records D stays below 14; 120 makes a tone."""
     assert [steady_tones(two_light_modes(rng), RATE)[0] for _ in range(30)] == [()] * 30
 
 
@@ -75,7 +77,18 @@ def test_a_tone_within_the_peak_of_a_mode_is_seen_by_what_it_moves(rng, amplitud
     tone_hz = 1.0 + half_bandwidths * 0.003
     wave = np.sin(2.0 * np.pi * tone_hz * T + 0.3) * rng.uniform(0.5, 1.5, 6)[:, None]
     tone = np.sqrt(2.0) * amplitude * y.std(axis=1, keepdims=True) * wave
-    (found,), left = steady_tones(y + tone, RATE)
+    (found,), _, left = steady_tones(y + tone, RATE)
     assert found == pytest.approx(tone_hz, abs=0.1 / 600.0)
     # what is left differs by what the mode did at the one or two lines that went with the tone
     assert np.std(left - y) < 0.6 * np.std(y)
+
+
+def test_a_tone_that_wanders_by_a_line_is_followed(rng):
+    """A straight phase would leave a fifth of its amplitude, and a pole with it."""
+    y = light_mode(rng)
+    phase = 2.0 * np.pi * 0.5 * (T + 0.0008 * 600.0 / np.pi * np.cos(np.pi * T / 600.0))
+    tone = np.sqrt(2.0) * y.std(axis=1, keepdims=True) * np.sin(phase)
+    steady, (track,), left = steady_tones(y + tone, RATE)
+    assert steady == ()
+    assert track.swept_hz == pytest.approx((0.4996, 0.5), abs=1.0 / 600.0)
+    assert np.std(left - y) < 0.05 * np.std(tone)

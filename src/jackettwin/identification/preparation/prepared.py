@@ -19,6 +19,7 @@ from jackettwin.records import detrend
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ResolvedSettings
     from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.identification.tones.phase_track import PhaseTrack
     from jackettwin.records import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,8 +47,8 @@ class Prepared:
     duration_s : float
     tones_hz : tuple of float
         Steady tones that were taken out.
-    swept_hz : tuple of (low, high)
-        Ranges of drifting tones that were taken out.
+    drifting : tuple of PhaseTrack
+        Tones that drift, taken out as well.
     warnings : tuple of str
     """
 
@@ -58,7 +59,7 @@ class Prepared:
     settings: ResolvedSettings
     duration_s: float
     tones_hz: tuple[float, ...]
-    swept_hz: tuple[tuple[float, float], ...]
+    drifting: tuple[PhaseTrack, ...]
     warnings: tuple[str, ...]
 
 
@@ -75,11 +76,12 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     """
     usable, warnings = usable_channels(record)
     level = detrend(usable)
-    tones, without = steady_tones(level.data, level.sample_rate_hz)
-    swept, without = drifting_tones(without, level.sample_rate_hz)
-    if tones or swept:
+    tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
+    drifting, without = drifting_tones(without, level.sample_rate_hz)
+    drifting = (*wandering, *drifting)
+    if tones or drifting:
         level = replace(level, data=without)
-        settings = _above_tones(level, settings, min([*tones, *(low for low, _ in swept)]))
+        settings = _above_tones(level, settings, min([*tones, *(tone.swept_hz[0] for tone in drifting)]))
     resolved, reduced = resolve(level, settings)
     warnings += shortness(reduced, resolved, chosen=settings.lowest_frequency_hz is None)
     y = fill(reduced.data)
@@ -99,7 +101,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         resolved,
         record.duration_s,
         tones,
-        swept,
+        drifting,
         warnings,
     )
 

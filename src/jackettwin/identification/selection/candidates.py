@@ -12,8 +12,10 @@ from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.straying import long_data_limits
-from jackettwin.identification.tones.harmonics import drifting_tone, is_steady_tone, without_unsteady_tone
+from jackettwin.identification.tones.drifting_tones import tone_at
+from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.steady_tones import without_tones
+from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Stabilisation
     from jackettwin.identification.selection.clustering import Cluster
     from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.identification.tones.phase_track import PhaseTrack
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,16 +42,19 @@ class Tones:
 
     Attributes
     ----------
-    frequency_hz : dict
-        By representative pole of the cluster.
-    swept_hz : tuple of (low, high)
-        Ranges that drifting tones passed.
+    representatives : set of int
+        Representative poles of the clusters that are tones.
+    steady_hz : tuple of float
+        Steady tones among them.
+    drifting : tuple of PhaseTrack
+        Those that drift, and those that were taken out before.
     clean : (n_channels, n_samples)
         Samples less the tones.
     """
 
-    frequency_hz: dict[int, float]
-    swept_hz: tuple[tuple[float, float], ...]
+    representatives: frozenset[int]
+    steady_hz: tuple[float, ...]
+    drifting: tuple[PhaseTrack, ...]
     clean: FloatArray
 
 
@@ -116,7 +122,7 @@ def find_tones(
     scale: FloatArray,
     sample_rate_hz: float,
     settings: IdentificationSettings,
-    swept: Iterable[tuple[float, float]] = (),
+    drifting: Iterable[PhaseTrack] = (),
 ) -> Tones:
     """Return the tones among the clusters.
 
@@ -126,24 +132,29 @@ def find_tones(
     ----------
     y : (n_channels, n_samples)
         Divided by ``scale``.
-    swept : iterable of (low, high)
-        Ranges of drifting tones that were taken out already: what is left of them has poles as well.
+    drifting : iterable of PhaseTrack
+        Drifting tones that were taken out already: what is left of them has poles as well.
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
-    shape = {k: poles.mode_shape[k] / scale for k in likely}
-    steady = {k for k in likely if is_steady_tone(y, sample_rate_hz, f[k], zeta[k], shape[k])}
-    tones = {k for k in likely if drifting_tone(y, sample_rate_hz, f[k], shape[k])} | steady
-    clean, passed = y, list(swept)
-    for k in sorted(tones):
-        sweep = drifting_tone(clean, sample_rate_hz, f[k], shape[k])
-        if sweep is not None:
-            passed.append((sweep.low_hz, sweep.high_hz))
-            clean = without_unsteady_tone(clean, sample_rate_hz, f[k], sweep.half_hz, shape[k])
-        elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], shape[k]):
+    clean, followed, steady = y, list(drifting), []
+    for k in sorted(likely):
+        if any(_passed(tone, f[k]) for tone in followed):
+            continue
+        track = tone_at(clean, sample_rate_hz, f[k])
+        if track is not None and _passed(track, f[k]):
+            followed.append(track)
+            clean = less_phase(clean, track.phase(y.shape[1]))
+        elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], poles.mode_shape[k] / scale):
+            steady.append(k)
             clean = without_tones(clean, sample_rate_hz, [f[k]])
-    tones |= {k for k in likely if any(low < f[k] < high for low, high in passed)}
-    return Tones({k: float(f[k]) for k in sorted(tones)}, tuple(passed), clean)
+    passed = {k for k in likely if any(_passed(tone, f[k]) for tone in followed)}
+    return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
+
+
+def _passed(tone: PhaseTrack, frequency_hz: float) -> bool:
+    low, high = tone.swept_hz
+    return low < frequency_hz < high
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:

@@ -15,7 +15,6 @@ from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
 from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.selection.candidates import beside_tones, with_covariance
-from jackettwin.identification.tones.drifting_tones import disturbed_hz
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -73,7 +72,8 @@ def chosen_modes(
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
                 modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
-    tones_hz = [(f, f) for f in (*tones.frequency_hz.values(), *ready.tones_hz)] + [*ready.swept_hz]
+    tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
+    tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
     if settings.refine:
         found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
@@ -95,7 +95,7 @@ def _start(
         sure=sure,
         derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
         avoid_hz=(
-            *map(disturbed_hz, tones.swept_hz),
+            *(tone.disturbed_hz for tone in tones.drifting),
             *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz),
         ),
         most_damping=settings.max_damping_ratio,
@@ -173,7 +173,8 @@ def _sorted(
 def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     low, high = guarded_band_hz(resolved)
     steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
-    found = [(f, steady) for f in ready.tones_hz] + [(0.5 * (a + b), drifting) for a, b in ready.swept_hz]
+    found = [(f, steady) for f in ready.tones_hz]
+    found += [(0.5 * sum(tone.swept_hz), drifting) for tone in ready.drifting]
     return [Rejected(f, None, reason) for f, reason in sorted(found) if low < f < high]
 
 

@@ -1,57 +1,73 @@
-"""Find loud tones that drift with the speed of a rotor, before anything else looks at the record.
+"""Find tones that drift with the speed of a rotor, before anything else looks at the record.
 
-In a band wide enough for its drift a loud tone has a steady envelope, whatever its frequency does; that of
-modes driven by random forces wanders. The relative variance of the squared envelope of the main direction of
-each of overlapping bands tells: below 0.03 for tones with the rms of a channel that drift by up to 3 % (0.06
-by 8 %), in 300 records of two light modes never below 0.12 (ζfT = 0.9) and 0.27 (ζfT = 2).
+Overlapping bands are scanned. In each the channels are combined such that what moves there stands out of what
+moves around it, or along their main direction; a tone makes that signal's envelope steady, as random forces
+on modes rarely do. From the phase of the steadiest the tone is followed (``phase_track.py``), which decides,
+and is taken out.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from scipy import fft
 
-from jackettwin.identification.tones.harmonics import (
-    FOLLOWED_CYCLES,
-    drifting_tone,
-    relative_variance,
-    without_unsteady_tone,
-)
+from jackettwin.identification.tones.envelopes import independent_values, least_variance, relative_variance
+from jackettwin.identification.tones.phase_track import INTERVALS, baseband, first_phase, phase_track
+from jackettwin.identification.tones.sinusoid import lines_around, regular
+from jackettwin.records.tones import less_phase
+
+if TYPE_CHECKING:
+    from jackettwin.identification.tones.phase_track import PhaseTrack
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-DRIFTS = (0.1, 0.2)
-"""Half widths of the bands, as a share of their middle."""
-STEADY = 0.06
-"""Relative variance of the squared envelope below which a band holds a tone and little else."""
-FEWEST_LINES = 16.0
-"""Narrower bands are not looked at: some direction of the channels has a steady envelope in a few lines."""
-STEP = 1.07
-"""Ratio of the frequencies of neighbouring bands."""
+DRIFTS = (0.02, 0.07, 0.15)
+"""Half widths of the bands that hold the drift, as a share of their middle …"""
+FEWEST_LINES = 4.0
+"""… and at least so many lines of the record."""
+STEP = 0.7
+"""From one band to the next, in half widths."""
+WORTH_FOLLOWING = 0.5
+"""Relative variance of the squared envelope below which a band is looked at closer."""
+STEADY_SHARE = 0.4
+"""Of the D asked of a tone, where its envelope in the band is steadier than that of a mode is."""
+FOLLOWED = 8
+"""Bands looked at closer, the steadiest first, until one holds a tone."""
+LOWEST_LINE = 20.0
+"""Tones below this line of the record are not looked for."""
 HIGHEST = 0.4
 """Of the sample rate: the highest band."""
-MOST = 6
+MOST = 9
 """Tones taken out at most."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """A band, how steady its envelope is, and the frequency and direction of what moves in it."""
+    """A band, the signal of the channels' best combination in it, and how steady its envelope is.
 
-    drift: float
+    Attributes
+    ----------
+    middle_hz, half_hz : float
+    combination : (n_channels,) complex
+    variance : float
+    expected : float
+        What the variance of a Gaussian process of as many independent values is hardly ever below.
+    """
+
+    middle_hz: float
+    half_hz: float
+    combination: ComplexArray
     variance: float
-    frequency_hz: float
-    shape: ComplexArray
+    expected: float
 
 
-def drifting_tones(
-    y: FloatArray, sample_rate_hz: float
-) -> tuple[tuple[tuple[float, float], ...], FloatArray]:
-    """Return the ranges that loud drifting tones swept [Hz], and the samples less these tones.
+def drifting_tones(y: FloatArray, sample_rate_hz: float) -> tuple[tuple[PhaseTrack, ...], FloatArray]:
+    """Return the tones that drift, and the samples less these tones.
 
     Parameters
     ----------
@@ -63,58 +79,95 @@ def drifting_tones(
     >>> t = np.arange(6000) / 10.0
     >>> drifting = np.sin(2 * np.pi * 0.5 * (t + 0.9 * np.sin(2 * np.pi * t / 300.0)))
     >>> noise = np.random.default_rng(1).standard_normal((2, 6000))
-    >>> (swept,), left = drifting_tones(drifting + 0.3 * noise, 10.0)
-    >>> bool(0.45 < swept[0] < 0.49 and 0.51 < swept[1] < 0.55)
-    True
+    >>> (tone,), left = drifting_tones(drifting + 0.3 * noise, 10.0)
+    >>> [round(f, 2) for f in tone.swept_hz]
+    [0.49, 0.51]
     """
-    duration = y.shape[1] / sample_rate_hz
-    found: list[tuple[float, float]] = []
+    found: list[PhaseTrack] = []
     left = y
     for _ in range(MOST):
-        steadiest = min(_bands(left, sample_rate_hz), key=lambda band: band.variance, default=None)
-        if steadiest is None or steadiest.variance > STEADY:
+        lines = _lines(left)
+        duration = y.shape[1] / sample_rate_hz
+        track = _clearest(lines, duration, _bands(lines, duration, HIGHEST * sample_rate_hz))
+        if track is None:
             break
-        f = steadiest.frequency_hz
-        own = min((_band(_lines(left), f, half, duration) for half in DRIFTS), key=lambda band: band.variance)
-        sweep = drifting_tone(left, sample_rate_hz, f, own.shape)
-        if sweep is None:
-            break
-        found.append((sweep.low_hz, sweep.high_hz))
-        left = without_unsteady_tone(left, sample_rate_hz, f, sweep.half_hz, own.shape)
+        found.append(track)
+        left = less_phase(left, track.phase(y.shape[1]))
     return tuple(found), left
 
 
-def disturbed_hz(swept: tuple[float, float]) -> tuple[float, float]:
-    """Return the range in which a tone that was taken out leaves what its smoothed phase does not follow."""
-    low, high = swept
-    return low - low / FOLLOWED_CYCLES, high + high / FOLLOWED_CYCLES
+def _clearest(lines: ComplexArray, duration_s: float, bands: list[Band]) -> PhaseTrack | None:
+    """Return the tone in the steadiest of the bands that holds one."""
+    for band in sorted(bands, key=lambda b: b.variance)[:FOLLOWED]:
+        track = tone_in(lines, duration_s, band)
+        if track is not None:
+            return track
+    return None
 
 
-def _bands(y: FloatArray, sample_rate_hz: float) -> list[Band]:
-    duration = y.shape[1] / sample_rate_hz
-    lines = _lines(y)
-    found = []
+def tone_in(lines: ComplexArray, duration_s: float, band: Band) -> PhaseTrack | None:
+    """Follow the tone of a band, if it holds one."""
+    room = (INTERVALS[-1] + lines_around(len(lines)) + FEWEST_LINES) / duration_s
+    wide = baseband(lines, duration_s, band.middle_hz, band.half_hz + room)
+    n = wide.signal.shape[1]
+    own = band.combination.conj() @ fft.fft(wide.signal, axis=1)
+    off = np.abs(fft.fftfreq(n, 1.0 / n) / duration_s + wide.middle_hz - band.middle_hz)
+    signal = np.asarray(fft.ifft(np.where(off <= band.half_hz, own, 0.0)))
+    share = STEADY_SHARE if band.variance < band.expected else 1.0
+    return phase_track(wide, first_phase(signal), share=share)
+
+
+def tone_at(y: FloatArray, sample_rate_hz: float, frequency_hz: float) -> PhaseTrack | None:
+    """Return the tone in the bands around a frequency, if there is one."""
+    duration, lines = y.shape[1] / sample_rate_hz, _lines(y)
+    halves = [max(drift * frequency_hz, FEWEST_LINES / duration) for drift in DRIFTS]
+    return _clearest(lines, duration, [band_of(lines, duration, frequency_hz, half) for half in halves])
+
+
+def _bands(lines: ComplexArray, duration_s: float, highest_hz: float) -> list[Band]:
+    """Return the bands whose envelope is steadier than those of the bands on either side."""
+    found: list[Band] = []
     for drift in DRIFTS:
-        lowest, highest = 0.5 * FEWEST_LINES / (drift * duration), HIGHEST * sample_rate_hz
-        middles = lowest * STEP ** np.arange(max(int(np.log(highest / lowest) / np.log(STEP)), 0))
-        found += [_band(lines, float(f), drift, duration) for f in middles]
+        middle, row = LOWEST_LINE / duration_s, []
+        while middle < highest_hz:
+            half = max(drift * middle, FEWEST_LINES / duration_s)
+            row.append(band_of(lines, duration_s, middle, half))
+            middle += STEP * half
+        v = np.array([band.variance for band in row])
+        least = (v <= np.append(v[1:], np.inf)) & (v <= np.append(np.inf, v[:-1])) & (v < WORTH_FOLLOWING)
+        found += [row[i] for i in np.flatnonzero(least)]
     return found
+
+
+def band_of(lines: ComplexArray, duration_s: float, middle_hz: float, half_hz: float) -> Band:
+    """Combine the channels so that most is from the band, and least from as many lines on either side.
+
+    Or, where that makes a steadier envelope, along their main direction: a tone may move them as a mode does.
+    """
+    around = max(half_hz * duration_s, lines_around(len(lines)))
+    first, last = int(np.ceil((middle_hz - half_hz) * duration_s)), int((middle_hz + half_hz) * duration_s)
+    low, high = max(first - int(around), 1), min(last + int(around), lines.shape[1] - 1)
+    inside = lines[:, first : last + 1]
+    outside = np.concatenate([lines[:, low:first], lines[:, last + 1 : high + 1]], axis=1)
+    noise = _covariance(outside)
+    power = np.diag(np.diag(_covariance(inside)))
+    found = [_combination(inside, noise), _combination(inside, power)]
+    combination, signal = min(found, key=lambda pair: relative_variance(fft.ifft(pair[1])))
+    expected = least_variance(independent_values(signal))
+    return Band(middle_hz, half_hz, combination, relative_variance(fft.ifft(signal)), expected)
+
+
+def _combination(inside: ComplexArray, noise: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the channels' combination with most over a noise, and its lines."""
+    root = np.linalg.cholesky(regular(noise))
+    white = np.linalg.solve(root, inside)
+    direction = np.linalg.eigh(white @ white.conj().T)[1][:, -1]
+    return np.asarray(np.linalg.solve(root.conj().T, direction)), np.asarray(direction.conj() @ white)
+
+
+def _covariance(lines: ComplexArray) -> ComplexArray:
+    return np.asarray(lines @ lines.conj().T / lines.shape[1])
 
 
 def _lines(y: FloatArray) -> ComplexArray:
     return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))
-
-
-def _band(lines: ComplexArray, middle_hz: float, drift: float, duration_s: float) -> Band:
-    """Look at the main direction of the channels, each scaled to its power in the band."""
-    low, high = (1.0 - drift) * middle_hz * duration_s, (1.0 + drift) * middle_hz * duration_s
-    k = np.arange(int(np.ceil(low)), int(high) + 1)
-    inside = lines[:, k]
-    scale = np.sqrt(np.sum(np.abs(inside) ** 2, axis=1)) + 1e-300
-    unit = inside / scale[:, None]
-    shape = np.linalg.eigh(unit @ unit.conj().T)[1][:, -1] / scale
-    envelope = np.asarray(fft.ifft(shape.conj() @ inside))
-    turn = np.angle(np.vdot(envelope[:-1], envelope[1:])) / (2.0 * np.pi)
-    # the envelope of n lines has n samples; frequencies count from the first line, modulo n
-    frequency = (k[0] + (turn % 1.0) * len(k)) / duration_s
-    return Band(drift, relative_variance(envelope), float(frequency), np.asarray(shape / np.abs(shape).max()))

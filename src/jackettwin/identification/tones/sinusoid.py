@@ -1,0 +1,110 @@
+r"""The best sinusoid near a line of a Fourier transform, and whether it is a tone.
+
+A sinusoid at k + δ lines of a record's Fourier transform gives the lines around it
+
+.. math:: X_{k+m} = a\,\frac{e^{2\pi i\delta} - 1}{2\pi i(\delta - m)}
+
+and no more: less the best such a and δ, the lines are those of the background. A lightly damped mode has
+a sharp peak as well, but one of random shape, of which a large part stays. The ratio
+
+.. math:: D = a^H R^{-1} a / \max_{1\le|m|\le 4} r_m^H R^{-1} r_m, \qquad r_m = X_{k+m} - \hat X_{k+m},
+
+R the covariance between channels of the lines around, tells them apart: in ten minutes of a mode at 0.3 Hz
+it is above 25 in 5 % of records if ζ = 0.2 %, in 0.1 % if ζ = 0.5 %, and in none of 4,500 above 90.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize_scalar
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+LINES = 4
+"""Lines on either side that a mode fills as well …"""
+FEWEST_LINES = 12
+"""… and that make the covariance of the background, at least, …"""
+LINES_A_CHANNEL = 1.5
+"""… and for each channel."""
+REACH = 2
+"""Lines on either side on which a tone leaks most: no background where none is subtracted."""
+LIFT = 1e-3
+"""Share of each channel's power added to the covariance of the background, which may be singular."""
+ROUNDS = 3
+"""Times a sinusoid is fitted, each with the background of the one before."""
+
+
+@dataclass(frozen=True)
+class Sinusoid:
+    """The best sinusoid near a line of the transform.
+
+    Attributes
+    ----------
+    position : float
+        Frequency in lines.
+    ratio : float
+        D, of the channel in which it is largest.
+    """
+
+    position: float
+    ratio: float
+
+
+def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:
+    """Fit one sinusoid of all channels to the lines around line k of their transforms."""
+    reach = lines_around(len(spectrum))
+    m = np.arange(-reach, reach + 1)
+    lines = spectrum[:, k + m]
+    root = _root(lines[:, np.abs(m) > REACH])
+
+    for _ in range(ROUNDS):
+        white = np.asarray(np.linalg.solve(root, lines), dtype=complex)
+
+        delta = _offset(white, m)
+        shape = _leakage(delta, m)
+        amplitude = lines @ shape.conj() / np.sum(np.abs(shape) ** 2)
+        rest = lines - amplitude[:, None] * shape
+        root = _root(rest[:, m != 0])
+    power = np.sum(np.abs(np.linalg.solve(root, amplitude)) ** 2)
+    near = rest[:, (m != 0) & (np.abs(m) <= LINES)]
+    around = np.sum(np.abs(np.linalg.solve(root, near)) ** 2, axis=0)
+    return Sinusoid(k + delta, float(power / max(around.max(), 1e-300)))
+
+
+def _leakage(delta: float, m: npt.NDArray[np.int64]) -> ComplexArray:
+    """Return what a unit sinusoid δ lines off gives the lines m."""
+    return np.asarray(np.exp(1j * np.pi * (delta - m)) * np.sinc(delta - m))
+
+
+def _offset(white: ComplexArray, m: npt.NDArray[np.int64]) -> float:
+    """Return the δ of the sinusoid that explains most of whitened lines (n_channels, n_lines)."""
+
+    def left_over(delta: float) -> float:
+        shape = _leakage(delta, m)
+        return -float(np.sum(np.abs(white @ shape.conj()) ** 2) / np.sum(np.abs(shape) ** 2))
+
+    best = minimize_scalar(left_over, bounds=(-0.7, 0.7), method="bounded", options={"xatol": 1e-5})
+    return float(best.x)
+
+
+def lines_around(n_channels: int) -> int:
+    """Return how many lines on either side make the background."""
+    return max(FEWEST_LINES, int(np.ceil(LINES_A_CHANNEL * n_channels)))
+
+
+def _root(lines: ComplexArray) -> ComplexArray:
+    """Return the Cholesky factor of the covariance of lines (n_channels, n_lines)."""
+    return np.asarray(np.linalg.cholesky(regular(lines @ lines.conj().T / lines.shape[1])))
+
+
+def regular(covariance: ComplexArray) -> ComplexArray:
+    """Return regular covariances (…, n_channels, n_channels)."""
+    channel = np.arange(covariance.shape[-1])
+    power = covariance[..., channel, channel].real
+    out = covariance.copy()
+    out[..., channel, channel] += LIFT * power + 1e-12 * power.mean(axis=-1, keepdims=True) + 1e-300
+    return out
