@@ -68,9 +68,7 @@ def test_a_mode_the_tone_passes_is_flagged():
     assert all("tone" in mode.status for mode in flagged)
 
 
-@pytest.mark.parametrize(
-    ("drift", "period_s"), [(0.02, 60.0), (0.04, 150.0), (0.08, 60.0), (0.08, 290.0), (0.005, 600.0)]
-)
+@pytest.mark.parametrize(("drift", "period_s"), [(0.02, 150.0), (0.04, 150.0), (0.08, 290.0), (0.02, 600.0)])
 def test_a_drifting_tone_is_told_beside_a_strong_pair(tower, rng, drift, period_s):
     """Of 0.6 of the rms of the pair, at 1.3 times its frequency, in the proportions of the pair."""
     record = simulate(tower, rng, sample_rate_hz=5.0)

@@ -79,8 +79,7 @@ def test_a_mode_beside_a_steady_tone_is_no_drifting_tone(tower, rng):
     record = simulate(tower, rng, sample_rate_hz=RATE)
     t = np.arange(record.data.shape[1]) / RATE
     loud = record.data + record.data.std() * np.sin(2 * np.pi * 0.275 * t)
-    tone = tone_at(loud, RATE, 0.30)
-    assert tone is None or tone.swept_hz[1] < 0.28
+    assert tone_at(loud, RATE, 0.30) is None
 
 
 def test_a_channel_frozen_halfway_makes_no_tone_of_a_mode(tower, rng):

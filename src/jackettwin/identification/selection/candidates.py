@@ -142,7 +142,7 @@ def find_tones(
         if any(_passed(tone, f[k]) for tone in followed):
             continue
         track = tone_at(clean, sample_rate_hz, f[k])
-        if track is not None and _passed(track, f[k]):
+        if track is not None:
             followed.append(track)
             clean = less_phase(clean, track.phase(y.shape[1]))
         elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], poles.mode_shape[k] / scale):

@@ -35,7 +35,7 @@ STEP = 0.7
 WORTH_FOLLOWING = 0.5
 """Relative variance of the squared envelope below which a band is looked at closer."""
 STEADY_SHARE = 0.4
-"""Of the D asked of a tone, where its envelope in the band is steadier than that of a mode is."""
+"""Of the D asked of a tone at a pole, where its envelope in the band is steadier than that of a mode is."""
 FOLLOWED = 8
 """Bands looked at closer, the steadiest first, until one holds a tone."""
 LOWEST_LINE = 20.0
@@ -99,13 +99,13 @@ def drifting_tones(y: FloatArray, sample_rate_hz: float) -> tuple[tuple[PhaseTra
 def _clearest(lines: ComplexArray, duration_s: float, bands: list[Band]) -> PhaseTrack | None:
     """Return the tone in the steadiest of the bands that holds one."""
     for band in sorted(bands, key=lambda b: b.variance)[:FOLLOWED]:
-        track = tone_in(lines, duration_s, band)
+        track = _tone_in(lines, duration_s, band, 1.0)
         if track is not None:
             return track
     return None
 
 
-def tone_in(lines: ComplexArray, duration_s: float, band: Band) -> PhaseTrack | None:
+def _tone_in(lines: ComplexArray, duration_s: float, band: Band, share: float) -> PhaseTrack | None:
     """Follow the tone of a band, if it holds one."""
     room = (INTERVALS[-1] + lines_around(len(lines)) + FEWEST_LINES) / duration_s
     wide = baseband(lines, duration_s, band.middle_hz, band.half_hz + room)
@@ -113,15 +113,22 @@ def tone_in(lines: ComplexArray, duration_s: float, band: Band) -> PhaseTrack | 
     own = band.combination.conj() @ fft.fft(wide.signal, axis=1)
     off = np.abs(fft.fftfreq(n, 1.0 / n) / duration_s + wide.middle_hz - band.middle_hz)
     signal = np.asarray(fft.ifft(np.where(off <= band.half_hz, own, 0.0)))
-    share = STEADY_SHARE if band.variance < band.expected else 1.0
     return phase_track(wide, first_phase(signal), share=share)
 
 
 def tone_at(y: FloatArray, sample_rate_hz: float, frequency_hz: float) -> PhaseTrack | None:
-    """Return the tone in the bands around a frequency, if there is one."""
+    """Return the tone in the bands around the frequency of a pole, if there is one.
+
+    Less is asked than of one of all the bands of a record.
+    """
     duration, lines = y.shape[1] / sample_rate_hz, _lines(y)
-    halves = [max(drift * frequency_hz, FEWEST_LINES / duration) for drift in DRIFTS]
-    return _clearest(lines, duration, [band_of(lines, duration, frequency_hz, half) for half in halves])
+    for drift in DRIFTS:
+        band = band_of(lines, duration, frequency_hz, max(drift * frequency_hz, FEWEST_LINES / duration))
+        share = STEADY_SHARE if band.variance < band.expected else 1.0
+        track = _tone_in(lines, duration, band, share)
+        if track is not None and track.swept_hz[0] < frequency_hz < track.swept_hz[1]:
+            return track
+    return None
 
 
 def _bands(lines: ComplexArray, duration_s: float, highest_hz: float) -> list[Band]:
