@@ -10,11 +10,20 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.identification.preparation.gaps import fill
-from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK, resolve, shortness, usable_channels
+from jackettwin.identification.preparation.resolve import (
+    BAND_RATIO,
+    EDGE_BELOW_PEAK,
+    FEWEST_SAMPLES,
+    GUARD,
+    SAMPLES_A_CYCLE,
+    resolve,
+    shortness,
+    usable_channels,
+)
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 from jackettwin.identification.tones.drifting_tones import drifting_tones
 from jackettwin.identification.tones.steady_tones import steady_tones
-from jackettwin.records import detrend
+from jackettwin.records import decimate, detrend
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ResolvedSettings
@@ -24,6 +33,10 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+SPARE = 4.0
+"""Tones are sought at so many times the rate that a band from the lowest peak on needs: that may be one."""
+FEW_CHANNELS = 6
+"""That are looked at for it."""
 FEWEST_DEGREES = 10
 """pLSCF goes up to this degree at least."""
 WORTH_SAYING = 0.005
@@ -75,7 +88,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         its lag window needs.
     """
     usable, warnings = usable_channels(record)
-    level = detrend(usable)
+    level = _thinned(detrend(usable), settings)
     tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
     drifting, without = drifting_tones(without, level.sample_rate_hz)
     drifting = (*wandering, *drifting)
@@ -104,6 +117,26 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         drifting,
         warnings,
     )
+
+
+def _thinned(level: Record, settings: IdentificationSettings) -> Record:
+    """Decimate what is sampled far faster than its band can need: tones are sought in less.
+
+    The band is judged from a few channels. If they miss the lowest peak, more is kept than need be.
+    """
+    high = settings.highest_frequency_hz
+    if high is None:
+        few = level.data[:: -(-len(level.data) // FEW_CHANNELS)]
+        long_enough = level.data.shape[1] >= FEWEST_SAMPLES
+        low = settings.lowest_frequency_hz or (
+            lowest_peak_hz(welch(few, level.sample_rate_hz)) if long_enough else None
+        )
+        if low is None:
+            return level
+        high = BAND_RATIO * low
+    needed = SPARE * max(SAMPLES_A_CYCLE * GUARD * high, settings.sample_rate_hz or 0.0)
+    factor = int(level.sample_rate_hz / needed)
+    return decimate(level, sample_rate_hz=level.sample_rate_hz / factor) if factor > 1 else level
 
 
 def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: float) -> IdentificationSettings:

@@ -31,8 +31,8 @@ NEAREST_LINE = 8
 """Tones below this line of the record are not looked for."""
 WORTH_A_LOOK = 4.0
 """Power of a line over that of the background, whitened, from which a sinusoid is fitted to it."""
-CHUNK = 4096
-"""Lines whose backgrounds are held in memory together."""
+ELEMENTS = 2**18
+"""Of the covariances of lines that are held in memory together."""
 MOST = 30
 """Tones taken out at most."""
 MUCH_MORE = 4.0
@@ -147,8 +147,9 @@ def _over_background(spectrum: ComplexArray) -> FloatArray:
     reach = lines_around(n_channels)
     n = 2 * (reach - REACH)
     out = np.zeros(n_lines)
-    for first in range(max(NEAREST_LINE, reach + 1), n_lines - reach, CHUNK):
-        k = np.arange(first, min(first + CHUNK, n_lines - reach))
+    chunk = max(ELEMENTS // n_channels**2, 4 * reach)
+    for first in range(max(NEAREST_LINE, reach + 1), n_lines - reach, chunk):
+        k = np.arange(first, min(first + chunk, n_lines - reach))
         wide = spectrum[:, k[0] - reach : k[-1] + reach + 1]
         products = np.cumsum(wide.T[:, :, None] * wide.T[:, None, :].conj(), axis=0)
         products = np.concatenate([np.zeros((1, n_channels, n_channels)), products])
