@@ -93,3 +93,8 @@ def test_a_weak_blade_passing_tone_is_no_mode(tower, wander, rms):
     found = identify(replace(record, data=record.data + wave * record.data.std(axis=1, keepdims=True)))
     assert not [m for m in found.modes if 0.6 < m.frequency_hz < 0.9]
     assert [round(r.frequency_hz, 2) for r in found.rejected if r.reason.startswith("drifting")] == [0.72]
+
+
+def test_no_band_above_the_highest_is_scanned(rng):
+    y = drifting(two_modes(rng), 1.6, 0.02).data
+    assert drifting_tones(y, RATE, highest_hz=1.0)[0] == ()

@@ -88,9 +88,11 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         its lag window needs.
     """
     usable, warnings = usable_channels(record)
-    level = _thinned(detrend(usable), settings)
+    level = detrend(usable)
+    top = _band_top_hz(level, settings) or np.inf
+    level = _thinned(level, top, settings)
     tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
-    drifting, without = drifting_tones(without, level.sample_rate_hz)
+    drifting, without = drifting_tones(without, level.sample_rate_hz, highest_hz=top)
     drifting = (*wandering, *drifting)
     if tones or drifting:
         level = replace(level, data=without)
@@ -119,22 +121,25 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     )
 
 
-def _thinned(level: Record, settings: IdentificationSettings) -> Record:
-    """Decimate what is sampled far faster than its band can need: tones are sought in less.
+def _band_top_hz(level: Record, settings: IdentificationSettings) -> float | None:
+    """Return what the band reaches up to at most if its lowest peak is of a mode; None if there is no peak.
 
-    The band is judged from a few channels. If they miss the lowest peak, more is kept than need be.
+    Judged from a few channels: if they miss the lowest peak, it is more than need be.
     """
-    high = settings.highest_frequency_hz
-    if high is None:
-        few = level.data[:: -(-len(level.data) // FEW_CHANNELS)]
-        long_enough = level.data.shape[1] >= FEWEST_SAMPLES
-        low = settings.lowest_frequency_hz or (
-            lowest_peak_hz(welch(few, level.sample_rate_hz)) if long_enough else None
-        )
-        if low is None:
-            return level
-        high = BAND_RATIO * low
-    needed = SPARE * max(SAMPLES_A_CYCLE * GUARD * high, settings.sample_rate_hz or 0.0)
+    if settings.highest_frequency_hz is not None:
+        return GUARD * settings.highest_frequency_hz
+    if settings.lowest_frequency_hz is not None:
+        return GUARD * BAND_RATIO * settings.lowest_frequency_hz
+    few = level.data[:: -(-len(level.data) // FEW_CHANNELS)]
+    if few.shape[1] < FEWEST_SAMPLES:
+        return None
+    peak = lowest_peak_hz(welch(few, level.sample_rate_hz))
+    return None if peak is None else GUARD * BAND_RATIO * peak
+
+
+def _thinned(level: Record, top_hz: float, settings: IdentificationSettings) -> Record:
+    """Decimate what is sampled far faster than its band can need: tones are sought in less."""
+    needed = SPARE * max(SAMPLES_A_CYCLE * top_hz, settings.sample_rate_hz or 0.0)
     factor = int(level.sample_rate_hz / needed)
     return decimate(level, sample_rate_hz=level.sample_rate_hz / factor) if factor > 1 else level
 

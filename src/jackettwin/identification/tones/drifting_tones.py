@@ -66,13 +66,17 @@ class Band:
     expected: float
 
 
-def drifting_tones(y: FloatArray, sample_rate_hz: float) -> tuple[tuple[PhaseTrack, ...], FloatArray]:
+def drifting_tones(
+    y: FloatArray, sample_rate_hz: float, *, highest_hz: float = np.inf
+) -> tuple[tuple[PhaseTrack, ...], FloatArray]:
     """Return the tones that drift, and the samples less these tones.
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Zero mean; NaN marks a missing sample.
+    highest_hz : float, optional
+        No band above it is scanned.
 
     Examples
     --------
@@ -83,12 +87,12 @@ def drifting_tones(y: FloatArray, sample_rate_hz: float) -> tuple[tuple[PhaseTra
     >>> [round(f, 2) for f in tone.swept_hz]
     [0.49, 0.51]
     """
+    duration, top = y.shape[1] / sample_rate_hz, min(highest_hz, HIGHEST * sample_rate_hz)
     found: list[PhaseTrack] = []
     left = y
     for _ in range(MOST):
         lines = _lines(left)
-        duration = y.shape[1] / sample_rate_hz
-        track = _clearest(lines, duration, _bands(lines, duration, HIGHEST * sample_rate_hz))
+        track = _clearest(lines, duration, _bands(lines, duration, top))
         if track is None:
             break
         found.append(track)
