@@ -144,3 +144,49 @@ def test_absurd_numbers_are_flagged() -> None:
     quality = assess(record)
     assert [(f.channel, f.fault) for f in quality.findings] == [("a", "gaps"), ("a", "unreadable")]
     assert np.flatnonzero(np.isnan(repair(record, quality).data[0])).tolist() == [3, 9]
+
+
+HEAD = "time,acc_x [g]\n"
+TEXTS = {
+    "names alone": HEAD,
+    "one row": HEAD + "0,1\n",
+    "null bytes": HEAD + "0,\0\n0.1,1\n0.2,3\n",
+    "unclosed quote": '"time,acc_x [g]\n0,1\n0.1,2\n',
+    "times all missing": HEAD + "nan,1\n" * 30,
+    "times that stand still": HEAD + "1.0,1\n" * 30,
+    "times that run backwards": HEAD + "".join(f"{30 - k},{k}\n" for k in range(30)),
+    "a month too many": HEAD + "2025-13-01T00:00:00,1\n2025-13-01T00:00:01,2\n",
+    "numbers beyond all": HEAD + "".join(f"{k},1e400\n" for k in range(30)),
+    "nothing but stand-ins": HEAD + "".join(f"{k},-9999\n" for k in range(30)),
+    "a page of the web": "<html><body>404</body></html>",
+    "a name in another script": "time,加速度_x [g]\n" + "".join(f"{k},{k % 3}\n" for k in range(30)),
+    "a thousand channels": ",".join(f"c{i}_x [g]" for i in range(1000)) + "\n" + ("1," * 999 + "2\n") * 30,
+    "one name twice": "time,acc_x [g],acc_x [g]\n0,1,2\n1,2,3\n2,3,4\n",
+}
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+def test_texts_that_are_hardly_records(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("# fs: 1\n" + TEXTS[kind], encoding="utf-8")
+    read_or_refuse(path)
+
+
+ARRAYS = {
+    "three dimensions": {"data": np.zeros((2, 3, 4)), "fs": 20.0},
+    "complex numbers": {"acc_x": 1j * np.ones(50), "fs": 20.0},
+    "nothing": {"data": np.zeros((0, 0)), "fs": 20.0},
+    "a rate that is none": {"acc_x": np.ones(50), "fs": np.nan},
+    "no step": {"acc_x": np.ones(50), "dt": 0.0},
+    "unequal lengths": {"a_x": np.ones(50), "b_x": np.ones(49), "fs": 20.0},
+    "fewer units than rows": {"data": np.ones((3, 50)), "fs": 20.0, "units": np.array(["g", "g"])},
+    "fewer times than samples": {"a_x": np.ones(50), "time": np.arange(40.0)},
+    "a broken description": {"data": np.ones((2, 50)), "description": np.array("{")},
+}
+
+
+@pytest.mark.parametrize("kind", ARRAYS)
+def test_arrays_that_are_hardly_records(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "r.npz"
+    np.savez(path, **ARRAYS[kind])
+    read_or_refuse(path)

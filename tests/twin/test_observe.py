@@ -13,7 +13,7 @@ from jackettwin.identification import IdentificationSettings, mac
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, observe
-from jackettwin.twin.observe import _unplaced
+from jackettwin.twin.observe import _unknown, _unplaced
 
 RECORDS = files("jackettwin") / "data" / "records"
 
@@ -106,3 +106,11 @@ def test_sensors_without_a_place_are_named() -> None:
     nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
     (note,) = _unplaced(nowhere)
     assert note.startswith("acc_top_x, acc_top_y, acc_g77_x …: the place is not known")
+
+
+def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
+    record = turned("pile_U12_s301", np.array(0.0))
+    assert _unknown(record) == ()
+    strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
+    (note,) = _unknown(replace(record, channels=strange))
+    assert note.endswith("say what they measure: acc_top_x (mm)")

@@ -39,7 +39,8 @@ def quality_table(seen: Observation) -> Table:
         "spikes [%]",
         "clipped [%]",
     )
-    return Table(f"{seen.record.name}: quality of every channel.", columns, tuple(rows), 3)
+    whole = "".join(f" {f.text[0].upper()}{f.text[1:]}." for f in seen.quality.findings if f.channel is None)
+    return Table(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
 
 
 def method_table(compared: Comparison, names: Sequence[str]) -> Table:

@@ -93,6 +93,8 @@ def observe(
         if knows_yaw(record) or record.metadata.get("axes") == "rotor":
             found = along_axes(found)
         found = replace(found, warnings=(*notes, *found.warnings), notes=(*found.notes, *_unplaced(chosen)))
+        if not sensors:
+            found = replace(found, notes=(*found.notes, *_unknown(record)))
         compared = compare_methods(ready, found, settings) if compare and found.modes else None
         return Observation(ready, quality, found, compared)
 
@@ -149,6 +151,15 @@ def _unplaced(record: Record) -> tuple[str, ...]:
         f"{names}: the place is not known (height_m or node in the JSON beside the record): swapped signs "
         "and wrong units are not looked for",
     )
+
+
+def _unknown(record: Record) -> tuple[str, ...]:
+    """Name the channels that are left out because nobody knows what they measure."""
+    names = [f"{c.name} ({c.unit})" for c in record.channels if c.quantity == "other"]
+    if not names:
+        return ()
+    what = ", ".join(names[:5]) + (" …" if len(names) > 5 else "")
+    return (f"left out, neither name and unit nor the JSON say what they measure: {what}",)
 
 
 def moving_channels(record: Record) -> Record:
