@@ -43,7 +43,8 @@ def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Observati
     other = replace(turned("pile_U12_s308", np.array(np.pi / 3)), conditions={"yaw_deg": 60.0})
     found = seen(other, tmp_path / "r.parquet").identification
     for mode in straight.identification.modes[:4]:
-        near = [m for m in found.modes if abs(m.frequency_hz / mode.frequency_hz - 1.0) < 0.015]
+        # two records differ by √2 · √(ζ/2πfT) = 1.0 % at least in f of the wide first peak: three of them
+        near = [m for m in found.modes if abs(m.frequency_hz / mode.frequency_hz - 1.0) < 0.03]
         twin = max(near, key=lambda m: float(mac(mode.mode_shape, m.mode_shape)))
         assert mac(mode.mode_shape, twin.mode_shape) >= 0.95
     # the first pair is 0.6 half bandwidths apart, and what ten minutes say of its shapes is kept

@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-KEPT_SHARE = 1e-4
-"""Share of the added power kept in the Cramér-Rao bound, against rounding."""
+KEPT_SHARES = (1e-4, 1e-2, 1.0)
+"""Shares of the added power kept in the Cramér-Rao bound: the least that leaves E positive, which the leak of
+fully coherent forces need not."""
 LEAST_SHARE = 1e-10
 """Information added to every parameter, as a share of its own: shapes of one direction only determine nothing
 across, and the inverse must exist."""
@@ -63,8 +64,7 @@ def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray
     root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
     middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
     bread = _inverse(scoring(data, prior, p)[1])
-    bare = expected(data, p, KEPT_SHARE)
-    clear = _information(data, p, bare, inverse_root(bare.matrix))
+    clear = _information(data, p, *_barely_regular(data, p))
     clear[np.diag_indices(len(clear))] += prior.precision
     add_coherence_prior(p, np.zeros(len(clear)), clear)
     return np.asarray(bread @ middle @ bread), np.sqrt(np.diag(_inverse(clear)))
@@ -123,6 +123,18 @@ def _inverse(information: FloatArray) -> FloatArray:
     unit = 1.0 / np.sqrt(np.diag(information))
     scaled = information * np.outer(unit, unit) + LEAST_SHARE * np.eye(len(unit))
     return np.asarray(linalg.inv(scaled) * np.outer(unit, unit))
+
+
+def _barely_regular(data: Periodogram, p: Parameters) -> tuple[Expected, ComplexArray]:
+    """Return the model with as little of the dither as leaves E positive, and the inverse root of that."""
+    for share in KEPT_SHARES[:-1]:
+        bare = expected(data, p, share)
+        try:
+            return bare, inverse_root(bare.matrix)
+        except np.linalg.LinAlgError:
+            continue
+    bare = expected(data, p, KEPT_SHARES[-1])
+    return bare, inverse_root(bare.matrix)
 
 
 def _information(data: Periodogram, p: Parameters, model: Expected, white: ComplexArray) -> FloatArray:

@@ -43,11 +43,11 @@ LIKELY_NOISE = 0.01
 COHERENCE_PRIOR = 1.0
 """Weight of ln det Γ: coherences stay inside the unit circle."""
 COLOUR_PRIOR = 3.0
-"""Standard deviation of the exponents of the force spectra about white."""
+"""Standard deviation of the exponents of the force spectra about the common one of the start."""
 NOISE_PRIOR = (2.7, 1.0)
 """… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
-"""Exponents of the force spectrum tried at the start."""
+"""Exponents tried at the start, of all force spectra together."""
 MAX_ITERATIONS = 40
 TOLERANCE = 0.02
 """Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
@@ -101,7 +101,7 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
 
 
 def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray) -> Parameters:
-    """Return first parameters: shapes scaled to the power of their peaks, incoherent white forces."""
+    """Return first parameters: shapes scaled to the power of their peaks, incoherent forces, one exponent."""
     zeta = np.clip(zeta, 1e-3, 0.3)
     scaled = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     for i, phi in enumerate(scaled):
@@ -115,7 +115,7 @@ def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray
     none = np.zeros(len(pairs), dtype=complex)
     noise = np.stack([_noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
     first = [
-        Parameters(np.log(f), np.log(zeta), np.full(n, colour), scaled, none, noise, pairs)
+        Parameters(np.log(f), np.log(zeta), np.full(n, colour), scaled, none, noise, pairs, exponent=colour)
         for colour in COLOURS
     ]
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
@@ -134,6 +134,7 @@ def prior_of(data: Periodogram, p: Parameters) -> Prior:
         blank,
         log_f=p.log_f * held,
         log_zeta=p.log_zeta * held,
+        colour=p.exponent * (1.0 - held),
         noise=np.stack([level, np.zeros_like(level)]),
     )
     std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)

@@ -54,6 +54,8 @@ class Parameters:
     background : int
         So many of the first modes are backgrounds: far below the band, so that they follow their force.
         They stand for the modes outside the band.
+    exponent : float
+        Common to the force spectra, the centre of the prior of ``colour``; not a parameter.
     """
 
     log_f: FloatArray
@@ -64,6 +66,7 @@ class Parameters:
     noise: FloatArray
     pairs: IntArray
     background: int = 0
+    exponent: float = 0.0
 
     @cached_property
     def gamma(self) -> ComplexArray:
@@ -94,6 +97,7 @@ class Parameters:
             noise.reshape(self.noise.shape),
             self.pairs,
             self.background,
+            self.exponent,
         )
 
     def without(self, mode: int) -> Parameters:
@@ -171,7 +175,7 @@ def noise_density(data: Periodogram, p: Parameters) -> FloatArray:
 def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
     """Evaluate the model; so much of the data's dither is added to the diagonal of E."""
     lam = poles(np.exp(p.log_f), np.exp(p.log_zeta))
-    steady, leaked = kernel(data.omega, data.variance, data.duration_s, lam, lam)
+    steady, leaked = _kernel(data, p, lam, lam)
     colour = np.exp(-0.5 * p.colour * log_distance(data, p))
     forced = steady * (colour[:, :, None] * colour[:, None, :])
     coloured = forced + leaked
@@ -198,14 +202,8 @@ def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[Com
     colours = colour[:, :, None] * colour[:, None, :]
 
     def slope(ahead: ComplexArray, behind: ComplexArray) -> ComplexArray:
-        steady, leaked = (
-            a - b
-            for a, b in zip(
-                kernel(data.omega, data.variance, data.duration_s, ahead, lam),
-                kernel(data.omega, data.variance, data.duration_s, behind, lam),
-                strict=True,
-            )
-        )
+        both = zip(_kernel(data, p, ahead, lam), _kernel(data, p, behind, lam), strict=True)
+        steady, leaked = (a - b for a, b in both)
         return np.asarray(p.gamma * (steady * colours + leaked) / (2.0 * STEP))
 
     forced = p.gamma * model.forced
@@ -311,6 +309,16 @@ def gram(
                 m = np.ascontiguousarray(misfit[a, b])
                 first += twice * (flat @ (m.real if a == b else m.view(np.float64)))
     return first, np.asarray(second + np.tril(second, -1).T)
+
+
+def _kernel(
+    data: Periodogram, p: Parameters, first: ComplexArray, second: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return K and L; a background has no peak to leak from, though its force may be large far below."""
+    steady, leaked = kernel(data.omega, data.variance, data.duration_s, first, second)
+    leaked[:, : p.background] = 0.0
+    leaked[:, :, : p.background] = 0.0
+    return steady, leaked
 
 
 def _stacked(factors: list[ComplexArray]) -> ComplexArray:
