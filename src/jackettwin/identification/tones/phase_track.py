@@ -31,6 +31,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 INTERVALS = (1, 4, 8, 16, 32)
 """Of the spline: the fewest of these that leave little more than the most."""
+HOPELESS = 0.1
+"""Share of the least ratio below which no simpler phase is tried; bands of modes have 0.02 to 0.07."""
 LITTLE_MORE = 3.0
 """In powers."""
 ROUNDS = 4
@@ -153,6 +155,8 @@ def phase_track(band: Baseband, start: FloatArray, *, share: float = 1.0) -> Pha
         track = _followed(band, start, intervals)
         if is_tone(track) and (best is None or track.ratio > best.ratio):
             best = track
+        if track.ratio < HOPELESS * least_ratio(len(track.coefficients)):
+            break
     if best is None:
         return None
     followed = _values(band, best.coefficients)

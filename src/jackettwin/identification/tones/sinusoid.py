@@ -19,7 +19,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import minimize_scalar
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -34,6 +33,10 @@ REACH = 2
 """Lines on either side on which a tone leaks most: no background where none is subtracted."""
 LIFT = 1e-3
 """Share of each channel's power added to the covariance of the background, which may be singular."""
+FARTHEST = 0.7
+"""Lines between which the frequency is sought: a line nearer would be the larger."""
+OFFSETS = 21
+"""Frequencies tried there, and again between the neighbours of the best."""
 ROUNDS = 3
 """Times a sinusoid is fitted, each with the background of the one before."""
 
@@ -75,20 +78,24 @@ def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:
     return Sinusoid(k + delta, float(power / max(around.max(), 1e-300)))
 
 
-def _leakage(delta: float, m: npt.NDArray[np.int64]) -> ComplexArray:
-    """Return what a unit sinusoid δ lines off gives the lines m."""
-    return np.asarray(np.exp(1j * np.pi * (delta - m)) * np.sinc(delta - m))
+def _leakage(delta: float | FloatArray, m: npt.NDArray[np.int64]) -> ComplexArray:
+    """Return what a unit sinusoid δ lines off gives the lines m, (…, n_lines)."""
+    away = np.asarray(delta)[..., None] - m
+    return np.asarray(np.exp(1j * np.pi * away) * np.sinc(away))
 
 
 def _offset(white: ComplexArray, m: npt.NDArray[np.int64]) -> float:
     """Return the δ of the sinusoid that explains most of whitened lines (n_channels, n_lines)."""
-
-    def left_over(delta: float) -> float:
+    delta = np.linspace(-FARTHEST, FARTHEST, OFFSETS)
+    for _ in range(2):
         shape = _leakage(delta, m)
-        return -float(np.sum(np.abs(white @ shape.conj()) ** 2) / np.sum(np.abs(shape) ** 2))
-
-    best = minimize_scalar(left_over, bounds=(-0.7, 0.7), method="bounded", options={"xatol": 1e-5})
-    return float(best.x)
+        explained = np.sum(np.abs(white @ shape.conj().T) ** 2, axis=0) / np.sum(np.abs(shape) ** 2, axis=1)
+        k = min(max(int(np.argmax(explained)), 1), OFFSETS - 2)
+        step, (before, most, after) = delta[1] - delta[0], explained[k - 1 : k + 2]
+        middle = delta[k]
+        delta = np.linspace(middle - step, middle + step, OFFSETS)
+    bend = before - 2.0 * most + after
+    return float(middle + (0.5 * step * (before - after) / bend if bend < 0.0 else 0.0))
 
 
 def lines_around(n_channels: int) -> int:
