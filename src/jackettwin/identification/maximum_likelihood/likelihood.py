@@ -48,11 +48,13 @@ NOISE_PRIOR = (2.7, 1.0)
 """… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
 """Exponents tried at the start, of all force spectra together."""
-MAX_ITERATIONS = 40
+MAX_ITERATIONS = 80
 TOLERANCE = 0.02
 """Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
 LEAST_GAIN = 0.001
-"""… or the log-likelihood gains less than this."""
+"""… or the log-likelihood gains less than this, …"""
+FREE = 0.1
+"""… and the step was damped by no more than this share of the information: one held back is always short."""
 ZETA_RANGE = (1e-5, 0.5)
 HELD = 1e-4
 """Standard deviation of the prior on ln f and ln ζ of a background, which are no parameters."""
@@ -85,9 +87,10 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
         score, fisher = scoring(data, prior, p)
         trial_value = -np.inf
         while trial_value < value and lift < 1e7:
-            step = _shortened(p, _solved(fisher, score, lift))
-            trial = p.moved(step)
-            trial_value = objective(data, prior, trial)
+            used, step = lift, _solved(fisher, score, lift)
+            if _far(p, step) <= 1.0:
+                trial = p.moved(step)
+                trial_value = objective(data, prior, trial)
             lift *= 6.0
         if trial_value < value:
             return Climb(p, value, False)
@@ -95,7 +98,7 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
         small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
         gain = trial_value - value
         p, value, lift = trial, trial_value, max(lift / 60.0, 1e-6)
-        if bool(np.all(small < TOLERANCE)) or gain < LEAST_GAIN:
+        if used <= FREE and (bool(np.all(small < TOLERANCE)) or gain < LEAST_GAIN):
             return Climb(p, value, True)
     return Climb(p, value, False)
 
@@ -226,8 +229,8 @@ def _dithered(data: Periodogram) -> ComplexArray:
     return out
 
 
-def _shortened(p: Parameters, step: FloatArray) -> FloatArray:
-    """Shorten a step that leaves the neighbourhood in which the model is nearly linear."""
+def _far(p: Parameters, step: FloatArray) -> float:
+    """Return how far a step goes, over the neighbourhood in which the model is nearly linear."""
     n, n_pairs = len(p.log_f), len(p.coherence)
     size = np.linalg.norm(p.shapes, axis=1, keepdims=True)
     reach = np.concatenate(
@@ -240,7 +243,7 @@ def _shortened(p: Parameters, step: FloatArray) -> FloatArray:
             np.full(p.noise.size, 2.0),
         ]
     )
-    return np.asarray(step / max(1.0, float(np.max(np.abs(step) / reach))))
+    return float(np.max(np.abs(step) / reach))
 
 
 def _solved(fisher: FloatArray, score: FloatArray, lift: float) -> FloatArray:

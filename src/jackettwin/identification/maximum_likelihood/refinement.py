@@ -44,6 +44,10 @@ SUSPECT = 2.5
 """A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
 APPROACH = 4
 """Steps before the doubtful modes are judged."""
+WORTH_A_TRY = 12
+"""Steps after which a fit is given up …"""
+HOPELESS = 1.5
+"""… if it lacks this many times what it may."""
 PARAMETERS_OF_A_MODE = 3
 """f, ζ and colour; its shape has one for each channel."""
 MOST_BIAS = 0.5
@@ -141,7 +145,10 @@ def refine(
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
-    climb = likelihood.climbed(data, climb.parameters)
+    climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
+    far = accuracy.lack_of_fit(data, climb.parameters) > HOPELESS * most_lack_of_fit
+    if not climb.converged and not far:
+        climb = likelihood.climbed(data, climb.parameters)
     known = accuracy.covariance(data, climb.parameters)
     if accuracy.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
         climb, chosen, known = _thinned(data, climb, chosen, known)
