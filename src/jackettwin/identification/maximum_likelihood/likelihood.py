@@ -54,7 +54,9 @@ TOLERANCE = 0.02
 LEAST_GAIN = 0.001
 """… or the log-likelihood gains less than this, …"""
 FREE = 0.1
-"""… and the step was damped by no more than this share of the information: one held back is always short."""
+"""… and the step was damped by no more than this share of the information: one held back is short. …"""
+MOST_IDLE = 3
+"""… Or when so many steps running gain no more, however damped."""
 ZETA_RANGE = (1e-5, 0.5)
 HELD = 1e-4
 """Standard deviation of the prior on ln f and ln ζ of a background, which are no parameters."""
@@ -80,7 +82,7 @@ class Climb:
 def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Climb:
     """Climb to the maximum of the posterior by damped Fisher scoring, in at most so many steps."""
     prior = prior_of(data, p)
-    value, lift = objective(data, prior, p), 1e-3
+    value, lift, idle = objective(data, prior, p), 1e-3, 0
     if not np.isfinite(value):
         return Climb(p, value, False)
     for _ in range(most):
@@ -96,9 +98,9 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
             return Climb(p, value, False)
         n = 2 * len(p.log_f)
         small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
-        gain = trial_value - value
+        idle = idle + 1 if trial_value - value < LEAST_GAIN else 0
         p, value, lift = trial, trial_value, max(lift / 60.0, 1e-6)
-        if used <= FREE and (bool(np.all(small < TOLERANCE)) or gain < LEAST_GAIN):
+        if idle == MOST_IDLE or (used <= FREE and (idle or bool(np.all(small < TOLERANCE)))):
             return Climb(p, value, True)
     return Climb(p, value, False)
 
