@@ -10,15 +10,14 @@ import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
-from jackettwin.errors import NumericalError
 from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.budget import SOURCES, damping_budget
 from jackettwin.updating.extras import Extras
-from jackettwin.updating.posterior import Posterior, sample_posterior
 from jackettwin.updating.solutions import search
 
 MODES = (1, 2, 4)
@@ -40,30 +39,13 @@ def twin_model(bounds: dict[str, tuple[float, float]]) -> SupportModel:
     )
 
 
-def observed(f: np.ndarray, zeta: np.ndarray, rng: np.random.Generator) -> tuple[Target, ...]:
-    """Return poles as one record gives them: lognormal, with Au's long-data limits."""
-    cov_f, cov_zeta = np.sqrt(zeta / (2 * np.pi * f * SECONDS)), 1 / np.sqrt(2 * np.pi * zeta * f * SECONDS)
-    f, zeta = f * np.exp(cov_f * rng.standard_normal(3)), zeta * np.exp(cov_zeta * rng.standard_normal(3))
-    return tuple(map(Target, MODES, f, cov_f * f, zeta, cov_zeta * zeta))
-
-
-def sampled(problem: Problem, seed: int) -> Posterior | None:
-    for particles in (100, 200):
-        try:
-            return sample_posterior(problem, particles=particles, islands=3, seed=seed)
-        except NumericalError:
-            continue
-    return None
-
-
 def twin(model: SupportModel, case: int) -> Result:
     """Return for each mode and source whether the 90 % interval holds the true damping ratio and share."""
     start = time.process_time()
     rng = np.random.default_rng((17, case))
     low, high = (np.log([getattr(p, side) for p in model.parameters]) for side in ("low", "high"))
     theta = np.exp(rng.uniform(low, high))
-    poles = model.predict(theta, MODES).poles
-    targets = observed(np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles), rng)
+    targets = as_measured(MODES, model.predict(theta, MODES).poles, SECONDS, rng)
     posterior = sampled(single(model, Residuals(targets, relative=False)), case)
     if posterior is None:
         return {"inside": None, "cpu_s": time.process_time() - start}

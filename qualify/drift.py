@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import binomtest
 
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Residuals, SupportModel, Target, family, joint, support_model
 from jackettwin.updating.drift import Drift, find_drift
@@ -36,10 +37,7 @@ def twin(model: SupportModel, change: float, seed: int) -> Drift:
         poles = model.predict(np.array([k * np.exp(slope * day), loss]), MODES).poles
         f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
         # what no method can beat (Au 2014), in a day of records
-        f_std, zeta_std = (
-            np.sqrt(zeta / (2 * np.pi * f * SECONDS)),
-            1 / np.sqrt(2 * np.pi * zeta * f * SECONDS),
-        )
+        f_std, zeta_std = long_data_limits(f, zeta, SECONDS)
         f_seen = f * np.exp(off + f_std * rng.standard_normal(len(MODES)))
         zeta_seen = zeta * np.exp(zeta_std * rng.standard_normal(len(MODES)))
         targets = tuple(

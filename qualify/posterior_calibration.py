@@ -14,6 +14,7 @@ from common.page import percent, write_page
 from scipy.stats import binomtest, chisquare
 
 from jackettwin.errors import NumericalError
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.extras import Extras
@@ -43,10 +44,7 @@ def observed(model: SupportModel, theta: np.ndarray, rng: np.random.Generator) -
     targets = []
     for mode, pole in zip(MODES, model.predict(theta, MODES).poles, strict=True):
         f, zeta = abs(pole) / (2 * np.pi), -pole.real / abs(pole)
-        cov_f, cov_zeta = (
-            np.sqrt(zeta / (2 * np.pi * f * SECONDS)),
-            1 / np.sqrt(2 * np.pi * zeta * f * SECONDS),
-        )
+        cov_f, cov_zeta = long_data_limits(f, zeta, SECONDS)
         f, zeta = np.exp(rng.normal(np.log([f, zeta]), [cov_f, cov_zeta]))
         targets.append(Target(mode, f, cov_f * f, zeta, cov_zeta * zeta))
     return single(model, Residuals(tuple(targets), relative=False))

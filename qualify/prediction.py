@@ -10,13 +10,12 @@ import time
 
 import numpy as np
 from common.cases import Result, cases
+from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
-from jackettwin.errors import NumericalError
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import Problem, Residuals, Target, family, single, support_model
-from jackettwin.updating.posterior import Posterior, sample_posterior
+from jackettwin.updating import Residuals, Target, family, single, support_model
 from jackettwin.updating.solutions import search
 
 MODES = (1, 2, 4)
@@ -59,25 +58,10 @@ def truth(assembly: Assembly, case: int) -> Result:
     }
 
 
-def observed(f: np.ndarray, zeta: np.ndarray, rng: np.random.Generator) -> tuple[Target, ...]:
-    """Return f1, f2, f4 and ζ1 as one record gives them: lognormal, with Au's long-data limits."""
-    cov_f, cov_zeta = np.sqrt(zeta / (2 * np.pi * f * SECONDS)), 1 / np.sqrt(2 * np.pi * zeta * f * SECONDS)
-    f, zeta = f * np.exp(cov_f * rng.standard_normal(3)), zeta * np.exp(cov_zeta * rng.standard_normal(3))
-    return (
-        Target(1, f[0], cov_f[0] * f[0], zeta[0], cov_zeta[0] * zeta[0]),
-        Target(2, f[1], cov_f[1] * f[1]),
-        Target(4, f[2], cov_f[2] * f[2]),
-    )
-
-
-def sampled(problem: Problem, seed: int) -> Posterior | None:
-    """Return the posterior; with twice the draws if the islands do not agree, as an update does."""
-    for particles in (100, 200):
-        try:
-            return sample_posterior(problem, particles=particles, islands=3, seed=seed)
-        except NumericalError:
-            continue
-    return None
+def observed(poles: np.ndarray, rng: np.random.Generator) -> tuple[Target, ...]:
+    """Return f1, f2, f4 and ζ1 as one record gives them."""
+    first, *others = as_measured(MODES, poles, SECONDS, rng)
+    return (first, *(Target(t.mode, t.frequency_hz, t.frequency_std_hz) for t in others))
 
 
 def prediction(assembly: Assembly, case: int) -> Result:
@@ -85,13 +69,12 @@ def prediction(assembly: Assembly, case: int) -> Result:
     start = time.process_time()
     rng = np.random.default_rng((11, case))
     poles = truth_poles(assembly, *drawn(rng))
-    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
     model = support_model(assembly, family=family("maxwell-3"), rayleigh=STEEL, bounds=BOUNDS, highest_mode=5)
-    posterior = sampled(single(model, Residuals(observed(f, zeta, rng), relative=False)), case)
+    posterior = sampled(single(model, Residuals(observed(poles, rng), relative=False)), case)
     rank = None
     if posterior is not None:
         predicted = posterior.poles[:, 2]
-        rank = float(np.mean(-predicted.real / np.abs(predicted) < zeta[2]))
+        rank = float(np.mean(-predicted.real / np.abs(predicted) < -poles[2].real / np.abs(poles[2])))
     return {"rank": rank, "cpu_s": time.process_time() - start}
 
 

@@ -19,6 +19,7 @@ from common.cases import Result, cases
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.soil.files import read_support
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.twin import read_twin, run_twin
@@ -52,8 +53,7 @@ def targets(poles: np.ndarray, rng: np.random.Generator) -> list[dict[str, float
     rows = []
     for mode, pole in zip(MODES, poles, strict=True):
         f, zeta = abs(pole) / (2 * np.pi), -pole.real / abs(pole)
-        cov_f = np.sqrt(zeta / (2 * np.pi * f * SECONDS))
-        cov_zeta = 1 / np.sqrt(2 * np.pi * zeta * f * SECONDS)
+        cov_f, cov_zeta = long_data_limits(f, zeta, SECONDS)
         f, zeta = np.exp(rng.normal(np.log([f, zeta]), [cov_f, cov_zeta]))
         rows.append(
             {

@@ -116,7 +116,8 @@ def cramer_rao(
     data = Periodogram(omega, count, np.zeros((len(omega), n, n), complex), none, none, duration_s)
     matrix = expected(data, p).matrix
     power = np.einsum("kaa->ka", matrix).real
-    bound = accuracy.covariance(replace(data, density=matrix, floor=power, dither=power), p)[1]
+    exact = replace(data, density=matrix, floor=power, dither=power)
+    bound = accuracy.accuracy_of(exact, p).cramer_rao
     return bound[: len(f)], bound[len(f) : 2 * len(f)]
 
 

@@ -96,12 +96,15 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[Group]:
     """
     for rows, senses in _parallel(record, y):
         places = [_place(record.channels[i]) for i in rows]
+        if all(place is None for place in places):
+            continue
+        spectra = windowed_spectra(y[rows] * senses[:, None])
         for together in _one_place(places):
-            yield Group(_together(rows, together, y, senses))
+            yield Group(_together(rows, together, spectra))
         tower = [k for k, place in enumerate(places) if isinstance(place, float)]
         if len({places[k] for k in tower}) > 1:
             heights = [place for k in tower if isinstance(place := places[k], float)]
-            yield Group(_together(rows, tower, y, senses), heights)
+            yield Group(_together(rows, tower, spectra), heights)
 
 
 def swapped(record: Record, groups: Sequence[Group]) -> dict[str, bool]:
@@ -217,9 +220,8 @@ def _one_place(places: list[str | float | None]) -> Iterator[list[int]]:
             yield group
 
 
-def _together(rows: list[int], chosen: list[int], y: FloatArray, senses: FloatArray) -> Together:
-    picked = [rows[k] for k in chosen]
-    spectra = windowed_spectra(y[picked] * senses[chosen][:, None])
+def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> Together:
+    picked, spectra = [rows[k] for k in chosen], all_spectra[chosen]
     peak = strongest_line(spectra)
     n_bands = max(int(np.log((spectra.shape[1] - 1) / LEAST_CYCLES) / np.log(WIDTH)), 0)
     edges = (LEAST_CYCLES * WIDTH ** np.arange(n_bands + 1)).astype(np.int64)

@@ -107,7 +107,7 @@ def _equivalent_depth(
 def _point(profile: SoilProfile, k: int, z: float, h: float) -> Point:
     """Return the ground at depth ``z`` in layer ``k`` whose top lies ``h`` below its equivalent surface."""
     layer = profile.layers[k]
-    edge = float(np.sum([above.thickness_m for above in profile.layers[:k]]))
+    edge = float(profile.boundaries_m[k - 1]) if k else 0.0
     top = max(edge, profile.scour.general_m)
     zeta = h + z - top
     strength, mean = _strengths(layer, edge, top, z, h)

@@ -36,10 +36,16 @@ def condensed_for(
     groups: Feet,
     rayleigh: Rayleigh,
     extras: Extras,
+    pinned_hz: FloatArray,
     highest_mode: int,
     fastest_rate: float,
 ) -> Condensed:
     """Return a structure condensed on its feet, every tie group a group of its own.
+
+    Parameters
+    ----------
+    pinned_hz : (n,)
+        Of its numbered modes, up to the highest or the last that it has.
 
     Raises
     ------
@@ -56,7 +62,6 @@ def condensed_for(
             assembly.structure.top_node, np.array([1e3 + i for i in range(len(extras.dashpots))])
         ),
     )
-    pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
     below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
     _check_band(rayleigh, pinned_hz, highest_mode, fastest_rate)
     return condense(system, below_hz=below_hz, spread=tuple(extras.water.values()))

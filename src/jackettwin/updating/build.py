@@ -59,7 +59,8 @@ def support_model(
     InputError
         If the tie is unknown, the structure has no reaction nodes, or a bound is wrong.
     """
-    first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
+    pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
+    first_hz = float(pinned_hz[0])
     groups = feet(assembly.structure, tie, heads=heads, reference_hz=first_hz)
     suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
     derived = priors_of(groups, first_hz) if head_priors else {}
@@ -72,7 +73,7 @@ def support_model(
     known |= {p.name for p in extras.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
-    condensed = condensed_for(assembly, groups, rayleigh, extras, highest_mode, fastest_rate)
+    condensed = condensed_for(assembly, groups, rayleigh, extras, pinned_hz, highest_mode, fastest_rate)
     low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
     extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
     return SupportModel(

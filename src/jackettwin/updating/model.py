@@ -85,8 +85,9 @@ class SupportModel:
         """Return the model with a band up to a numbered mode; itself if it reaches there."""
         if mode <= self.highest_mode:
             return self
+        pinned_hz = numbered_modes(self.assembly, mode).frequency_hz
         condensed = condensed_for(
-            self.assembly, self.feet, self.rayleigh, self.extras, mode, self.fastest_rate
+            self.assembly, self.feet, self.rayleigh, self.extras, pinned_hz, mode, self.fastest_rate
         )
         return replace(self, condensed=condensed, highest_mode=mode)
 

@@ -139,7 +139,7 @@ def test_curvature_biases_as_foretold():
         drawn = replace(data, density=wishart(root, data.count, rng))
         linear = np.linalg.solve(fisher, likelihood.scoring(drawn, prior, p)[0])
         left.append((likelihood.climbed(drawn, p).parameters.vector - p.vector - linear)[:2])
-    foretold = accuracy.curvature_bias(data, p, accuracy.covariance(data, p)[0])[:2]
+    foretold = accuracy.curvature_bias(data, p, accuracy.accuracy_of(data, p))[:2]
     error = np.std(left, axis=0) / np.sqrt(len(left))
     assert foretold[1] > 10.0 * error[1] / 3.0
     # the next order is the bias times σ², 0.05; three standard errors

@@ -6,6 +6,7 @@ of the information.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,13 +48,32 @@ FIT_BLOCKS = 40
 """Blocks of lines over which the misfit is summed."""
 
 
-def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray]:
-    r"""Return the sandwich covariance of the parameters and their Cramér-Rao standard deviations.
+@dataclass(frozen=True)
+class Accuracy:
+    """What a fit knows of its parameters.
+
+    Attributes
+    ----------
+    covariance : (n_parameters, n_parameters)
+        The sandwich.
+    inverse_information : (n_parameters, n_parameters)
+        F⁻¹, the prior counted.
+    cramer_rao : (n_parameters,)
+        Least standard deviations, of the model without the dither.
+    """
+
+    covariance: FloatArray
+    inverse_information: FloatArray
+    cramer_rao: FloatArray
+
+
+def accuracy_of(data: Periodogram, p: Parameters) -> Accuracy:
+    r"""Return the covariance of the parameters, and what it is made of.
 
     .. math:: F^{-1} V F^{-1}, \quad V_{pq} = \sum_k n_k \mathrm{tr}(E^{-1}\partial_p E\,E^{-1}E_0\,
               E^{-1}\partial_q E\,E^{-1}E_0)
 
-    with :math:`E_0` the model without the dither, which does not scatter; the bound is that of :math:`E_0`.
+    with :math:`E_0` the model without the dither, which does not scatter.
     """
     prior = prior_of(data, p)
     model = expected(data, p)
@@ -67,10 +87,10 @@ def covariance(data: Periodogram, p: Parameters) -> tuple[FloatArray, FloatArray
     clear = _information(data, p, *_barely_regular(data, p))
     clear[np.diag_indices(len(clear))] += prior.precision
     add_coherence_prior(p, np.zeros(len(clear)), clear)
-    return np.asarray(bread @ middle @ bread), np.sqrt(np.diag(_inverse(clear)))
+    return Accuracy(np.asarray(bread @ middle @ bread), bread, np.sqrt(np.diag(_inverse(clear))))
 
 
-def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> FloatArray:
+def curvature_bias(data: Periodogram, p: Parameters, known: Accuracy) -> FloatArray:
     r"""Return the bias of the estimated parameters due to the curvature of the model, (n_parameters,).
 
     .. math:: b_p = -\tfrac12 \sum_q F^{-1}_{pq} \sum_k n_k\, \mathrm{tr}\,E^{-1}\partial_q E\,E^{-1} T,
@@ -79,13 +99,8 @@ def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> 
     The second-order bias of Cox & Snell (1968) for a Gaussian model, whose other terms cancel. T is the sum
     of the second differences of E along the columns of a triangular root of C that move f, ζ and α; what
     the others add is in closed form.
-
-    Parameters
-    ----------
-    covariance : (n_parameters, n_parameters)
-        C, of the estimate.
     """
-    model = expected(data, p)
+    model, covariance = expected(data, p), known.covariance
     n = 3 * len(p.log_f)
     root = linalg.cholesky(covariance[:n, :n], lower=True)
     columns = np.vstack([root, linalg.solve_triangular(root, covariance[:n, n:], lower=True).T])
@@ -95,10 +110,7 @@ def curvature_bias(data: Periodogram, p: Parameters, covariance: FloatArray) -> 
         bend += (ahead + behind - 2.0 * model.matrix) / BEND_STEP**2
     white = inverse_root(model.matrix)
     misfit = np.asarray(-0.5 * white @ bend @ white.conj().transpose(0, 2, 1))
-    score, fisher = products(data, p, model, white, misfit)
-    fisher[np.diag_indices(len(score))] += prior_of(data, p).precision
-    add_coherence_prior(p, np.zeros(len(score)), fisher)
-    return np.asarray(_inverse(fisher) @ score)
+    return np.asarray(known.inverse_information @ products(data, p, model, white, misfit)[0])
 
 
 def lack_of_fit(data: Periodogram, p: Parameters) -> float:

@@ -127,7 +127,8 @@ def refine(
     local_dither_share : float, optional
         So much of the local median spectrum is added, given where the band holds some of the modes only.
     most_lack_of_fit : float
-        A fit that lacks more is returned before modes are dropped from it: fewer fit no better.
+        A fit that lacks more is returned before modes are dropped from it: fewer fit no better. One that
+        lacks much more is given up, and returned without modes.
     """
     data = periodogram(
         y,
@@ -146,11 +147,14 @@ def refine(
     climb = likelihood.climbed(data, first, APPROACH)
     climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
     climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
-    far = accuracy.lack_of_fit(data, climb.parameters) > HOPELESS * most_lack_of_fit
-    if not climb.converged and not far:
+    lack = accuracy.lack_of_fit(data, climb.parameters)
+    if lack > HOPELESS * most_lack_of_fit:
+        return _given_up(gain, unit.shape[1], lack)
+    if not climb.converged:
         climb = likelihood.climbed(data, climb.parameters)
-    known = accuracy.covariance(data, climb.parameters)
-    if accuracy.lack_of_fit(data, climb.parameters) <= most_lack_of_fit:
+        lack = accuracy.lack_of_fit(data, climb.parameters)
+    known = accuracy.accuracy_of(data, climb.parameters)
+    if lack <= most_lack_of_fit:
         climb, chosen, known = _thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
 
@@ -183,14 +187,14 @@ def _joined(
 
 
 def _thinned(
-    data: Periodogram, climb: likelihood.Climb, chosen: IntArray, known: tuple[FloatArray, FloatArray]
-) -> tuple[likelihood.Climb, IntArray, tuple[FloatArray, FloatArray]]:
+    data: Periodogram, climb: likelihood.Climb, chosen: IntArray, known: accuracy.Accuracy
+) -> tuple[likelihood.Climb, IntArray, accuracy.Accuracy]:
     """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
     kept: set[int] = set()
     while len(chosen) > 1:
         p = climb.parameters
         mode = p.background + np.arange(len(chosen))
-        std = np.sqrt(np.diag(known[0]))[len(p.log_f) + mode]
+        std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
         limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
         suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
@@ -199,7 +203,7 @@ def _thinned(
         fewer = likelihood.climbed(data, p.without(p.background + suspect[0]))
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
-            known = accuracy.covariance(data, climb.parameters)
+            known = accuracy.accuracy_of(data, climb.parameters)
         else:
             kept.add(int(chosen[suspect[0]]))
     return climb, chosen, known
@@ -235,11 +239,11 @@ def _result(
     climb: likelihood.Climb,
     chosen: IntArray,
     gain: FloatArray,
-    known: tuple[FloatArray, FloatArray],
+    known: accuracy.Accuracy,
 ) -> Refined:
     p = climb.parameters
     n, n_channels = p.shapes.shape
-    covariance, bound = known
+    covariance = known.covariance
     mode = np.arange(p.background, n)
     mode = mode[np.argsort(p.log_f[mode])]
     both = np.stack([mode, mode + n], axis=1)
@@ -250,7 +254,7 @@ def _result(
     if not p.background:
         excess = log_covariance[:, 1, 1]
         most = MOST_BIAS * np.sqrt(np.diagonal(log_covariance, axis1=1, axis2=2))
-        bias = np.clip(accuracy.curvature_bias(data, p, covariance)[both], -most, most)
+        bias = np.clip(accuracy.curvature_bias(data, p, known)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
         candidate=chosen[mode - p.background],
@@ -259,8 +263,24 @@ def _result(
         shapes=p.shapes[mode],
         covariance=log_covariance * wider[:, :, None] * wider[:, None, :],
         shape_covariance=covariance[shape[:, :, None], shape[:, None, :]],
-        cramer_rao=bound[both],
+        cramer_rao=known.cramer_rao[both],
         gain=gain,
         lack_of_fit=accuracy.lack_of_fit(data, p),
         converged=climb.converged,
+    )
+
+
+def _given_up(gain: FloatArray, n_channels: int, lack_of_fit: float) -> Refined:
+    """Return a fit of no mode."""
+    return Refined(
+        candidate=np.zeros(0, dtype=np.int64),
+        frequency_hz=np.zeros(0),
+        damping_ratio=np.zeros(0),
+        shapes=np.zeros((0, n_channels)),
+        covariance=np.zeros((0, 2, 2)),
+        shape_covariance=np.zeros((0, n_channels, n_channels)),
+        cramer_rao=np.zeros((0, 2)),
+        gain=gain,
+        lack_of_fit=lack_of_fit,
+        converged=False,
     )
