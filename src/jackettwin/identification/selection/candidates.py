@@ -14,6 +14,7 @@ from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.identification.tones.drifting_tones import tone_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
+from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.records.tones import less_phase
 
@@ -137,17 +138,19 @@ def find_tones(
     """
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
-    clean, followed, steady = y, list(drifting), []
+    clean, lines, followed, steady = y, transform(y), list(drifting), []
     for k in sorted(likely):
         if any(_passed(tone, f[k]) for tone in followed):
             continue
-        track = tone_at(clean, sample_rate_hz, f[k])
+        track = tone_at(lines, y.shape[1] / sample_rate_hz, f[k])
         if track is not None:
             followed.append(track)
             clean = less_phase(clean, track.phase(y.shape[1]))
+            lines = transform(clean)
         elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], poles.mode_shape[k] / scale):
             steady.append(k)
             clean = without_tones(clean, sample_rate_hz, [f[k]])
+            lines = transform(clean)
     passed = {k for k in likely if any(_passed(tone, f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
 

@@ -17,7 +17,7 @@ from scipy import fft
 
 from jackettwin.identification.tones.envelopes import independent_values, least_variance, relative_variance
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, first_phase, phase_track
-from jackettwin.identification.tones.sinusoid import lines_around, regular
+from jackettwin.identification.tones.sinusoid import lines_around, regular, transform
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def drifting_tones(
     found: list[PhaseTrack] = []
     left = y
     for _ in range(MOST):
-        lines = _lines(left)
+        lines = transform(left)
         track = _clearest(lines, duration, _bands(lines, duration, top))
         if track is None:
             break
@@ -120,16 +120,20 @@ def _tone_in(lines: ComplexArray, duration_s: float, band: Band, share: float) -
     return phase_track(wide, first_phase(signal), share=share)
 
 
-def tone_at(y: FloatArray, sample_rate_hz: float, frequency_hz: float) -> PhaseTrack | None:
+def tone_at(lines: ComplexArray, duration_s: float, frequency_hz: float) -> PhaseTrack | None:
     """Return the tone in the bands around the frequency of a pole, if there is one.
 
     Less is asked than of one of all the bands of a record.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Of the channels' transforms, from zero frequency.
     """
-    duration, lines = y.shape[1] / sample_rate_hz, _lines(y)
     for drift in DRIFTS:
-        band = band_of(lines, duration, frequency_hz, max(drift * frequency_hz, FEWEST_LINES / duration))
+        band = band_of(lines, duration_s, frequency_hz, max(drift * frequency_hz, FEWEST_LINES / duration_s))
         share = STEADY_SHARE if band.variance < band.expected else 1.0
-        track = _tone_in(lines, duration, band, share)
+        track = _tone_in(lines, duration_s, band, share)
         if track is not None and track.swept_hz[0] < frequency_hz < track.swept_hz[1]:
             return track
     return None
@@ -178,7 +182,3 @@ def _combination(inside: ComplexArray, noise: ComplexArray) -> tuple[ComplexArra
 
 def _covariance(lines: ComplexArray) -> ComplexArray:
     return np.asarray(lines @ lines.conj().T / lines.shape[1])
-
-
-def _lines(y: FloatArray) -> ComplexArray:
-    return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy import fft
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -55,6 +56,11 @@ class Sinusoid:
 
     position: float
     ratio: float
+
+
+def transform(y: FloatArray) -> ComplexArray:
+    """Return the Fourier transforms of samples (n_channels, n_samples), missing ones (NaN) as zero."""
+    return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))
 
 
 def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:

@@ -12,10 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy import fft
 
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, least_ratio, phase_track
-from jackettwin.identification.tones.sinusoid import LINES, REACH, lines_around, regular, sinusoid
+from jackettwin.identification.tones.sinusoid import (
+    LINES,
+    REACH,
+    lines_around,
+    regular,
+    sinusoid,
+    transform,
+)
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
@@ -64,7 +70,7 @@ def steady_tones(
     if y.shape[1] // 2 <= 2 * (NEAREST_LINE + lines_around(len(y))):
         return (), (), left
     while len(found) < MOST:
-        spectrum = _transform(left)
+        spectrum = transform(left)
         tones = [t for t in _clear_tones(spectrum) if _apart(t.position, found)]
         if not tones:
             break
@@ -110,7 +116,7 @@ def without_tones(y: FloatArray, sample_rate_hz: float, tones_hz: Iterable[float
     """
     out = y
     for tone in tones_hz:
-        spectrum = _transform(out)
+        spectrum = transform(out)
         near = round(tone * y.shape[1] / sample_rate_hz) + np.arange(-3, 4)
         edge = lines_around(len(y))
         near = near[(near > edge) & (near < spectrum.shape[1] - edge)]
@@ -160,10 +166,6 @@ def _over_background(spectrum: ComplexArray) -> FloatArray:
         solved = np.linalg.solve(around, x[:, :, None])[:, :, 0]
         out[k] = np.einsum("ka,ka->k", x.conj(), solved).real
     return np.asarray(out * (max(n - n_channels, 1) / (n * n_channels)))
-
-
-def _transform(y: FloatArray) -> ComplexArray:
-    return np.asarray(fft.rfft(np.where(np.isfinite(y), y, 0.0), axis=1))
 
 
 def _less(y: FloatArray, position: float) -> FloatArray:
