@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import fuse, identify
+from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.records import read_record
 
 RECORDS = files("jackettwin") / "data" / "records"
@@ -29,7 +30,8 @@ STILL = {
 
 @pytest.fixture(scope="module")
 def results():
-    return {name: identify(read_record(str(RECORDS / f"{name}.parquet"))) for name in RIGID}
+    """As of records whose yaw is known: one of them does not tell the first pair apart by its shapes."""
+    return {name: along_axes(identify(read_record(str(RECORDS / f"{name}.parquet")))) for name in RIGID}
 
 
 def truth(name):

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.maximum_likelihood import accuracy
+from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
 from jackettwin.identification.maximum_likelihood.periodogram import Periodogram, group_starts
-from jackettwin.identification.maximum_likelihood.spectral_model import Parameters, coherent_pairs, expected
+from jackettwin.identification.maximum_likelihood.spectral_model import expected
 from jackettwin.records import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
+from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
 from jackettwin.identification.maximum_likelihood.refinement import gain_of, needed_gain, refine
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
@@ -48,14 +49,28 @@ def fitted(tower, rng):
     return data, p.moved(0.03 * rng.standard_normal(len(p.vector)))
 
 
+@pytest.fixture
+def fitted_narrow(tower, rng):
+    """The first pair with the third mode beside its band, shapes that lag, and a background."""
+    y, shapes = of(tower, rng)
+    f, zeta = tower.frequency_hz[[2, 0, 1]], tower.damping_ratio[[2, 0, 1]]
+    data = periodogram(y, RATE, (0.21, 0.4), modes=(f[1:], zeta[1:]), derivatives=[0] * 8, dither_share=0.3)
+    beside = likelihood.start(data, f, zeta, shapes[[2, 0, 1]], 1)
+    p = with_background(data, replace(beside, lag=np.zeros((2, 8))))
+    step = 0.03 * rng.standard_normal(len(p.vector))
+    step[: p.held] = step[len(p.log_f) : len(p.log_f) + p.held] = 0.0
+    return data, p.moved(step)
+
+
 def central(function, p, k, step):
     h = np.zeros(len(p.vector))
     h[k] = step
     return (function(p.moved(h)) - function(p.moved(-h))) / (2.0 * step)
 
 
-def test_score_equals_finite_differences(fitted):
-    data, p = fitted
+@pytest.mark.parametrize("kind", ["fitted", "fitted_narrow"])
+def test_score_equals_finite_differences(kind, request):
+    data, p = request.getfixturevalue(kind)
     prior = likelihood.prior_of(data, p)
     score, _ = likelihood.scoring(data, prior, p)
     for k in range(0, len(score), 7):

@@ -12,7 +12,8 @@ from jackettwin.identification.maximum_likelihood import likelihood
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.local_refinement import groups, refine_group
 from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
-from jackettwin.identification.maximum_likelihood.periodogram import periodogram
+from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
+from jackettwin.identification.maximum_likelihood.periodogram import Periodogram, group_starts, periodogram
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, log_distance
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
@@ -81,6 +82,55 @@ def test_forces_that_fall_with_frequency_leave_the_pair_where_it_is(tower, rng):
     # the prior of the noise keeps a little: 5e-5 and 2 % in one of two records
     np.testing.assert_allclose(np.exp(found.log_f), f, rtol=2e-4)
     np.testing.assert_allclose(np.exp(found.log_zeta), zeta, rtol=0.03)
+
+
+def third_pair():
+    """Return a tower whose shapes lag, and exact spectra about its third pair, in tails of the second."""
+    f = np.array([0.176, 0.178, 0.762, 0.787, 1.264, 1.39])
+    zeta = np.array([0.038, 0.011, 0.049, 0.037, 0.043, 0.025])
+    x, y, lag = np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.04 - 0.03j
+    heights = [1.0, 0.45, 0.2, 0.1], [-0.3, 0.6, 0.8, 0.6], [0.2, -0.5, 0.4, 0.7]
+    directions = (y + lag * x, x + lag * y)
+    shapes = np.array([np.kron(h, direction) for h in heights for direction in directions])
+    shapes *= np.repeat([3.0, 1.0, 0.2], 2)[:, None]
+    lines = np.arange(588, 1126) / 600.0
+    start = group_starts(lines, 600.0, f[4:], zeta[4:])
+    count = np.diff(np.append(start, len(lines))).astype(float)
+    omega, none = 2.0 * np.pi * np.add.reduceat(lines, start) / count, np.zeros((len(start), 8))
+    blank = Periodogram(omega, count, np.zeros((len(start), 8, 8), complex), none, none, 600.0)
+    pairs = coherent_pairs(np.log(f))
+    moved = shapes[pairs[:, 0]] * shapes[pairs[:, 1]].conj()
+    size = np.linalg.norm(shapes, axis=1)
+    coherence = 0.9 * moved.sum(axis=1) / size[pairs[:, 0]] / size[pairs[:, 1]]
+    noise = np.array([[-9.0], [0.0]]) * np.ones(8)
+    true = Parameters(
+        np.log(f), np.log(zeta), np.full(6, 2.0), shapes.real, coherence, noise, pairs, lag=shapes.imag
+    )
+    matrix = expected(blank, true).matrix
+    floor = np.broadcast_to(np.median(np.einsum("kaa->ka", matrix).real, axis=0), none.shape)
+    return true, replace(blank, density=matrix, floor=floor, dither=3.0 * floor)
+
+
+def test_modes_beside_the_band_take_part_as_they_are():
+    """Tails of a strong pair are no power of frequency: as a background alone they move f and ζ."""
+    true, data = third_pair()
+    error = {}
+    for beside in ([2, 3], []):
+        modes = [*beside, 4, 5]
+        f, zeta = np.exp(true.log_f[modes]), np.exp(true.log_zeta[modes])
+        first = likelihood.start(data, f, zeta, true.shapes[modes], len(beside))
+        first = with_background(data, replace(first, lag=np.zeros((2, 8))))
+        found = likelihood.climbed(data, first).parameters
+        error[len(beside)] = (
+            np.abs(found.log_f[found.held :] - true.log_f[4:]).max(),
+            np.abs(found.log_zeta[found.held :] - true.log_zeta[4:]).max(),
+        )
+        np.testing.assert_allclose(np.exp(found.log_f[2 : found.held]), f[: len(beside)], rtol=1e-6)
+    # what is left is of the first pair, and of the dither, whose share of E is not of the model
+    assert error[2][0] < 1e-3
+    assert error[2][1] < 0.02
+    assert error[0][0] > 3e-3
+    assert error[0][1] > 0.04
 
 
 def single_force(rng):

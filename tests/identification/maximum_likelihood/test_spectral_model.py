@@ -7,12 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
 from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
-from jackettwin.identification.maximum_likelihood.spectral_model import (
-    Parameters,
-    coherent_pairs,
-    expected,
-)
+from jackettwin.identification.maximum_likelihood.spectral_model import expected
 
 RATE, DURATION = 20.0, 600.0
 

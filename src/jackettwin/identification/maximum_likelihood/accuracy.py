@@ -23,7 +23,6 @@ from jackettwin.identification.maximum_likelihood.likelihood import (
 )
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
-    Parameters,
     derivative_factors,
     expected,
     gram,
@@ -31,6 +30,7 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
 )
 
 if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 FloatArray = npt.NDArray[np.float64]

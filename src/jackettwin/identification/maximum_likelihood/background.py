@@ -2,7 +2,8 @@
 
 Far from its frequency a mode's response is its force times a power of frequency, in phase or in antiphase.
 All modes that one force drives act together there, so as many shapes as there are forces are enough: a
-background of real, free shapes, coherent with the modes as the data say.
+background of real, free shapes, coherent with the modes as the data say. Modes beside the band are not far:
+they take part as they are (``Parameters.outside``).
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.identification.maximum_likelihood.spectral_model import coherent_pairs
+from jackettwin.identification.maximum_likelihood.parameters import coherent_pairs
 
 if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
-    from jackettwin.identification.maximum_likelihood.spectral_model import Parameters
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -20,10 +20,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
-    Parameters,
-    coherent_pairs,
     derivative_factors,
     expected,
     gram,
@@ -46,6 +45,8 @@ COLOUR_PRIOR = 3.0
 """Standard deviation of the exponents of the force spectra about the common one of the start."""
 NOISE_PRIOR = (2.7, 1.0)
 """… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
+LAG_PRIOR = 0.05
+"""Standard deviation of the imaginary parts of a shape, as a share of its norm: 3° of all its channels."""
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
 """Exponents tried at the start, of all force spectra together."""
 MAX_ITERATIONS = 80
@@ -59,7 +60,7 @@ MOST_IDLE = 3
 """… Or when so many steps running gain no more, however damped."""
 ZETA_RANGE = (1e-5, 0.5)
 HELD = 1e-4
-"""Standard deviation of the prior on ln f and ln ζ of a background, which are no parameters."""
+"""Standard deviation of the prior on ln f and ln ζ of modes that are not sought."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +106,13 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
     return Climb(p, value, False)
 
 
-def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray) -> Parameters:
-    """Return first parameters: shapes scaled to the power of their peaks, incoherent forces, one exponent."""
+def start(
+    data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray, outside: int = 0
+) -> Parameters:
+    """Return first parameters: shapes scaled to the power of their peaks, incoherent forces, one exponent.
+
+    So many of the first modes are beside the band: scaled to the power of the line that is nearest.
+    """
     zeta = np.clip(zeta, 1e-3, 0.3)
     scaled = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     for i, phi in enumerate(scaled):
@@ -120,8 +126,8 @@ def start(data: Periodogram, f: FloatArray, zeta: FloatArray, shapes: FloatArray
     none = np.zeros(len(pairs), dtype=complex)
     noise = np.stack([_noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
     first = [
-        Parameters(np.log(f), np.log(zeta), np.full(n, colour), scaled, none, noise, pairs, exponent=colour)
-        for colour in COLOURS
+        Parameters(np.log(f), np.log(zeta), np.full(n, c), scaled, none, noise, pairs, 0, outside, c)
+        for c in COLOURS
     ]
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
 
@@ -131,15 +137,16 @@ def _noise_level(data: Periodogram, share: float) -> FloatArray:
 
 
 def prior_of(data: Periodogram, p: Parameters) -> Prior:
-    """Return the prior: weak on colours and noise, none on the modes, backgrounds held."""
+    """Return the prior: weak on colours, noise and lags, none on the modes but those that are not sought."""
     level = _noise_level(data, LIKELY_NOISE)
     blank = p.moved(-p.vector)
-    held = (np.arange(len(p.log_f)) < p.background).astype(float)
+    mode = np.arange(len(p.log_f))
+    held, background = (mode < p.held).astype(float), (mode < p.background).astype(float)
     centre = replace(
         blank,
         log_f=p.log_f * held,
         log_zeta=p.log_zeta * held,
-        colour=p.exponent * (1.0 - held),
+        colour=p.exponent * (1.0 - background),
         noise=np.stack([level, np.zeros_like(level)]),
     )
     std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)
@@ -149,6 +156,7 @@ def prior_of(data: Periodogram, p: Parameters) -> Prior:
         log_zeta=held * HELD**-2,
         colour=np.full(len(p.colour), COLOUR_PRIOR**-2),
         noise=std**-2.0,
+        lag=np.broadcast_to((LAG_PRIOR * p.lagging_size) ** -2.0, p.lag.shape),
     )
     return Prior(centre.vector, precision.vector)
 
@@ -243,6 +251,7 @@ def _far(p: Parameters, step: FloatArray) -> float:
             np.broadcast_to(0.5 * size, p.shapes.shape).ravel(),
             np.full(2 * n_pairs, 1.0),
             np.full(p.noise.size, 2.0),
+            np.broadcast_to(0.5 * p.lagging_size, p.lag.shape).ravel(),
         ]
     )
     return float(np.max(np.abs(step) / reach))

@@ -2,7 +2,9 @@
 
 Over a wide band the model asks that force spectra be powers of frequency and that no mode outside act in it.
 Turbulence on a rotor keeps neither. Around one group of close modes every smooth spectrum is a power of
-frequency, and the modes outside are a background (``background.py``).
+frequency; the modes beside the band take part with the frequencies and damping they have, and what is farther
+is a background (``background.py``). Shapes may lag: a rotor's dashpot lets the other direction take part
+late, and with little noise a few degrees move the damping.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.identification.maximum_likelihood.refinement import Refined, refine
+from jackettwin.identification.maximum_likelihood.refinement import Narrow, Refined, refine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,10 +26,13 @@ BoolArray = npt.NDArray[np.bool_]
 REACH = 1.35
 """Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
 
-DITHER_SHARES = (3.0, 10.0)
+DITHER_SHARES = (0.3, 3.0, 10.0)
 """Share of the local median spectrum added; the next one where a fit with the one before does not describe
-the lines. One force moves all channels, and between the peaks their ratios would fix the damping more sharply
-than the record allows, if the model were exact; the more is added, the less they count."""
+the lines. One force moves all channels, and between the peaks their ratios fix the damping more sharply than
+the record allows, as far as the model is exact; the more is added, the less they count."""
+
+BESIDE = 2.0
+"""Modes outside the band, but nearer to its edge than this ratio, do more in it than a background can."""
 
 FEW_LINES = 1.5
 """The covariance is multiplied by this: a narrow band holds few lines for its many parameters."""
@@ -89,6 +94,8 @@ def refine_group(
     What the lack of fit exceeds 1 by multiplies the covariance.
     """
     among = np.flatnonzero(group.members)
+    low, high = group.band_hz
+    beside = sure & ~group.members & (frequency_hz > low / BESIDE) & (frequency_hz < high * BESIDE)
     fit = refine(
         y,
         sample_rate_hz,
@@ -100,7 +107,7 @@ def refine_group(
         derivatives=derivatives,
         avoid_hz=avoid_hz,
         background=True,
-        local_dither_share=dither_share,
+        narrow=Narrow(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
     return replace(

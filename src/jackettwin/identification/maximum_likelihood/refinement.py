@@ -18,7 +18,7 @@ mode alone, intervals then cover 94 to 95 % down to 2πζfT = 6; without it, 93 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,8 +33,8 @@ from jackettwin.identification.maximum_likelihood.spectral_model import expected
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
-    from jackettwin.identification.maximum_likelihood.spectral_model import Parameters
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -57,6 +57,26 @@ MOST_ADDED = 6
 
 
 @dataclass(frozen=True)
+class Narrow:
+    """What the fit of a narrow band is told of the rest of the spectrum.
+
+    Attributes
+    ----------
+    dither_share : float
+        So much of the local median spectrum is added to model and data.
+    frequency_hz, damping_ratio : (n_beside,)
+        Of the modes beside the band; they are kept.
+    shapes : (n_beside, n_channels)
+        Real, where the fit starts.
+    """
+
+    dither_share: float
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    shapes: FloatArray
+
+
+@dataclass(frozen=True)
 class Refined:
     """Maximum-likelihood estimates of the modes of a band.
 
@@ -67,7 +87,7 @@ class Refined:
     frequency_hz, damping_ratio : (n_modes,)
         Corrected for the small sample.
     shapes : (n_modes, n_channels)
-        Real.
+        Real parts.
     covariance : (n_modes, 2, 2)
         Of (ln f, ln ζ).
     shape_covariance : (n_modes, n_channels, n_channels)
@@ -104,7 +124,7 @@ def refine(
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
     background: bool = False,
-    local_dither_share: float | None = None,
+    narrow: Narrow | None = None,
     most_lack_of_fit: float = np.inf,
 ) -> Refined:
     """Fit the sure candidates together, admit the doubtful ones that are needed.
@@ -124,8 +144,8 @@ def refine(
         Ranges that are left out of the fit.
     background : bool
         Whether shapes that follow their force are fitted too: the modes outside the band, or waves below it.
-    local_dither_share : float, optional
-        So much of the local median spectrum is added, given where the band holds some of the modes only.
+    narrow : Narrow, optional
+        Given where the band holds some of the modes only; the shapes of its modes may lag there.
     most_lack_of_fit : float
         A fit that lacks more is returned before modes are dropped from it: fewer fit no better. One that
         lacks much more is given up, and returned without modes.
@@ -137,11 +157,12 @@ def refine(
         modes=(frequency_hz, damping_ratio),
         derivatives=derivatives,
         avoid_hz=avoid_hz,
-        dither_share=local_dither_share,
+        dither_share=None if narrow is None else narrow.dither_share,
     )
     unit = shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
     chosen = np.flatnonzero(sure)
-    first = likelihood.start(data, frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
+    sought = (frequency_hz[chosen], damping_ratio[chosen], unit[chosen])
+    first = likelihood.start(data, *sought) if narrow is None else _beside(narrow, data, *sought)
     if background:
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
@@ -157,6 +178,21 @@ def refine(
     if lack <= most_lack_of_fit:
         climb, chosen, known = _thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
+
+
+def _beside(
+    narrow: Narrow, data: Periodogram, f: FloatArray, zeta: FloatArray, unit: FloatArray
+) -> Parameters:
+    """Return first parameters of the modes of a narrow band and of those beside it."""
+    size = np.linalg.norm(narrow.shapes, axis=1, keepdims=True)
+    first = likelihood.start(
+        data,
+        np.append(narrow.frequency_hz, f),
+        np.append(narrow.damping_ratio, zeta),
+        np.vstack([narrow.shapes / size, unit]),
+        len(size),
+    )
+    return replace(first, lag=np.zeros_like(unit))
 
 
 def _joined(
@@ -193,14 +229,14 @@ def _thinned(
     kept: set[int] = set()
     while len(chosen) > 1:
         p = climb.parameters
-        mode = p.background + np.arange(len(chosen))
+        mode = p.held + np.arange(len(chosen))
         std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
         limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
         suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:
             break
-        fewer = likelihood.climbed(data, p.without(p.background + suspect[0]))
+        fewer = likelihood.climbed(data, p.without(p.held + suspect[0]))
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
             known = accuracy.accuracy_of(data, climb.parameters)
@@ -244,7 +280,7 @@ def _result(
     p = climb.parameters
     n, n_channels = p.shapes.shape
     covariance = known.covariance
-    mode = np.arange(p.background, n)
+    mode = np.arange(p.held, n)
     mode = mode[np.argsort(p.log_f[mode])]
     both = np.stack([mode, mode + n], axis=1)
     shape = 3 * n + mode[:, None] * n_channels + np.arange(n_channels)
@@ -257,7 +293,7 @@ def _result(
         bias = np.clip(accuracy.curvature_bias(data, p, known)[both], -most, most)
     wider = np.stack([np.ones(len(mode)), np.sqrt(1.0 + excess)], axis=1)
     return Refined(
-        candidate=chosen[mode - p.background],
+        candidate=chosen[mode - p.held],
         frequency_hz=np.exp(p.log_f[mode] - bias[:, 0]),
         damping_ratio=np.exp(p.log_zeta[mode] - bias[:, 1]) / (1.0 + 0.5 * excess),
         shapes=p.shapes[mode],

@@ -1,20 +1,20 @@
-r"""Spectral matrix of modes of real shapes, driven by coloured forces, with sensor noise.
+r"""Spectral matrix of modes driven by coloured forces, with sensor noise.
 
 At a group k of Fourier lines
 
-.. math:: E_k = \Phi^T\,(\Gamma\circ(K_k\circ c_k c_k^T + L_k))\,\Phi + N_k, \qquad
+.. math:: E_k = \Phi^T\,(\Gamma\circ(K_k\circ c_k c_k^T + L_k))\,\bar\Phi + N_k, \qquad
           c_{ki} = (f_k/f_i)^{-\alpha_i/2}, \quad N_k = \mathrm{diag}\,e^{a + b\ln(f_k/f_0)}
 
 with the rows of Φ scaled by the roots of the force densities, Γ the coherences of the modal forces, K + L
 the closed-form expected periodogram of unit forces (``modal_spectrum.kernel``: no bias from the finite
-record; L is what leaks from the peaks), α the exponents of the force spectra. Every parameter changes E by
-a matrix :math:`u w^H + w u^H`, of which all derivatives are made.
+record; L is what leaks from the peaks), α the exponents of the force spectra. Shapes are real, or lag: near
+its peak a mode moves as a real one times a complex row of Φ. Every parameter changes E by a matrix
+:math:`u w^H + w u^H`, of which all derivatives are made.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,113 +24,15 @@ from scipy.linalg import blas
 from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
 
 if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
-MOST_PAIRS = 91
-"""Coherences fitted at most: those of all pairs of fourteen modes."""
 STEP = 1e-5
 """Relative step of the central differences of the kernel, whose error is its square."""
-
-
-@dataclass(frozen=True)
-class Parameters:
-    """Parameters of the spectral model; ``vector`` holds them in this order.
-
-    Attributes
-    ----------
-    log_f, log_zeta, colour : (n_modes,)
-    shapes : (n_modes, n_channels)
-        Real, scaled by the root of the force density at the mode's frequency.
-    coherence : (n_pairs,) complex
-        Of the modal forces.
-    noise : (2, n_channels)
-        Logarithm of the noise density at the middle of the band, and its exponent.
-    pairs : (n_pairs, 2) int
-        Modes i < j whose forces may be coherent; not a parameter.
-    background : int
-        So many of the first modes are backgrounds: far below the band, so that they follow their force.
-        They stand for the modes outside the band.
-    exponent : float
-        Common to the force spectra, the centre of the prior of ``colour``; not a parameter.
-    """
-
-    log_f: FloatArray
-    log_zeta: FloatArray
-    colour: FloatArray
-    shapes: FloatArray
-    coherence: ComplexArray
-    noise: FloatArray
-    pairs: IntArray
-    background: int = 0
-    exponent: float = 0.0
-
-    @cached_property
-    def gamma(self) -> ComplexArray:
-        """Hermitian matrix of the coherences, (n_modes, n_modes)."""
-        out = np.eye(len(self.log_f), dtype=complex)
-        i, j = self.pairs.T
-        out[i, j], out[j, i] = self.coherence, self.coherence.conj()
-        return out
-
-    @property
-    def vector(self) -> FloatArray:
-        """All parameters, (n_parameters,)."""
-        modal = (self.log_f, self.log_zeta, self.colour, self.shapes)
-        rest = (self.coherence.real, self.coherence.imag, self.noise)
-        return np.concatenate([np.ravel(part) for part in (*modal, *rest)])
-
-    def moved(self, step: FloatArray) -> Parameters:
-        """Return the parameters after a step of their vector."""
-        n, n_pairs = len(self.log_f), len(self.coherence)
-        cuts = np.cumsum([n, n, n, self.shapes.size, n_pairs, n_pairs])
-        f, zeta, colour, shape, re, im, noise = np.split(self.vector + step, cuts)
-        return Parameters(
-            f,
-            zeta,
-            colour,
-            shape.reshape(self.shapes.shape),
-            re + 1j * im,
-            noise.reshape(self.noise.shape),
-            self.pairs,
-            self.background,
-            self.exponent,
-        )
-
-    def without(self, mode: int) -> Parameters:
-        """Return the parameters of the other modes."""
-        kept = ~np.any(self.pairs == mode, axis=1)
-        f, zeta, colour = (np.delete(x, mode) for x in (self.log_f, self.log_zeta, self.colour))
-        pairs = self.pairs[kept]
-        return replace(
-            self,
-            log_f=f,
-            log_zeta=zeta,
-            colour=colour,
-            shapes=np.delete(self.shapes, mode, axis=0),
-            coherence=self.coherence[kept],
-            pairs=pairs - (pairs > mode),
-        )
-
-    def joined(self, log_f: float, log_zeta: float, shape: FloatArray) -> Parameters:
-        """Return the parameters with one more mode, last, driven independently of the others."""
-        n = len(self.log_f)
-        f = np.append(self.log_f, log_f)
-        pairs = coherent_pairs(f)
-        gamma = np.eye(n + 1, dtype=complex)
-        gamma[:n, :n] = self.gamma
-        return replace(
-            self,
-            log_f=f,
-            log_zeta=np.append(self.log_zeta, log_zeta),
-            colour=np.append(self.colour, np.median(self.colour[self.background :])),
-            shapes=np.vstack([self.shapes, shape]),
-            coherence=gamma[pairs[:, 0], pairs[:, 1]],
-            pairs=pairs,
-        )
 
 
 @dataclass(frozen=True)
@@ -155,13 +57,6 @@ class Expected:
     matrix: ComplexArray
 
 
-def coherent_pairs(log_f: FloatArray) -> IntArray:
-    """Return the pairs of modes whose forces may be coherent, (n_pairs, 2): the nearest neighbours."""
-    i, j = np.triu_indices(len(log_f), 1)
-    nearest = np.argsort(np.abs(log_f[i] - log_f[j]), kind="stable")[:MOST_PAIRS]
-    return np.stack([i, j], axis=1)[np.sort(nearest)].astype(np.int64)
-
-
 def log_distance(data: Periodogram, p: Parameters) -> FloatArray:
     """Return ln(f_k/f_i), (n_groups, n_modes)."""
     return np.asarray(np.log(data.omega / (2.0 * np.pi))[:, None] - p.log_f)
@@ -180,7 +75,7 @@ def expected(data: Periodogram, p: Parameters, share: float = 1.0) -> Expected:
     forced = steady * (colour[:, :, None] * colour[:, None, :])
     coloured = forced + leaked
     modal = p.gamma * coloured
-    matrix = p.shapes.T @ modal @ p.shapes
+    matrix = p.complex_shapes.T @ modal @ p.complex_shapes.conj()
     channel = np.arange(p.shapes.shape[1])
     matrix[:, channel, channel] += noise_density(data, p) + share * data.dither
     return Expected(np.asarray(forced), np.asarray(coloured), np.asarray(modal), np.asarray(matrix))
@@ -215,7 +110,7 @@ def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[Com
 
 
 def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: FloatArray) -> ComplexArray:
-    """Return Σ C_rs ∂²_rs E over shapes, coherences and noise, (n_groups, n_channels, n_channels).
+    """Return Σ C_rs ∂²_rs E over real shapes, coherences and noise, (n_groups, n_channels, n_channels).
 
     Parameters
     ----------
@@ -259,7 +154,7 @@ def derivative_factors(
     n_modes, n_channels = p.shapes.shape
     n_groups = len(data.omega)
     i, j = p.pairs.T
-    shapes = white @ p.shapes.T
+    shapes = white @ p.complex_shapes.T
     u, w = [], []
     for slope in modal_slopes(data, p, model):
         u.append(shapes)
@@ -274,6 +169,10 @@ def derivative_factors(
     half = 0.5 * noise_density(data, p)[:, None, :]
     u += [white, white]
     w += [white * half, white * half * data.log_position[:, None, None]]
+    if p.lag.size:
+        of_sought = slice(p.held * n_channels, None)
+        u.append(1j * u[3][:, :, of_sought])
+        w.append(w[3][:, :, of_sought])
     return _stacked(u), _stacked(w)
 
 
