@@ -32,6 +32,10 @@ class Home(Schema):
     colour: Literal["red", "none"] | Annotated[float, Field(ge=0.0, le=1.0)] = "red"
     cellar: str | Cellar = "none"
     name: str = "home"
+    floors: int = 1
+    windows_m: list[tuple[float, float]] = []
+    heated: bool = True
+    slope_deg: Annotated[float, Field(gt=0.0, le=80.0)] = 30.0
 
 
 @pytest.mark.parametrize(
@@ -52,8 +56,19 @@ class Home(Schema):
         ({"area_m2": 1, "duration_s": 20}, "duration_s: .*; check the number and its unit"),
         ({"area_m2": 1, "name": 5}, "name: not a text .got 5.; write a name"),
         # unions: the field alone, what is wrong with the kind it is, or what every kind allows
-        ({"area_m2": 1, "colour": 16}, r"colour: .*less than or equal to 1 .got 16.; allowed: ≤ 1"),
-        ({"area_m2": 1, "colour": "blue"}, "colour: .*allowed: 'red' or 'none'; write it without a unit"),
+        ({"area_m2": 1, "colour": 16}, r"colour: .*less than or equal to 1 .got 16.; allowed: 0 to 1"),
+        ({"area_m2": 1, "colour": "blue"}, "colour: .*allowed: 'red' or 'none'; take one of them, or write"),
+        ({"area_m2": 1, "colour": "rde"}, "colour: not one of the choices .got 'rde'.*did you mean 'red'"),
+        # the whole range, not the broken bound alone
+        ({"area_m2": 1, "slope_deg": 90}, "slope_deg: .*got 90.; allowed: > 0, ≤ 80; check the number"),
+        ({"area_m2": 1, "slope_deg": -1}, "slope_deg: .*; allowed: > 0, ≤ 80"),
+        ({"area_m2": 1, "windows_m": [[1, 2, 3]]}, "windows_m.0: too many.*leave out"),
+        ({"area_m2": 1, "floors": "9" * 5000}, "floors: a number too large"),
+        # yes is no number
+        ({"area_m2": True}, "area_m2: not a number .got True.; write it"),
+        ({"area_m2": 1, "floors": False}, "floors: not a number .got False."),
+        ({"area_m2": 1, "windows_m": [[1, 2], [1, True]]}, "windows_m.1.1: not a number"),
+        ({"area_m2": 1, "rooms": {"attic": {"type": "cat", "lives": True}}}, "rooms.attic.lives: not a num"),
         ({"area_m2": 1, "cellar": {"depth_m": -1}}, "cellar.depth_m: .*got -1.; allowed: > 0"),
         ({"area_m2": 1, "cellar": {"depth": 1}}, "cellar.depth: unknown key .*did you mean 'depth_m'"),
         ({"area_m2": 1, "cellar": 5}, "cellar: not a text .got 5.; write a name.*, or write keys"),
@@ -65,5 +80,6 @@ def test_one_sentence_names_place_value_and_remedy(data: dict, message: str) -> 
 
 
 def test_good_data_pass() -> None:
-    home = validate(Home, {"area_m2": 3, "pets": [{"type": "dog"}]})
+    home = validate(Home, {"area_m2": 3, "pets": [{"type": "dog"}], "heated": False})
+    assert not home.heated
     assert home.pets == [Dog(type="dog")]

@@ -82,6 +82,11 @@ def test_water_of_a_hydrodyn_file(scenario_file, tmp_path) -> None:
 
 
 GROWN = {"z_m": 0.0, "thickness_m": 0.1}
+SOFT = {"thickness_m": 70.0, "effective_weight_n_m3": 9e3, "clay": {"strength_pa": [20e3, 90e3]}}
+PILED = {
+    "piles": {"length_m": 60.0, "outer_diameter_m": 2.8, "thickness_m": 0.06},
+    "soil": {"layers": [SOFT]},
+}
 BAD = {
     "growth without heights": ({"water": {"marine_growth": [{"thickness_m": 0.1}]}}, "top_z_m.*z_m at every"),
     "one height of growth": ({"water": {"marine_growth": [GROWN]}}, "water.marine_growth.*two at least"),
@@ -105,6 +110,37 @@ BAD = {
     "two grounds": ({"support": "pinned", "foundation": "jacket15"}, "foundation, support.*twice"),
     "soil without piles": ({"soil": {"linear": {"lateral_n_m3": 1e7, "axial_n_m2": 1e8}}}, "piles"),
     "no such structure": ({"structure": "jacket51"}, "structure.*did you mean 'jacket15'"),
+    "drag of 50": ({"water": {"drag": 50}}, "water.drag: .*got 50.; allowed: 0 to 10; check the number"),
+    "end drag": ({"water": {"ends": {"drag": 50}}}, "water.ends.drag: .*allowed: 0 to 10"),
+    "depth of a puddle": ({"water": {"depth_m": 0.07}}, "water.depth_m: .*allowed: 1 to 1000"),
+    "growth from the moon": (
+        {"water": {"marine_growth": [{**GROWN, "z_m": 4e8}, GROWN]}},
+        "water.marine_growth.0.z_m: .*allowed: -10000 to 10000",
+    ),
+    "a tsunami": ({"waves": {"type": "jonswap", "hs_m": 1e3, "tp_s": 9.0}}, "waves.hs_m: .*> 0, ≤ 30; check"),
+    "a heading in turns": ({"waves": {**WAVES, "direction_deg": 1e12}}, "direction_deg: .*-360 to 360"),
+    "yes for a number": ({"wind": {"speed_m_s": True}}, "wind.speed_m_s: not a number .got True"),
+    "a rotor's frequency": (
+        {"damping": {"rayleigh": {"ratio": 0.01, "frequency_hz": 1e12}}},
+        "damping.rayleigh.frequency_hz: .*allowed: 0.001 to 1000; check",
+    ),
+    "a name no file can have": ({"structure": "a" * 3000}, "structure: no such structure.*take one of these"),
+    "a sensor that is never there": (
+        {
+            "sensors": [
+                {"channel": "a", "node": "tower_top", "direction": [1, 0, 0], "dropouts_per_hour": 1e12}
+            ]
+        },
+        "sensors.0.dropouts_per_hour: .*allowed: 0 to 36000",
+    ),
+    "a pile as wide as a gasometer": (
+        {**PILED, "piles": {"length_m": 60.0, "outer_diameter_m": 140.0, "thickness_m": 0.06}},
+        "piles.outer_diameter_m: .*allowed: 0.05 to 20",
+    ),
+    "clay in kilopascals": (
+        {"piles": PILED["piles"], "soil": {"layers": [{**SOFT, "clay": {"strength_pa": [20.0, 90e3]}}]}},
+        "soil.layers.0.clay.strength_pa: too small to be in this unit .got 20.0.*20e3",
+    ),
     "channel twice": (
         {"sensors": [{"channel": "a", "node": "tower_top", "direction": [1, 0, 0]}] * 2},
         "sensors.*twice",

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from jackettwin.errors import InputError, did_you_mean
+from jackettwin.files.limits import in_words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 
@@ -20,10 +22,12 @@ class Schema(BaseModel):
 
 S = TypeVar("S", bound=Schema)
 
-_BOUNDS = {"gt": ">", "ge": "≥", "lt": "<", "le": "≤"}
+_BOUNDS = ("gt", "ge", "lt", "le")
 _PLAIN = {
     "string_type": ("not a text", "write a name; in quotes if it looks like a number"),
     **dict.fromkeys(("too_short", "string_too_short"), ("empty, or too few", "add what is missing")),
+    **dict.fromkeys(("too_long", "string_too_long"), ("too many, or too long", "leave out what is too much")),
+    "int_parsing_size": ("a number too large", "write a smaller one"),
     **dict.fromkeys(("int_parsing", "int_type", "int_from_float"), ("not a whole number", "write e.g. 4")),
     **dict.fromkeys(("float_parsing", "float_type"), ("not a number", "write it without a unit, e.g. 1.5e9")),
     "finite_number": ("not a finite number", "give its value, or leave the key out"),
@@ -51,7 +55,7 @@ def validate(schema: type[S], data: Any, *, file: Path | str | None = None, fiel
         Names the first offending field, its value and what is allowed.
     """
     try:
-        return schema.model_validate(data)
+        valid = schema.model_validate(data)
     except ValidationError as error:
         errors = [{**e, "loc": _place(e["loc"], schema)} for e in error.errors()]
         first = _most_telling(errors)
@@ -60,6 +64,28 @@ def validate(schema: type[S], data: Any, *, file: Path | str | None = None, fiel
         if others and first["type"] in _OF_ANOTHER_KIND:
             found = _with_alternatives(found, [_as_input_error(e, schema) for e in others])
         raise found.at(file=file, field=field) from None
+    for place, value in _yes_for_a_number(data, valid):
+        problem, remedy = _PLAIN["float_type"]
+        refusal = InputError(problem, field=place, value=value, remedy=remedy)
+        raise refusal.at(file=file, field=field)
+    return valid
+
+
+def _yes_for_a_number(data: Any, valid: Any, place: str = "") -> Iterator[tuple[str, bool]]:
+    """Yield the places where pydantic took true or false for 1 or 0."""
+    if isinstance(data, bool) and isinstance(valid, (int, float)) and not isinstance(valid, bool):
+        yield place, data
+    if isinstance(data, dict):
+        if isinstance(valid, Schema):
+            names = {f.alias or name: name for name, f in type(valid).model_fields.items()}
+            valid = {key: getattr(valid, names.get(key, str(key)), None) for key in data}
+        parts = [(key, data[key], valid[key]) for key in data if isinstance(valid, dict) and key in valid]
+    elif isinstance(data, (list, tuple)) and isinstance(valid, (list, tuple)):
+        parts = list(zip(range(len(data)), data, valid, strict=False))
+    else:
+        return
+    for key, given, taken in parts:
+        yield from _yes_for_a_number(given, taken, f"{place}.{key}" if place else str(key))
 
 
 def _place(location: tuple[Any, ...], schema: type[BaseModel]) -> tuple[Any, ...]:
@@ -131,18 +157,21 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
             field=f"{field}.{key}",
             value=context.get("tag"),
             allowed=context.get("expected_tags"),
-            remedy=None if "tag" in context else f"add {key!r}",
+            remedy="take one of these" if "tag" in context else f"add {key!r}",
         )
     if kind == "missing":
         return InputError("required key is missing", field=field, remedy=f"add {location[-1]!r}")
     if kind in ("value_error", "assertion_error") and isinstance(context.get("error"), InputError):
         inner: InputError = context["error"]
         return inner.at(field=field)
-    bounds = [f"{symbol} {context[key]}" for key, symbol in _BOUNDS.items() if key in context]
-    allowed = bounds[0] if bounds else context.get("expected")
+    broken = {key: context[key] for key in _BOUNDS if key in context}
+    allowed = _range(schema, location, broken) if broken else context.get("expected")
     problem, remedy = _PLAIN.get(kind, (error["msg"][0].lower() + error["msg"][1:], None))
-    if bounds and remedy is None:
+    if broken and remedy is None:
         remedy = _out_of_bounds(field, error["input"])
+    if kind == "literal_error":
+        problem = "not one of the choices"
+        remedy = did_you_mean(str(error["input"]), str(allowed).split("'")[1::2]) or "take one of them"
     return InputError(problem, field=field, value=error["input"], allowed=allowed, remedy=remedy)
 
 
@@ -152,14 +181,30 @@ def _out_of_bounds(field: str, value: Any) -> str:
     return "check the number and its unit"
 
 
+def _range(schema: type[BaseModel], location: tuple[Any, ...], broken: dict[str, float]) -> str | None:
+    """Return the range of the field whose bound is broken."""
+    names = [k for k, part in enumerate(location) if _fields(_models_at(schema, location[:k]), part)]
+    if not names:
+        return None
+    last = names[-1]
+    fields = _fields(_models_at(schema, location[:last]), location[last])
+    found = (in_words(f.annotation, f.metadata, **broken) for f in fields)
+    return next((words for words in found if words is not None), None)
+
+
 def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:
     """Return the keys allowed at a place of the schema, as far as they can be followed."""
+    models = _models_at(schema, location)
+    return [f.alias or name for model in models for name, f in model.model_fields.items()]
+
+
+def _models_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[type[BaseModel]]:
     current: list[type[BaseModel]] = [schema]
     for part in location:
         inside = [model for info in _fields(current, part) for model in _models_inside(info.annotation)]
         # what is no field is an index, the key of a free mapping, or the tag of one model of a union
         current = inside or [model for model in current if part in _tags(model)] or current
-    return [f.alias or name for model in current for name, f in model.model_fields.items()]
+    return current
 
 
 def _fields(models: list[type[BaseModel]], key: Any) -> list[Any]:

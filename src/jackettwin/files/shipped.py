@@ -32,16 +32,23 @@ def find_file(source: str | Path, kind: str, *, folder: Path | None = None, also
     if str(source) in names:
         return _folder(kind) / f"{source}.yaml"
     path = Path(source) if folder is None else folder / source
-    if not path.exists() and path.suffix == "":
+    if path.suffix == "" and not _exists(path):
         what = kind.removesuffix("s")
         raise InputError(
             f"no such {what}",
             field=what,
             value=str(source),
             allowed=f"{', '.join(names)}, or a .yaml file{also}",
-            remedy=did_you_mean(str(source), names),
+            remedy=did_you_mean(str(source), names) or "take one of these, or give the path of a file",
         )
     return path
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # no name that a file can have
+        return False
 
 
 def _folder(kind: str) -> Path:

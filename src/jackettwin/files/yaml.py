@@ -64,9 +64,9 @@ def read_text(path: Path | str, *, what: str = "file") -> str:
         ) from None
     except UnicodeDecodeError:
         raise InputError(f"{what} is not UTF-8 text", file=path, remedy="save it as UTF-8 text") from None
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise InputError(
-            f"cannot read the {what}: {error.strerror}",
+            f"cannot read the {what}: {getattr(error, 'strerror', None) or error}",
             file=path,
             remedy="check the path and its permissions",
         ) from None

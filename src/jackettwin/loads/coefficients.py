@@ -64,7 +64,9 @@ class StripTable:
 
     def __post_init__(self) -> None:
         if not self.z_m or len(set(self.z_m)) < len(self.z_m):
-            raise InputError("heights must differ", field="z_m", value=list(self.z_m))
+            raise InputError(
+                "heights must differ", field="z_m", value=list(self.z_m), remedy="leave one of the two out"
+            )
 
     def at(self, z: FloatArray, grown: npt.NDArray[np.bool_]) -> FloatArray:
         """Return C_D, C_a, C_p at heights ``z``, (3, n)."""
@@ -102,6 +104,7 @@ class GrowthBand:
                 field="top_z_m",
                 value=self.top_z_m,
                 allowed=f"> {self.bottom_z_m:g}",
+                remedy="exchange them, or make them differ",
             )
         _require_not_negative("thickness_m", self.thickness_m)
         _require_not_negative("bottom_thickness_m", self.bottom_thickness_m or 0.0)

@@ -109,7 +109,7 @@ def _used(content: WindIO, labels: list[Part]) -> dict[str, Part]:
                 field=label.place,
                 value=label.name,
                 allowed=", ".join(known),
-                remedy=did_you_mean(label.name, known),
+                remedy=did_you_mean(label.name, known) or "name one of these",
             )
     return {label.name: known[label.name] for label in labels}
 

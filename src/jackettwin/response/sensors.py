@@ -62,7 +62,7 @@ def _row(assembly: Assembly, sensor: Sensor) -> sp.csr_array:
                 "no such node",
                 field=f"sensors.{sensor.channel}.node",
                 value=sensor.node,
-                remedy=did_you_mean(sensor.node, assembly.structure.nodes),
+                remedy=did_you_mean(sensor.node, assembly.structure.nodes) or "name a node, or give height_m",
             )
         motion = assembly.expand[assembly.mesh.node_dofs(sensor.node)[:3]]
     else:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jackettwin.files import Schema
+from jackettwin.files.limits import Angle, ForceCoefficient, Frequency, Height, Seed
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.soil.foundation import (
@@ -21,15 +22,17 @@ from jackettwin.soil.foundation import (
 from jackettwin.soil.law_files import LawSchema
 from jackettwin.structure.files import BodySchema
 
-Positive = Annotated[float, Field(gt=0.0)]
-NotNegative = Annotated[float, Field(ge=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Period = Annotated[float, Field(ge=0.5, le=100.0)]
 """Of a wave: shorter ones are ripples, longer ones tides [s]."""
+SignificantHeight = Annotated[float, Field(gt=0.0, le=30.0)]
+"""Of a random sea [m]."""
+WindSpeed = Annotated[float, Field(gt=0.0, le=100.0)]
+"""Mean at the hub [m/s]."""
 Speed = Annotated[float, Field(ge=0.0, le=10.0)]
 """Of water [m/s]."""
-Seed = Annotated[int, Field(ge=0)]
-Vector = tuple[float, float, float]
+Part = Annotated[float, Field(ge=-1e3, le=1e3)]
+"""Of a direction; its length does not count."""
 
 
 class StructureChoice(Schema):
@@ -43,7 +46,7 @@ class RayleighSchema(Schema):
     """Steel damping: a least ratio and where it stands."""
 
     ratio: Ratio
-    frequency_hz: Positive
+    frequency_hz: Frequency
 
 
 class SteelDampingSchema(Schema):
@@ -70,13 +73,13 @@ class WavesSchema(Schema):
     """``waves``: height and period of a regular wave, or Hs and Tp of a random sea."""
 
     type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz"]
-    height_m: Positive | None = None
+    height_m: Annotated[float, Field(gt=0.0, le=100.0)] | None = None
     period_s: Period | None = None
-    hs_m: Positive | None = None
+    hs_m: SignificantHeight | None = None
     tp_s: Period | None = None
     gamma: Annotated[float, Field(ge=1.0, le=10.0)] | None = None
-    spreading: Positive | None = None
-    direction_deg: float = 0.0
+    spreading: Annotated[float, Field(gt=0.0, le=1000.0)] | None = None
+    direction_deg: Angle = 0.0
     seed: Seed = 0
     stretching: Literal["none", "vertical", "extrapolated", "wheeler"] | None = None
     relative_velocity: Literal["none", "linearised", "full"] = "linearised"
@@ -89,19 +92,19 @@ class CurrentSchema(Schema):
     subsurface_m_s: Speed = 0.0
     wind_driven_m_s: Speed = 0.0
     uniform_m_s: Speed = 0.0
-    direction_deg: float = 0.0
+    direction_deg: Angle = 0.0
 
 
 class WindSchema(Schema):
     """``wind``: along +x; ``yaw_deg`` turns the nacelle anticlockwise from there."""
 
-    speed_m_s: Positive
+    speed_m_s: WindSpeed
     turbulence: Literal["A+", "A", "B", "C", "none"] | Annotated[float, Field(ge=0.0, le=1.0)] = "B"
     shear: Annotated[float, Field(ge=0.0, le=1.0)] = 0.14
     seed: Seed = 0
     yaw_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 0.0
-    yaw_path: list[tuple[float, float]] | None = Field(default=None, min_length=2)
-    tower_drag: NotNegative = 0.65
+    yaw_path: list[tuple[float, Angle]] | None = Field(default=None, min_length=2)
+    tower_drag: ForceCoefficient = 0.65
     coherence: Literal["all", "u"] = "all"
     piece_m: Annotated[float, Field(ge=1.0, le=200.0)] = PIECE_M
     grid_m: Annotated[float, Field(ge=5.0, le=200.0)] | None = None
@@ -113,7 +116,7 @@ class RotorSchema(Schema):
     data: str = "iea15"
     state: Literal["parked", "idling", "operating"] = "parked"
     pitch_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 90.0
-    azimuth_deg: float = 0.0
+    azimuth_deg: Angle = 0.0
 
 
 class TimeSchema(Schema):
@@ -130,15 +133,15 @@ class SensorSchema(Schema):
 
     channel: Annotated[str, Field(min_length=1)]
     node: str | None = None
-    height_m: float | None = None
-    direction: Vector
+    height_m: Height | None = None
+    direction: tuple[Part, Part, Part]
     quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration"
     frame: Literal["global", "nacelle"] = "global"
-    noise: NotNegative = 0.0
-    bias: float = 0.0
-    limit: Positive | None = None
-    dropouts_per_hour: NotNegative = 0.0
-    dropout_s: Positive = 1.0
+    noise: Annotated[float, Field(ge=0.0, le=1e3)] = 0.0
+    bias: Annotated[float, Field(ge=-1e6, le=1e6)] = 0.0
+    limit: Annotated[float, Field(gt=0.0, le=1e6)] | None = None
+    dropouts_per_hour: Annotated[float, Field(ge=0.0, le=36e3)] = 0.0
+    dropout_s: Annotated[float, Field(ge=1e-3, le=86400.0)] = 1.0
 
 
 class ScenarioSchema(Schema):

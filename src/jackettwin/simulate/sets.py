@@ -16,9 +16,10 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.files.limits import Angle
+from jackettwin.simulate.schema import Period, SignificantHeight, WindSpeed
 from jackettwin.version import __version__
 
-Positive = Annotated[float, Field(gt=0.0)]
 Heading = Annotated[float, Field(ge=-180.0, le=180.0)]
 _SEA_SEEDS = 1_000_000
 """Wave seeds start here, sensor seeds at twice this: no two streams share a seed."""
@@ -27,9 +28,9 @@ _SEA_SEEDS = 1_000_000
 class BinSchema(Schema):
     """A bin of wind with its sea; no ``hs_m`` is no waves."""
 
-    speed_m_s: Positive
-    hs_m: Positive | None = None
-    tp_s: Positive | None = None
+    speed_m_s: WindSpeed
+    hs_m: SignificantHeight | None = None
+    tp_s: Period | None = None
 
 
 class SetSchema(Schema):
@@ -37,7 +38,7 @@ class SetSchema(Schema):
 
     scenario: str
     bins: list[BinSchema] = Field(min_length=1)
-    misalignment_deg: list[float] = Field(default=[0.0], min_length=1)
+    misalignment_deg: list[Angle] = Field(default=[0.0], min_length=1)
     yaw_deg: list[Heading] = Field(default=[0.0], min_length=1)
     seeds: Annotated[int, Field(ge=1, le=1000)] = 6
     first_seed: Annotated[int, Field(ge=0, lt=_SEA_SEEDS)] = 1

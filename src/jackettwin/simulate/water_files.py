@@ -10,6 +10,7 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema
+from jackettwin.files.limits import ForceCoefficient, Height
 from jackettwin.loads.coefficients import (
     GROWTH_KG_M3,
     SEA_WATER_KG_M3,
@@ -24,8 +25,6 @@ from jackettwin.loads.hydrodyn_deck import read_hydrodyn
 from jackettwin.loads.water import Water
 from jackettwin.structure import Structure
 
-Positive = Annotated[float, Field(gt=0.0)]
-NotNegative = Annotated[float, Field(ge=0.0)]
 Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
 """Density of marine growth [kg/m³]."""
 
@@ -33,9 +32,9 @@ Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
 class GrowthSchema(Schema):
     """Marine growth: a band of one thickness, or one height of a table; heights from still water."""
 
-    top_z_m: float | None = None
-    bottom_z_m: float | None = None
-    z_m: float | None = None
+    top_z_m: Height | None = None
+    bottom_z_m: Height | None = None
+    z_m: Height | None = None
     thickness_m: Annotated[float, Field(ge=0.0, le=2.0)]
     density: Growth | None = None
 
@@ -43,15 +42,15 @@ class GrowthSchema(Schema):
 class StripSchema(Schema):
     """C_D, C_a and C_p where they differ from the others."""
 
-    drag: NotNegative | None = None
-    added_mass: NotNegative | None = None
-    pressure: NotNegative | None = None
+    drag: ForceCoefficient | None = None
+    added_mass: ForceCoefficient | None = None
+    pressure: ForceCoefficient | None = None
 
 
 class HeightSchema(StripSchema):
     """Coefficients at one height from still water, ``with_growth`` those of a covered member."""
 
-    z_m: float
+    z_m: Height
     with_growth: StripSchema | None = None
 
 
@@ -65,19 +64,19 @@ class TableSchema(Schema):
 class EndsSchema(Schema):
     """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
 
-    pressure: NotNegative = 0.0
-    added_mass: NotNegative = 0.0
-    drag: NotNegative = 0.0
+    pressure: ForceCoefficient = 0.0
+    added_mass: ForceCoefficient = 0.0
+    drag: ForceCoefficient = 0.0
 
 
 class WaterSchema(Schema):
     """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
 
-    depth_m: Positive | None = None
+    depth_m: Annotated[float, Field(ge=1.0, le=1000.0)] | None = None
     density: Annotated[float, Field(ge=500.0, le=2000.0)] = SEA_WATER_KG_M3
-    drag: NotNegative = 1.0
-    added_mass: NotNegative = 1.0
-    pressure: NotNegative = 1.0
+    drag: ForceCoefficient = 1.0
+    added_mass: ForceCoefficient = 1.0
+    pressure: ForceCoefficient = 1.0
     with_growth: StripSchema = StripSchema()
     coefficients: list[TableSchema] = []
     marine_growth: list[GrowthSchema] = []

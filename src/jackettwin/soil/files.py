@@ -98,7 +98,7 @@ def read_support(
         value=word,
         allowed=", ".join(f"{k}:{SHORT_FORMS[k]}" if k in SHORT_FORMS else k for k in known)
         + ", or a .yaml file",
-        remedy=did_you_mean(name, known),
+        remedy=did_you_mean(name, known) or "take one of these, or give the path of a file",
     )
 
 
@@ -151,7 +151,7 @@ def _arguments(name: str, text: str) -> tuple[dict[str, float], str]:
                 field=f"support.{name}",
                 value=part,
                 allowed=SHORT_FORMS[name],
-                remedy=did_you_mean(key, known),
+                remedy=did_you_mean(key, known) or "take one of these",
             )
         if key in values:
             raise InputError("argument is given twice", field=f"support.{name}.{key}", value=part)
@@ -208,7 +208,7 @@ def _springs(content: Any, path: Path, structure: Structure) -> Support:
                     file=path,
                     field=f"{place}.nodes",
                     value=node,
-                    remedy=did_you_mean(node, structure.nodes),
+                    remedy=did_you_mean(node, structure.nodes) or "name a node of the structure",
                 )
         with located(file=path, field=place):
             matrix, law = _matrix(entry.stiffness), entry.law.build()

@@ -12,10 +12,11 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.files.limits import Frequency
 from jackettwin.files.plausible import refuse_tiny
 from jackettwin.soil.cyclic import CyclicPile, cyclic_pile
 from jackettwin.soil.impedance import PileHead, lumped_head, on_pile_heads
-from jackettwin.soil.law_files import LawSchema, NotNegative, Positive
+from jackettwin.soil.law_files import LawSchema
 from jackettwin.soil.pile_curves import CurveOptions, PileCurves, linearised, pile_curves
 from jackettwin.soil.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
@@ -27,6 +28,9 @@ from jackettwin.structure.model import Material, Section, Structure
 
 _MOST_ELEMENTS = 2000
 """Along a pile."""
+
+Stiffness = Annotated[float, Field(ge=0.0, le=1e15)]
+"""Of linear ground [N/m³, N/m² or N/m]: the upper end is rigid."""
 
 
 @dataclass(frozen=True)
@@ -89,13 +93,13 @@ class PileSchema(Schema):
     """A pile."""
 
     length_m: Annotated[float, Field(gt=0.0, le=300.0)]
-    outer_diameter_m: Positive
-    thickness_m: Positive
-    youngs_modulus_pa: Positive = 210e9
+    outer_diameter_m: Annotated[float, Field(ge=0.05, le=20.0)]
+    thickness_m: Annotated[float, Field(ge=1e-3, le=10.0)]
+    youngs_modulus_pa: Annotated[float, Field(ge=1e9, le=1e13)] = 210e9
     poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
-    density_kg_m3: Annotated[float, Field(ge=500.0)] = 7850.0
+    density_kg_m3: Annotated[float, Field(ge=500.0, le=50e3)] = 7850.0
     plugged: bool = False
-    element_m: Positive | None = None
+    element_m: Annotated[float, Field(gt=0.0, le=300.0)] | None = None
 
     def build(self) -> Pile:
         """Return the pile."""
@@ -135,6 +139,7 @@ class SandSchema(Schema):
         with located(field="sand"):
             refuse_tiny("limit_friction_pa", self.limit_friction_pa, least=1e3, remedy="Pa: 96 kPa is 96e3")
             refuse_tiny("limit_bearing_pa", self.limit_bearing_pa, least=5e4, remedy="Pa: 10 MPa is 10e6")
+            refuse_tiny("modulus_n_m3", self.modulus_n_m3 or 0.0, least=1e5, remedy="N/m³: 22 MN/m³ is 22e6")
             return Sand(**self.model_dump())
 
 
@@ -152,15 +157,16 @@ class ClaySchema(Schema):
         """Return the clay."""
         top, bottom = self.strength_pa
         with located(field="clay"):
-            refuse_tiny("strength_pa", max(top, bottom), least=500.0, remedy="Pa: 20 kPa is 20e3")
+            for strength in (top, bottom):
+                refuse_tiny("strength_pa", strength, least=500.0, remedy="Pa: 20 kPa is 20e3")
             return Clay(top, bottom, **self.model_dump(exclude={"strength_pa"}))
 
 
 class LayerSchema(Schema):
     """A layer of sand or clay."""
 
-    thickness_m: Positive
-    effective_weight_n_m3: NotNegative
+    thickness_m: Annotated[float, Field(gt=0.0, le=1e4)]
+    effective_weight_n_m3: Annotated[float, Field(ge=0.0, le=30e3)]
     sand: SandSchema | None = None
     clay: ClaySchema | None = None
 
@@ -181,9 +187,9 @@ class LayerSchema(Schema):
 class LinearSchema(Schema):
     """Linear ground: k_h = lateral·z, constant k_v, a spring under the tip."""
 
-    lateral_n_m3: NotNegative
-    axial_n_m2: NotNegative
-    tip_n_m: NotNegative = 0.0
+    lateral_n_m3: Stiffness
+    axial_n_m2: Stiffness
+    tip_n_m: Stiffness = 0.0
 
 
 class ScourSchema(Schema):
@@ -207,7 +213,7 @@ class CurvesSchema(Schema):
     cyclic: bool = False
     sand_tz: Literal["rp2geo", "rp2a"] = "rp2geo"
     clay_py: Literal["table", "cube-root"] = "table"
-    cycles: Annotated[float, Field(ge=1.0)] = 100.0
+    cycles: Annotated[float, Field(ge=1.0, le=1e9)] = 100.0
     layering: Literal["overburden", "georgiadis"] = "overburden"
 
     def build(self) -> CurveOptions:
@@ -226,15 +232,15 @@ class DampingSchema(Schema):
     """Dashpots c = 2ζk/ω1 (thesis eq. (5.4))."""
 
     ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
-    frequency_hz: Positive
+    frequency_hz: Frequency
 
 
 class RadiationSchema(Schema):
     """``radiation``: ground that carries waves away, and their frequency."""
 
-    density_kg_m3: Annotated[float, Field(ge=500.0)]
-    shear_wave_m_s: Positive
-    frequency_hz: Positive
+    density_kg_m3: Annotated[float, Field(ge=500.0, le=5000.0)]
+    shear_wave_m_s: Annotated[float, Field(ge=1.0, le=1e4)]
+    frequency_hz: Frequency
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5)] = 0.5
 
     def build(self) -> Radiation:

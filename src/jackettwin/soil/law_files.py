@@ -9,15 +9,17 @@ from pydantic import Field
 from jackettwin.files import Schema
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt
 
-NotNegative = Annotated[float, Field(ge=0.0)]
-Positive = Annotated[float, Field(gt=0.0)]
+Share = Annotated[float, Field(ge=0.0, le=1e6)]
+"""Of the stiffness that the law scales."""
+Time = Annotated[float, Field(ge=0.0, le=1e9)]
+"""Of relaxation or retardation [s]."""
 
 
 class BranchSchema(Schema):
     """A Maxwell branch: relative stiffness and relaxation time."""
 
-    g: NotNegative
-    tau_s: Positive
+    g: Share
+    tau_s: Annotated[Time, Field(gt=0.0)]
 
 
 class ElasticLaw(Schema):
@@ -34,7 +36,7 @@ class KelvinVoigtLaw(Schema):
     """K·(1 + τs)."""
 
     type: Literal["kelvin-voigt"]
-    tau_s: NotNegative
+    tau_s: Time
 
     def build(self) -> Law:
         """Return the law."""
@@ -45,7 +47,7 @@ class MaxwellLaw(Schema):
     """K·(g0 + Σ g τs/(1+τs))."""
 
     type: Literal["maxwell"]
-    g0: NotNegative = 1.0
+    g0: Share = 1.0
     branches: list[BranchSchema] = Field(min_length=1)
 
     def build(self) -> Law:
@@ -60,7 +62,7 @@ class SpringpotLaw(Schema):
 
     type: Literal["springpot"]
     alpha: Annotated[float, Field(ge=0.0, lt=1.0)]
-    omega0_rad_s: Positive
+    omega0_rad_s: Annotated[float, Field(ge=1e-6, le=1e6)]
 
     def build(self) -> Law:
         """Return the law."""

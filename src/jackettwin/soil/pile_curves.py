@@ -72,7 +72,11 @@ def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None =
     scour = profile.scour.total_m
     if scour >= pile.length_m:
         raise InputError(
-            "scour reaches the pile tip", field="scour", value=scour, allowed=f"< {pile.length_m:g} m"
+            "scour reaches the pile tip",
+            field="scour",
+            value=scour,
+            allowed=f"< {pile.length_m:g} m",
+            remedy="lengthen the pile, or check the unit of the scour",
         )
     D = pile.section.outer_diameter_m
     at = stations(pile, np.append(profile.boundaries_m, scour))

@@ -12,6 +12,8 @@ from jackettwin.soil.scour import NO_SCOUR, Scour
 
 FloatArray = npt.NDArray[np.float64]
 
+_SAND_AT_MOST = {"beta": 10.0, "limit_friction_pa": 1e7, "bearing_factor": 1e4, "limit_bearing_pa": 1e9}
+"""Far beyond any sand: a slip, not a soil."""
 _UNITS = {"_deg": "degrees", "_pa": "Pa", "_n_m3": "N/m³", "_m": "m"}
 
 
@@ -31,10 +33,10 @@ class Sand:
 
     def __post_init__(self) -> None:
         _check("friction_angle_deg", self.friction_angle_deg, 20.0, 45.0)
-        for name in ("beta", "limit_friction_pa", "bearing_factor", "limit_bearing_pa"):
-            _check(name, getattr(self, name), 0.0, np.inf)
+        for name, highest in _SAND_AT_MOST.items():
+            _check(name, getattr(self, name), 0.0, highest)
         if self.modulus_n_m3 is not None:
-            _check("modulus_n_m3", self.modulus_n_m3, 0.0, np.inf)
+            _check("modulus_n_m3", self.modulus_n_m3, 0.0, 1e10)
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Clay:
 
     def __post_init__(self) -> None:
         for strength in (self.strength_top_pa, self.strength_bottom_pa):
-            _check("strength_pa", strength, 0.0, np.inf)
+            _check("strength_pa", strength, 0.0, 1e8)
         _check("strain_50", self.strain_50, 1e-4, 0.1)
         _check("J", self.J, 0.0, 1.0)
         _check("residual", self.residual, 0.0, 1.0)
@@ -70,7 +72,7 @@ class Layer:
     soil: Sand | Clay
 
     def __post_init__(self) -> None:
-        _check("thickness_m", self.thickness_m, 1e-6, np.inf)
+        _check("thickness_m", self.thickness_m, 1e-6, 1e4)
         _check("effective_weight_n_m3", self.effective_weight_n_m3, 0.0, 30e3)
 
 
@@ -166,7 +168,6 @@ def _check(field: str, value: float, low: float, high: float) -> None:
             "out of range",
             field=field,
             value=value,
-            allowed=(f"{low:g} to {high:g}" if np.isfinite(high) else f"≥ {low:g}")
-            + (f" {unit}" if unit else ""),
+            allowed=f"{low:g} to {high:g}" + (f" {unit}" if unit else ""),
             remedy="check the number and its unit",
         )

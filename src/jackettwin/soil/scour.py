@@ -8,6 +8,9 @@ import numpy as np
 
 from jackettwin.errors import InputError
 
+_AT_MOST = 300.0
+"""Metres, or pile diameters."""
+
 
 @dataclass(frozen=True)
 class Scour:
@@ -24,8 +27,14 @@ class Scour:
     def __post_init__(self) -> None:
         for field in ("general_m", "local_m", "recovery_diameters"):
             value = getattr(self, field)
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError("out of range", field=f"scour.{field}", value=value, allowed="≥ 0")
+            if not (np.isfinite(value) and 0.0 <= value <= _AT_MOST):
+                raise InputError(
+                    "out of range",
+                    field=f"scour.{field}",
+                    value=value,
+                    allowed=f"0 to {_AT_MOST:g}",
+                    remedy="check the number and its unit",
+                )
 
     @property
     def total_m(self) -> float:

@@ -204,7 +204,13 @@ def require_positive(field: str, value: float) -> None:
         Names the field.
     """
     if not 0.0 < value <= _LARGEST:
-        raise InputError("must be positive", field=field, value=value, allowed=f"> 0, at most {_LARGEST:g}")
+        raise InputError(
+            "must be positive",
+            field=field,
+            value=value,
+            allowed=f"> 0, at most {_LARGEST:g}",
+            remedy="check the number and its unit",
+        )
 
 
 def require_passive(field: str, value: float) -> None:

@@ -28,6 +28,8 @@ from jackettwin.structure.subdyn import read_subdyn
 
 Positive = Annotated[float, Field(gt=0.0)]
 NotNegative = Annotated[float, Field(ge=0.0)]
+Arm = Annotated[float, Field(ge=-1e3, le=1e3)]
+"""From a node to a centre of gravity [m]."""
 
 
 class MaterialSchema(Schema):
@@ -66,8 +68,8 @@ class SectionSchema(Schema):
 class BodySchema(Schema):
     """A rigid body: by its centre of gravity, or by static moments and inertia about its node."""
 
-    mass_kg: NotNegative
-    cg_offset_m: Vector | None = None
+    mass_kg: Annotated[float, Field(ge=0.0, le=1e9)]
+    cg_offset_m: tuple[Arm, Arm, Arm] | None = None
     inertia_about_cg_kg_m2: Inertia | None = None
     static_moment_kg_m: Vector | None = None
     inertia_about_node_kg_m2: Inertia | None = None
@@ -269,14 +271,17 @@ def _build_member(
     for key in (first, last):
         if key not in sections:
             raise InputError(
-                "no such section", field=f"{place}.section", value=key, remedy=did_you_mean(key, sections)
+                "no such section",
+                field=f"{place}.section",
+                value=key,
+                remedy=did_you_mean(key, sections) or "define it under sections",
             )
     if m.material not in materials:
         raise InputError(
             "no such material",
             field=f"{place}.material",
             value=m.material,
-            remedy=did_you_mean(m.material, materials),
+            remedy=did_you_mean(m.material, materials) or "define it under materials",
         )
     name = m.name or f"{m.nodes[0]}-{m.nodes[1]}"
     return Member(name, *m.nodes, sections[first], sections[last], materials[m.material], m.part)
