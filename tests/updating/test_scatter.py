@@ -34,8 +34,21 @@ def test_the_density_is_that_of_a_mean_and_of_student_deviations(rng: np.random.
     deviations = z[:, [0, 2, 3, 4]] @ Q
     student = multivariate_t(np.zeros(3), S0**2 * np.eye(3), df=FREEDOM).logpdf(deviations)
     # the mean and the other parameter are flat over 12; the four legs' volume is 2 that of mean × deviations
-    np.testing.assert_allclose(prior().log_density(z), student - np.log(2.0) - 2.0 * np.log(12.0))
+    expected = student - np.log(2.0) - 2.0 * np.log(12.0) - prior().log_mass
+    np.testing.assert_allclose(prior().log_density(z), expected)
     assert prior().log_density(np.full((1, 5), 6.1))[0] == -np.inf
+
+
+@pytest.mark.parametrize("scale", [NARROW, 1.0])
+def test_the_density_makes_up_for_what_the_bounds_cut_off(scale: float) -> None:
+    """Two legs m ± y/√2 between ±6, m even and y Student: 1 − |y|/6√2 of all m keep both inside."""
+    box = BoxPrior(np.full(2, -6.0), np.full(2, 6.0), np.zeros(2), np.full(2, np.inf))
+    p = ScatteredPrior(box, (Legs("k", np.array([0, 1]), scale),))
+    y = t(FREEDOM, scale=scale)
+    reach = 6.0 * np.sqrt(2.0)
+    mass = y.expect(lambda value: 1.0 - abs(value) / reach, -reach, reach)
+    # 4,096 Sobol points
+    assert p.log_mass == pytest.approx(np.log(mass), abs=2e-3)
 
 
 def test_draws_have_that_density(rng: np.random.Generator) -> None:

@@ -1,12 +1,9 @@
-r"""Posterior and evidence of one law by tempered sequential Monte Carlo.
+"""Posterior of one law by tempered sequential Monte Carlo, and its evidence.
 
 Particles drawn from the prior go through a ladder of tempered posteriors
 prior · Lᵝ, β from 0 to 1; each rung reweights, resamples and moves them (Del Moral, Doucet & Jasra 2006;
-Ching & Chen 2007). The mean weights multiply to the evidence,
-
-.. math:: Z = \prod_t \frac{1}{n}\sum_i L(θ_i)^{β_{t+1}-β_t}.
-
-Several independent islands run side by side: only if they agree is the result called a posterior.
+Ching & Chen 2007). Several independent islands run side by side: only if they agree is the result called a
+posterior. Their draws give the evidence (:mod:`jackettwin.updating.evidence`).
 """
 
 from __future__ import annotations
@@ -22,6 +19,7 @@ from scipy.special import logsumexp
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.numbered import NumberedModes
 from jackettwin.updating.convergence import Convergence, convergence
+from jackettwin.updating.evidence import bridged_evidence
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import Found, Problem
 
@@ -37,8 +35,7 @@ _MOVES = 12
 _KEPT = 3
 """On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
 _LARGEST_SPREAD = 0.5
-"""Standard deviation of log Z between islands beyond which it is not known. Each rung adds to it: precise
-data, with many rungs, leave the draws alone and blur the evidence."""
+"""Standard deviation of log Z between islands beyond which it is not known."""
 
 
 @dataclass(frozen=True)
@@ -135,15 +132,14 @@ def sample_posterior(
             field="targets",
             remedy="give every target frequency and damping ratio its standard deviation",
         )
-    rng = np.random.default_rng(seed)
-    runs = [_island(problem, particles, child, progress) for child in rng.spawn(islands)]
-    return gathered(
-        problem,
-        z=np.array([_by_particle([swarm.z for swarm in kept]) for kept, _ in runs]),
-        poles=np.array([_by_particle([swarm.found[0].poles for swarm in kept]) for kept, _ in runs]),
-        log_l=np.array([_by_particle([swarm.log_l for swarm in kept]) for kept, _ in runs]),
-        log_z=np.array([value for _, value in runs]),
-    )
+    *streams, last = np.random.default_rng(seed).spawn(islands + 1)
+    runs = [_island(problem, particles, stream, progress) for stream in streams]
+    z = np.array([_by_particle([swarm.z for swarm in kept]) for kept in runs])
+    log_l = np.array([_by_particle([swarm.log_l for swarm in kept]) for kept in runs])
+    near = problem.anchor(z.mean(axis=(0, 1)))
+    log_z = bridged_evidence(lambda at: problem.log_likelihood(at, near)[0], problem.prior, z, log_l, last)
+    poles = np.array([_by_particle([swarm.found[0].poles for swarm in kept]) for kept in runs])
+    return gathered(problem, z=z, poles=poles, log_l=log_l, log_z=log_z)
 
 
 def gathered(
@@ -188,15 +184,15 @@ def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 def _island(
     problem: Problem, n: int, rng: np.random.Generator, progress: Callable[[], None] | None
-) -> tuple[list[_Swarm], float]:
+) -> list[_Swarm]:
+    """Return the last swarms of one island."""
     prior = problem.prior
     z = prior.draw(n, rng)
     swarm = _evaluate(problem, prior, z, problem.anchor(z.mean(axis=0)))
-    beta, log_z, kept = 0.0, 0.0, [swarm]
+    beta, kept = 0.0, [swarm]
     while beta < 1.0:
         step = _next_step(swarm.log_l, 1.0 - beta)
         weight = step * swarm.log_l
-        log_z += float(logsumexp(weight) - np.log(n))
         beta += step
         swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), rng))
         kept = []
@@ -206,7 +202,7 @@ def _island(
                 kept.append(swarm)
         if progress is not None:
             progress()
-    return kept, log_z
+    return kept
 
 
 def _moved(

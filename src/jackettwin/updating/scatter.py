@@ -13,12 +13,14 @@ and given y the scatter is known in closed form, :math:`s^2 ∼ (ν s_0^2 + y^T 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import lgamma, log, pi, sqrt
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 from scipy.special import chdtri, stdtrit
+from scipy.stats import qmc
 
 from jackettwin.updating.prior import BoxPrior, Prior
 
@@ -27,9 +29,9 @@ IntArray = npt.NDArray[np.intp]
 
 FREEDOM = 3.0
 """ν: one leg in ten scatters by more than 1.6 s₀, one in a hundred by more than 4.5 s₀."""
-
-
 _REDRAWS = 20
+_LOG2_POINTS = 12
+"""Sobol points, as a power of two, that tell the mass between the bounds to about 1e-3."""
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,6 @@ class Legs:
 class ScatteredPrior:
     """Independent priors, but legs scatter about a common mean; cut at the bounds.
 
-    The density does not make up for what the bounds cut off: little, where the scatter is small beside them.
-
     Attributes
     ----------
     box : BoxPrior
@@ -153,6 +153,13 @@ class ScatteredPrior:
             z[..., group.columns] = first + group.from_unit(u[..., group.columns[1:]])
         return z
 
+    @cached_property
+    def log_mass(self) -> float:
+        """Logarithm of the probability that legs about a mean between the bounds lie between them, too."""
+        u = qmc.Sobol(self.low.size, rng=0).random_base2(_LOG2_POINTS)
+        z = self._unbounded(u)
+        return log(float(np.mean(np.all((z >= self.low) & (z <= self.high), axis=1))))
+
     def log_density(self, z: FloatArray) -> FloatArray:
         """Return ln p (n,) of points (n, d); −inf outside the bounds."""
         centred, total = self._centred(z), np.zeros(len(z))
@@ -163,7 +170,7 @@ class ScatteredPrior:
             alone[:, group.columns[1:]] = 0.0
         total += alone.sum(axis=1)
         inside = np.all((z >= self.low) & (z <= self.high), axis=1)
-        return np.where(inside, total, -np.inf)
+        return np.where(inside, total - self.log_mass, -np.inf)
 
     def rows(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the priors as residuals (n,) and their Jacobian (n, d)."""
