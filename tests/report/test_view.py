@@ -9,9 +9,10 @@ import pytest
 
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.report.view import Quantity, View, thickness_quantities, view_document, write_view
-from jackettwin.report.view_motions import damped_motion, undamped_motion, wave_motion
+from jackettwin.report.view_motions import damped_motion, record_motion, undamped_motion, wave_motion
 from jackettwin.response.modal import damped_modes, undamped_modes
 from jackettwin.response.passage import wave_passage
+from jackettwin.response.playback import Playback
 from jackettwin.response.sensors import Sensor
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import on_translations
@@ -94,6 +95,16 @@ def test_motions_are_scaled_and_closed(view: View, system: System) -> None:
     drawn = np.array(wave["q"]) @ np.array(wave["shapes"])[:, 3 * top] * wave["largest_m"]
     np.testing.assert_allclose(drawn, exact, atol=1e-3 * np.abs(exact).max())
     assert len(wave["load"]) == 12
+    assert "towards 0° from +x" in wave["note"]
+
+
+def test_playback_tells_the_record_s_own_time(view: View) -> None:
+    """The clock of the page starts where the minute that is shown starts."""
+    assembly = view.assembly
+    found = Playback(np.ones((assembly.n_dof, 1)), np.ones((600, 1)), step_s=0.1, start_s=408.0)
+    played = record_motion(assembly, "a", found).document()
+    assert (played["start_s"], played["step_s"], played["cyclic"]) == (408.0, 0.1, False)
+    assert played["note"].startswith("408 to 468 s")
 
 
 def test_one_file_that_needs_no_network(view: View, tmp_path: Path) -> None:

@@ -189,12 +189,12 @@ def _uses(assembly: Assembly, system: System, forces: dict[str, tuple[float, ...
     uses = np.array([use.utilisation for use in member_uses(assembly, u, along=along)])[assembly.mesh.member]
     sections = section_forces(assembly, u, along=along)
     return (
-        Quantity("utilisation, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
+        Quantity("utilisation at rest, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
         Quantity(
-            "von Mises stress",
+            "von Mises stress at rest",
             "MPa",
             von_mises_stress(assembly, sections).max(axis=1) / 1e6,
             from_zero=True,
         ),
-        Quantity("axial force", "MN", sections.axial.mean(axis=1) / 1e6),
+        Quantity("axial force at rest", "MN", sections.axial.mean(axis=1) / 1e6),
     )

@@ -29,6 +29,8 @@ class Motion:
     q : (n_frames, n_shapes)
     step_s : float
         Time between frames.
+    start_s : float
+        Time of the first.
     cyclic : bool
         Frames go round; a record stops and starts again.
     wave : dict, optional
@@ -43,6 +45,7 @@ class Motion:
     q: FloatArray
     step_s: float
     cyclic: bool = True
+    start_s: float = 0.0
     wave: dict[str, float] | None = None
     load_kn_m: FloatArray | None = None
 
@@ -58,6 +61,7 @@ class Motion:
             "q": [[float(f"{v:.5g}") for v in row] for row in self.q],
             "largest_m": largest if self.group == "loads and response" else None,
             "step_s": self.step_s,
+            "start_s": self.start_s,
             "cyclic": self.cyclic,
             "wave": self.wave,
             "load": None if self.load_kn_m is None else np.round(self.load_kn_m, 3).tolist(),
@@ -107,7 +111,8 @@ def wave_motion(assembly: Assembly, passage: Passage) -> Motion:
     kept = s > 1e-4 * s[0] if s[0] > 0.0 else np.arange(s.size) < 1
     return Motion(
         "regular wave",
-        f"H {passage.height_m:g} m, T {passage.period_s:g} s, length {passage.length_m:.0f} m; quasi-static",
+        f"H {passage.height_m:g} m, T {passage.period_s:g} s, length {passage.length_m:.0f} m, "
+        f"towards {np.degrees(passage.direction_rad):.0f}° from +x; quasi-static",
         "loads and response",
         vt[kept],
         u[:, kept] * s[kept],
@@ -132,6 +137,7 @@ def record_motion(assembly: Assembly, name: str, found: Playback) -> Motion:
         found.q,
         found.step_s,
         cyclic=False,
+        start_s=found.start_s,
     )
 
 
