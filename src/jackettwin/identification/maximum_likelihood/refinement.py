@@ -7,7 +7,8 @@ enough of what the others leave, by the gain of log-likelihood
           a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
 
 of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
-criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked).
+criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). In a narrow band, where shapes
+may lag and the model is less exact, it must gain as much as it must to stay: Schwarz's criterion.
 
 What a small sample does is taken back: the bias b of ln ζ from the curvature of the model
 (``accuracy.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
@@ -44,10 +45,12 @@ SUSPECT = 2.5
 """A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
 APPROACH = 4
 """Steps before the doubtful modes are judged."""
+HOPELESS = 3.0
+"""A fit is given up then if it lacks this many times what it may …"""
 WORTH_A_TRY = 12
-"""Steps after which a fit is given up …"""
-HOPELESS = 1.5
-"""… if it lacks this many times what it may."""
+"""… and after so many steps more …"""
+STILL_HOPELESS = 1.5
+"""… if it still lacks this many times that."""
 PARAMETERS_OF_A_MODE = 3
 """f, ζ and colour; its shape has one for each channel."""
 MOST_BIAS = 0.5
@@ -166,10 +169,14 @@ def refine(
     if background:
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
-    climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit)
-    climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
+    least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else needed_gain(data)
+    climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
     lack = accuracy.lack_of_fit(data, climb.parameters)
     if lack > HOPELESS * most_lack_of_fit:
+        return _given_up(gain, unit.shape[1], lack)
+    climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
+    lack = accuracy.lack_of_fit(data, climb.parameters)
+    if lack > STILL_HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
     if not climb.converged:
         climb = likelihood.climbed(data, climb.parameters)
@@ -202,8 +209,9 @@ def _joined(
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,
     unit: FloatArray,
+    least: float,
 ) -> tuple[likelihood.Climb, IntArray, FloatArray]:
-    """Admit the doubtful candidate that explains most, again and again, while one explains enough."""
+    """Admit the doubtful candidate that explains most, again and again, while one gains enough."""
     gain = np.full(len(frequency_hz), np.inf)
     for _ in range(MOST_ADDED):
         doubtful = np.setdiff1d(np.arange(len(frequency_hz)), chosen)
@@ -214,7 +222,7 @@ def _joined(
         gain[doubtful] = [g for g, _ in tried]
         best = int(np.argmax(gain[doubtful]))
         i = doubtful[best]
-        if gain[i] < PARAMETERS_OF_A_MODE + unit.shape[1]:
+        if gain[i] < least:
             break
         shape = unit[i] * np.sqrt(tried[best][1])
         joined = p.joined(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
