@@ -1,13 +1,11 @@
 """Superelements as files: ``.npz`` with everything, and OpenFAST's ExtPtfm (FlexASCII).
 
-ExtPtfm (OpenFAST 2.3 to 4) wants two files: the module's input file, and the superelement it names. The
-reader of the latter looks for ``!`` keywords; a matrix starts two lines below its own. Loads come as a table
-over time: here the self-weight, constant, which OpenFAST does not add by itself.
+ExtPtfm (OpenFAST 2.3 to 4) wants two files: the module's input file, and the superelement it names. Loads
+come as a table over time: here the self-weight, constant, which OpenFAST does not add by itself.
 """
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Literal
 
@@ -16,9 +14,8 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
-from jackettwin.files.yaml import read_text
+from jackettwin.response.extptfm import MATRICES, is_extptfm, read_extptfm
 from jackettwin.response.superelement import INTERFACE, Superelement
-from jackettwin.structure.model import Vector
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,8 +33,6 @@ _CONNECTIONS: tuple[tuple[tuple[str, ...], ...], ...] = (
         ('"unused"', "Conn_FileName", "Path containing connections inputs (-)"),
     ),
 )
-_MATRICES = {"mass": "Mass Matrix (Units (kg,m))", "stiffness": "Stiffness Matrix (Units (N,m))",
-             "damping": "Damping Matrix (Units (N,m,kg))"}  # fmt: skip
 
 
 def write_superelement(element: Superelement, path: Path, *, layout: Layout = "classic") -> tuple[Path, ...]:
@@ -87,19 +82,23 @@ def require_format(path: Path) -> None:
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(
-            "unknown format of a superelement", field="--out", value=path.name, allowed=", ".join(FORMATS)
+            "unknown format of a superelement",
+            field="--out",
+            value=path.name,
+            allowed=", ".join(FORMATS),
+            remedy="give the file one of these endings",
         )
 
 
 def is_superelement(path: Path) -> bool:
-    """Return whether a file holds a superelement: ``.npz``, or a ``.dat`` that says so in its second line."""
+    """Return whether a file holds a superelement: ``.npz``, or one of ExtPtfm's."""
     if path.suffix.lower() != ".dat":
         return path.suffix.lower() == ".npz"
-    return path.is_file() and "flex 5 format" in "".join(read_text(path).splitlines()[1:2]).lower()
+    return path.is_file() and is_extptfm(path)
 
 
 def read_superelement(path: Path) -> Superelement:
-    """Read a superelement of either format. FlexASCII knows no shapes and no reference point.
+    """Read a superelement, also by ExtPtfm's input file. ExtPtfm knows no shapes and no reference point.
 
     Raises
     ------
@@ -108,7 +107,7 @@ def read_superelement(path: Path) -> Superelement:
     """
     require_format(path)
     if path.suffix.lower() == ".dat":
-        return parse_flex_ascii(read_text(path, what="superelement file"), path)
+        return read_extptfm(path)
     if not path.is_file():
         raise InputError("no such superelement file", file=path)
     try:
@@ -135,7 +134,7 @@ def flex_ascii(element: Superelement) -> str:
         f"!Total simulation time in file: {_FOREVER_S:.5f}",
     ]
     for name, matrix in (("mass", element.M), ("stiffness", element.K), ("damping", element.C)):
-        lines += ["", f"!{_MATRICES[name]}", f"!Dimension: {n}", *map(_row, matrix)]
+        lines += ["", f"!{MATRICES[name]}", f"!Dimension: {n}", *map(_row, matrix)]
     lines += ["", "!Loading and Wave Elevation (Units (N,m))",
               f"!Dimension: 1 time column - {n} force columns - 1 wave elevation column"]  # fmt: skip
     lines += [_row(np.array([t, *element.weight_n, 0.0])) for t in (0.0, _FOREVER_S)]
@@ -144,56 +143,6 @@ def flex_ascii(element: Superelement) -> str:
 
 def _row(values: FloatArray) -> str:
     return " ".join(f"{value:23.15e}" for value in values)
-
-
-def parse_flex_ascii(text: str, path: Path) -> Superelement:
-    """Return the superelement of a FlexASCII text, read by OpenFAST's rules.
-
-    Raises
-    ------
-    InputError
-        If the dimension or a matrix is missing, or a row is too short.
-    """
-    lines = text.splitlines()
-    dimension = next(
-        (m for line in lines if (m := re.match(r"!dimension:?\s*(\d+)", line, re.IGNORECASE))), None
-    )
-    if dimension is None or len(lines) < 2 or "flex 5 format" not in lines[1].lower():
-        raise InputError("not a superelement in FlexASCII format", file=path, field="!Dimension")
-    n = int(dimension[1])
-    if n < INTERFACE:
-        raise InputError(
-            "fewer coordinates than an interface has", file=path, field="!Dimension", value=n, allowed="≥ 6"
-        )
-    at = {name: _find(lines, f"!{name} matrix", path) for name in _MATRICES}
-    M, K, C = (_matrix(lines[at[name] + 2 : at[name] + 2 + n], n, path, name) for name in _MATRICES)
-    weight = np.zeros(n)
-    loads = [number for number, line in enumerate(lines) if line.lower().startswith("!loading")]
-    if loads and len(lines) > loads[0] + 2:
-        weight = _matrix(lines[loads[0] + 2 : loads[0] + 3], n + 1, path, "loading")[0, 1:]
-    origin: Vector = (0.0, 0.0, 0.0)
-    return Superelement(M, C, K, origin, weight, np.empty((0, n)))
-
-
-def _find(lines: list[str], keyword: str, path: Path) -> int:
-    for number, line in enumerate(lines):
-        if line.lower().startswith(keyword):
-            return number
-    raise InputError("matrix is missing", file=path, field=keyword)
-
-
-def _matrix(rows: list[str], n: int, path: Path, name: str) -> FloatArray:
-    try:
-        matrix = np.array([[float(word.replace("D", "E")) for word in row.split()[:n]] for row in rows])
-    except ValueError:
-        raise InputError("rows are not numbers, or differ in length", file=path, field=name) from None
-    if matrix.ndim != 2 or matrix.shape[1] != n or (name in _MATRICES and matrix.shape[0] != n):
-        raise InputError(
-            "matrix has the wrong shape", file=path, field=name, value=matrix.shape, allowed=f"{n} columns"
-        )
-    if not np.isfinite(matrix).all():
-        raise InputError("not finite", file=path, field=name)
-    return np.asarray(matrix)
 
 
 def static_internal(element: Superelement) -> FloatArray:

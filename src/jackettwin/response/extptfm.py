@@ -1,0 +1,187 @@
+"""Read the superelements of OpenFAST's ExtPtfm, its own or another program's.
+
+The module's input file names the matrices' file and its format: 1 is FlexASCII, where ``!`` keywords lead and
+a matrix starts two lines below its own; 0 is Guyan's, six coordinates read by the place of their lines.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.files.yaml import read_text
+from jackettwin.response.superelement import INTERFACE, Superelement
+
+FloatArray = npt.NDArray[np.float64]
+
+MATRICES = {"mass": "Mass Matrix (Units (kg,m))", "stiffness": "Stiffness Matrix (Units (N,m))",
+             "damping": "Damping Matrix (Units (N,m,kg))"}  # fmt: skip
+"""Names of the matrices, and what FlexASCII calls them."""
+_GUYAN_LINES = {"mass": 2, "damping": 9, "stiffness": 16, "loads": 25}
+"""Lines before each matrix and before the table of loads in Guyan's format."""
+
+
+def is_extptfm(path: Path) -> bool:
+    """Return whether a file is ExtPtfm's: its module's input, or a superelement in one of its formats."""
+    return _kind(read_text(path).splitlines()) is not None
+
+
+def read_extptfm(path: Path) -> Superelement:
+    """Read a superelement by its own file or by the module's input file that names it.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or incomplete.
+    """
+    text = read_text(path, what="superelement file")
+    lines = text.splitlines()
+    if _kind(lines) != "input":
+        return parse_flex_ascii(text, path) if _kind(lines) != "guyan" else _guyan(lines, path)
+    named = path.parent / _value(lines, "Red_FileName", path).strip("\"' ").replace("\\", "/")
+    kind = _value(lines, "FileFormat", path).strip()
+    if kind not in ("0", "1"):
+        raise InputError(
+            "unknown format",
+            file=path,
+            field="FileFormat",
+            value=kind,
+            allowed="0 (Guyan), 1 (FlexASCII)",
+            remedy="write the superelement in one of these",
+        )
+    text = read_text(named, what="superelement file")
+    whole = parse_flex_ascii(text, named) if kind == "1" else _guyan(text.splitlines(), named)
+    return _active(whole, lines, path)
+
+
+def _kind(lines: list[str]) -> str | None:
+    first, second, third = [*(line.lower() for line in lines[:3]), "", "", ""][:3]
+    if "extptfm" in first and "input" in first:
+        return "input"
+    if "flex 5 format" in second:
+        return "flex"
+    return "guyan" if "mass" in second and _are_numbers(third.split()[:INTERFACE]) else None
+
+
+def _are_numbers(words: list[str]) -> bool:
+    return len(words) == INTERFACE and all(re.fullmatch(r"[-+.\deEdD]+", word) for word in words)
+
+
+def _value(lines: list[str], key: str, path: Path) -> str:
+    """Return what stands before a keyword: a text in quotes, a word, or numbers."""
+    value = r"""(".*?"|'.*?'|[^\s,]+(?:[\s,]+[-+.\d]+)*)"""
+    for line in lines:
+        found = re.match(rf"\s*{value},?\s+{key}\b", line)
+        if found:
+            return found[1]
+    raise InputError("keyword is missing", file=path, field=key, remedy="is it ExtPtfm's input file?")
+
+
+def _active(whole: Superelement, lines: list[str], path: Path) -> Superelement:
+    """Return the superelement with those internal coordinates that the input file keeps active."""
+    number, given = (_value(lines, key, path) for key in ("NActiveDOFList", "ActiveDOFList"))
+    try:
+        count = int(number)
+        wanted = [int(word) for word in given.replace(",", " ").split()[: max(count, 0)]]
+    except ValueError:
+        raise InputError(
+            "not whole numbers", file=path, field="ActiveDOFList", value=given, remedy="write e.g. 1, 2, 3"
+        ) from None
+    inner = whole.n - INTERFACE
+    if count < 0:
+        return whole
+    if len(wanted) < count or any(not 1 <= k <= inner for k in wanted):
+        raise InputError(
+            "no such internal coordinates",
+            file=path,
+            field="ActiveDOFList",
+            value=wanted,
+            allowed=f"{count} numbers from 1 to {inner}",
+            remedy="mend the list, or keep all by NActiveDOFList -1",
+        )
+    at = [*range(INTERFACE), *(INTERFACE - 1 + k for k in wanted)]
+    M, C, K = (matrix[np.ix_(at, at)] for matrix in (whole.M, whole.C, whole.K))
+    return Superelement(M, C, K, whole.reference_m, whole.weight_n[at], whole.basis[:, at])
+
+
+def _guyan(lines: list[str], path: Path) -> Superelement:
+    """Return the superelement of a Guyan text: six coordinates, read by the place of the lines."""
+    M, C, K = (
+        _matrix(lines[(at := _GUYAN_LINES[name]) : at + INTERFACE], INTERFACE, path, name)
+        for name in ("mass", "damping", "stiffness")
+    )
+    first = lines[_GUYAN_LINES["loads"] : _GUYAN_LINES["loads"] + 1]
+    weight = np.zeros(INTERFACE)
+    if first and first[0].strip():
+        weight = _matrix(first, INTERFACE + 1, path, "loads")[0, 1:]
+    return Superelement(M, C, K, (0.0, 0.0, 0.0), weight, np.empty((0, INTERFACE)))
+
+
+def parse_flex_ascii(text: str, path: Path) -> Superelement:
+    """Return the superelement of a FlexASCII text, read by OpenFAST's rules.
+
+    Raises
+    ------
+    InputError
+        If the dimension or a matrix is missing, or a row is too short.
+    """
+    lines = text.splitlines()
+    dimension = next(
+        (m for line in lines if (m := re.match(r"!dimension:?\s*(\d+)", line, re.IGNORECASE))), None
+    )
+    if dimension is None or len(lines) < 2 or "flex 5 format" not in lines[1].lower():
+        raise InputError(
+            "not a superelement in FlexASCII format",
+            file=path,
+            field="!Dimension",
+            remedy="give the matrices' file, or ExtPtfm's input file that names it",
+        )
+    n = int(dimension[1])
+    if n < INTERFACE:
+        raise InputError(
+            "fewer coordinates than an interface has",
+            file=path,
+            field="!Dimension",
+            value=n,
+            allowed="≥ 6",
+            remedy="check the file",
+        )
+    at = {name: _find(lines, f"!{name} matrix", path) for name in MATRICES}
+    M, K, C = (_matrix(lines[at[name] + 2 : at[name] + 2 + n], n, path, name) for name in MATRICES)
+    weight = np.zeros(n)
+    loads = [number for number, line in enumerate(lines) if line.lower().startswith("!loading")]
+    if loads and len(lines) > loads[0] + 2:
+        weight = _matrix(lines[loads[0] + 2 : loads[0] + 3], n + 1, path, "loading")[0, 1:]
+    return Superelement(M, C, K, (0.0, 0.0, 0.0), weight, np.empty((0, n)))
+
+
+def _find(lines: list[str], keyword: str, path: Path) -> int:
+    for number, line in enumerate(lines):
+        if line.lower().startswith(keyword):
+            return number
+    raise InputError("matrix is missing", file=path, field=keyword, remedy="add it, or write the file anew")
+
+
+def _matrix(rows: list[str], n: int, path: Path, name: str) -> FloatArray:
+    try:
+        matrix = np.array([[float(word.replace("D", "E")) for word in row.split()[:n]] for row in rows])
+    except ValueError:
+        raise InputError(
+            "rows are not numbers, or differ in length", file=path, field=name, remedy="check the file"
+        ) from None
+    if matrix.ndim != 2 or matrix.shape[1] != n or (name in MATRICES and matrix.shape[0] != n):
+        raise InputError(
+            "matrix has the wrong shape",
+            file=path,
+            field=name,
+            value=matrix.shape,
+            allowed=f"{n} columns",
+            remedy="check the file",
+        )
+    if not np.isfinite(matrix).all():
+        raise InputError("not finite", file=path, field=name, remedy="check the file")
+    return np.asarray(matrix)
