@@ -136,3 +136,4 @@ def test_what_is_odd_of_an_asset_is_noted(tmp_path: Path) -> None:
         assert said in notes
     assert re.search(r"structure gives side_side_1 \d[.\d]* % damping, more than the 1 to 2 %", notes)
     assert "water gives" not in notes  # there is none
+    assert "soil gives" not in notes  # nothing in it damps

@@ -10,7 +10,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.loads import read_rotor
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.rotor_limits import lowest_tip
+from jackettwin.simulate.rotor_limits import lowest_tip, rotor_notes
 
 WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
 BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"
@@ -79,6 +79,19 @@ def test_wind_on_the_tower_alone(written: Callable[[str], Path]) -> None:
 def test_a_rotor_nobody_chose_is_named(written: Callable[[str], Path]) -> None:
     assert "the wind blows on iea15, parked" in loads_document(read_scenario(written("")))["warnings"][0]
     assert loads_document(read_scenario(written("rotor: {data: iea15}\n")))["warnings"] == []
+
+
+@pytest.mark.parametrize(
+    ("speed", "state", "said"), [(26, "operating", 1), (12, "operating", 0), (26, "idling", 0)]
+)
+def test_production_beyond_cut_out_is_named(
+    written: Callable[[str], Path], speed: int, state: str, said: int
+) -> None:
+    path = written(f"rotor: {{data: iea15, state: {state}}}\n")
+    path.write_text(path.read_text().replace("speed_m_s: 12", f"speed_m_s: {speed}"), encoding="utf-8")
+    notes = rotor_notes(read_scenario(path))
+    assert len(notes) == said
+    assert all("cut-in and cut-out of 3 and 25 m/s" in note for note in notes)
 
 
 def test_no_rotor_has_no_state(written: Callable[[str], Path]) -> None:

@@ -17,6 +17,8 @@ from jackettwin.updating.budget import beyond_literature
 
 DEFAULT_SCENARIO = "parked"
 
+_NOTHING = 1e-9
+"""A damping ratio that is rounding: there is no such source."""
 _SHOWN = 12
 """True modes in the terminal."""
 
@@ -33,7 +35,12 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     write_record(done.record, path)
     asset = chosen.asset
     odd = check(assemble(asset.structure)).warnings
-    notes = [*rotor_notes(chosen), *asset.support.notes, *odd, *_unusual_shares(done)]
+    notes = [
+        *rotor_notes(chosen),
+        *asset.support.notes,
+        *odd,
+        *_unusual_shares(done, loops=asset.foundation is not None),
+    ]
     if as_json:
         print_json({**done.document(), "record": str(path), "notes": notes})
     else:
@@ -42,13 +49,21 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
             output.print(f"note: {note}")
 
 
-def _unusual_shares(done: Simulation) -> list[str]:
-    """Return which of the sources there are damp the first bending modes beyond the literature's range."""
+def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:
+    """Return which of the sources there are damp the first bending modes beyond the literature's range.
+
+    The damping of a ground with ``loops`` grows with the motion: the linear modes know nothing of it.
+    """
     return [
         note
         for mode in done.record.metadata["true_modes"]
         for note in beyond_literature(
-            mode["label"], {name: zeta for name, zeta in mode["damping_by_source"].items() if zeta > 0.0}
+            mode["label"],
+            {
+                name: zeta
+                for name, zeta in mode["damping_by_source"].items()
+                if zeta > _NOTHING and not (loops and name == "soil")
+            },
         )
     ]
 

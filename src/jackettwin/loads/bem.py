@@ -30,6 +30,8 @@ class Control:
     highest_speed_rad_s: float
     efficiency: float = 0.957
     """Generator power over aerodynamic power (IEA 15 MW: 95.756 %)."""
+    wind_speeds_m_s: tuple[float, float] | None = None
+    """Cut-in and cut-out; None if not known."""
 
 
 class Operation(NamedTuple):

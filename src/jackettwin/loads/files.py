@@ -121,4 +121,5 @@ def _control(content: WindIO) -> Control:
         tip_speed_ratio=tip_speed_ratio,
         lowest_speed_rad_s=lowest,
         highest_speed_rad_s=highest,
+        wind_speeds_m_s=content.wind_speeds(),
     )

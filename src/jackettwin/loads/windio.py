@@ -188,6 +188,17 @@ class WindIO:
         low, high = (at[key].number(low=0.0, high=fastest) * unit for key in keys[1:])
         return at[keys[0]].number(low=1.0, high=20.0), low, high
 
+    def wind_speeds(self) -> tuple[float, float] | None:
+        """Return the wind speeds between which the turbine produces [m/s]; None if the file does not say."""
+        control = self.root["control"]
+        if "supervisory" not in control:
+            return None
+        at = control["supervisory"]
+        if "Vin" not in at or "Vout" not in at:
+            return None
+        low, high = (at[key].number(low=0.0, high=100.0) for key in ("Vin", "Vout"))
+        return low, high
+
 
 def windio(data: Any) -> WindIO:
     """Return a windIO file's content with its version."""

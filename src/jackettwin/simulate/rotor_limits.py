@@ -1,4 +1,4 @@
-"""Whether a rotor fits the asset it stands on, and which one it is if nobody chose it."""
+"""Whether a rotor fits the asset and the wind it stands in, and which one it is if nobody chose it."""
 
 from __future__ import annotations
 
@@ -44,9 +44,17 @@ def lowest_tip(rotor: Rotor, pitch: float, *, azimuth: float | None) -> float:
 
 
 def rotor_notes(scenario: Scenario) -> list[str]:
-    """Return what to know of a rotor that the scenario did not choose."""
+    """Return what to know of a rotor: nobody chose it, or it would not run in this wind."""
     air, turbine = scenario.air, scenario.turbine
-    if air is None or turbine is None or not turbine.assumed:
+    if air is None or turbine is None:
+        return []
+    limits, speed = turbine.control.wind_speeds_m_s, air.wind.speed_m_s
+    if turbine.state == "operating" and limits is not None and not limits[0] <= speed <= limits[1]:
+        return [
+            f"{turbine.name} operates in {speed:g} m/s, beyond its cut-in and cut-out of {limits[0]:g} and "
+            f"{limits[1]:g} m/s: take rotor.state: idling, or another wind"
+        ]
+    if not turbine.assumed:
         return []
     return [
         f"no rotor is given: the wind blows on {turbine.name}, {turbine.state}, radius "
