@@ -117,6 +117,21 @@ def test_bad_numbers_are_named(case: Path, old: str, new: str, said: str) -> Non
     assert not case.with_name("r.parquet").exists()
 
 
+def test_motion_without_bound_is_a_matter_of_the_scenario(tmp_path: Path) -> None:
+    """A river ten metres a second fast, tenfold drag and loads every second: no warning, no traceback."""
+    path = tmp_path / "rough.yaml"
+    path.write_text(
+        "structure: jacket15\nsupport: pinned\nwater: {drag: 10}\ncurrent: {uniform_m_s: 10}\n"
+        "waves: {type: airy, height_m: 6, period_s: 10, relative_velocity: full}\n"
+        "time: {duration_s: 300, step_s: 0.5, load_step_s: 0.5}\n"
+    )
+    result = CliRunner().invoke(main, ["simulate", str(path), "--out", str(tmp_path / "r.parquet")])
+    assert result.exit_code == 2
+    message = " ".join(result.stderr.split())
+    assert "rough.yaml: time.load_step_s: the motion grows without bound (got 0.5)" in message
+    assert "halve it" in message and not (tmp_path / "r.parquet").exists()
+
+
 def test_what_is_odd_of_an_asset_is_noted(tmp_path: Path) -> None:
     """A nacelle in tonnes, a pile longer than its layers, damping beyond the literature's."""
     path = tmp_path / "odd.yaml"

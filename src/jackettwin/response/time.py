@@ -148,13 +148,14 @@ def march_with_feedback(
     g = np.empty((f.shape[0], P0.shape[1]))
     g[0] = feedback(0, x0)
     before = g[0]
-    for k in range(gain.shape[0]):
-        base = hold.E @ x[k] + gain[k] + P0 @ g[k]
-        guess = 2.0 * g[k] - before
-        for _ in range(evaluations):
-            guess = feedback(k + 1, base + P1 @ guess)
-        x[k + 1] = base + P1 @ guess
-        before, g[k + 1] = g[k], guess
+    with np.errstate(over="ignore", invalid="ignore"):  # seen at the end
+        for k in range(gain.shape[0]):
+            base = hold.E @ x[k] + gain[k] + P0 @ g[k]
+            guess = 2.0 * g[k] - before
+            for _ in range(evaluations):
+                guess = feedback(k + 1, base + P1 @ guess)
+            x[k + 1] = base + P1 @ guess
+            before, g[k + 1] = g[k], guess
     if not np.isfinite(x[-1]).all():
         raise NumericalError("the motion grows without bound: shorten the load step")
     return x, g

@@ -36,9 +36,8 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> tuple
     Raises
     ------
     InputError
-        If parts of the scenario do not fit each other, or it cannot stand.
-    NumericalError
-        If the motion grows without bound.
+        If parts of the scenario do not fit each other, it cannot stand, or the motion grows
+        without bound.
     """
     motion = simulate_motion(scenario)
     assembly, modes = motion.model.assembly, motion.model.reduced.basis.T

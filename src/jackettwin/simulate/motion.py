@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.time import (
     Feedback,
     Hold,
@@ -60,9 +61,7 @@ def simulate_motion(scenario: Scenario) -> Motion:
     Raises
     ------
     InputError
-        If parts of the scenario do not fit each other.
-    NumericalError
-        If the motion grows without bound.
+        If parts of the scenario do not fit each other, or the motion grows without bound under them.
     """
     with in_words_of(scenario):
         return _motion(scenario)
@@ -84,7 +83,16 @@ def _motion(scenario: Scenario) -> Motion:
         force = force + loads.wave.at(t)
     parts = _feedbacks(scenario, loads)
     if parts:
-        states, force = _with_feedback(parts, space, hold, x0, force)
+        try:
+            states, force = _with_feedback(parts, space, hold, x0, force)
+        except NumericalError as error:
+            raise InputError(
+                "the motion grows without bound",
+                field="time.load_step_s",
+                value=clock.load_step_s,
+                allowed="shorter steps, or loads that fit the structure",
+                remedy="halve it; if that does not help, check coefficients, current and wind",
+            ) from error
     else:
         states = march(hold, x0, force)
     return Motion(

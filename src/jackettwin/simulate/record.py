@@ -56,9 +56,8 @@ def simulate(scenario: Scenario) -> Simulation:
     Raises
     ------
     InputError
-        If parts of the scenario do not fit each other, or a sensor has no place.
-    NumericalError
-        If the motion grows without bound.
+        If parts of the scenario do not fit each other, a sensor has no place, or the motion grows
+        without bound.
     """
     start = perf_counter()
     motion = simulate_motion(scenario)
