@@ -52,6 +52,16 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         ("targets:", "records: [a.parquet]\ntargets:", r"give records or targets"),
         ("{mode: 4", "[mode: 4", r"line 6"),
         (
+            "damping_ratio: 0.0127",
+            "damping_ratio_std: 0.002",
+            r"targets\.0\.damping_ratio_std: a standard deviation without its value.*0\.002",
+        ),
+        (
+            "targets:",
+            "update: {mac_std: 0.02}\ntargets:",
+            r"update\.mac_std: no target has a shape to be compared.*0\.02.*mode_shape",
+        ),
+        (
             "targets:",
             "update: {modes: [1, 99]}\ntargets:",
             r"update\.modes: measured modes are paired with the model's first 12.*\[99\].*as targets",
@@ -64,6 +74,49 @@ def test_mistakes_are_named(tmp_path: Path, old: str, new: str, message: str) ->
     with pytest.raises(InputError, match=message) as caught:
         read_twin(path)
     assert str(path) in str(caught.value)
+
+
+SHAPED = (
+    GOOD.replace("0.0127}", "0.0127, mode_shape: {x: 1.0, y: [0.1, 0.01]}}")
+    + """\
+sensors:
+  - {channel: x, height_m: 50.0, direction: [1, 0, 0]}
+  - {channel: y, height_m: 50.0, direction: [0, 1, 0]}
+update: {mac_std: 0.02}
+"""
+)
+
+
+def test_a_target_may_have_a_shape(tmp_path: Path) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(SHAPED)
+    assert read_twin(path).shapes == {1: {"x": 1.0, "y": 0.1 + 0.01j}}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("mac_std: 0.02", "starts: 3", r"update\.mac_std: shapes need the standard deviation of 1 − MAC"),
+        ("{x: 1.0, y", "{x: 1.0, z", r"targets\.0\.mode_shape: no sensor .*\['z'\].*allowed: x, y"),
+        ("{x: 1.0, y: [0.1, 0.01]}", "{x: 1.0}", r"targets\.mode_shape: a shape at one sensor"),
+        ("frequency_hz: 0.1819,", "", r"targets\.mode_shape: a shape without its frequency.*frequency_hz"),
+    ],
+)
+def test_shapes_that_cannot_count_are_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(SHAPED.replace(old, new, 1))
+    with pytest.raises(InputError, match=message):
+        read_twin(path)
+
+
+def test_targets_are_all_fitted_unless_the_file_says_which(tmp_path: Path) -> None:
+    path = tmp_path / "t.yaml"
+    path.write_text(GOOD.replace("mode: 4", "mode: 7"))
+    assert read_twin(path).update.modes == (1, 2, 3, 4, 5, 7)
+    assert read_twin(path).update.damping_of == "all"
+    path.write_text(GOOD + "update: {modes: [1], damping_of: none}\n")
+    assert read_twin(path).update.modes == (1,)
+    assert read_twin(path).update.damping_of == "none"
 
 
 def test_a_rotor_frees_both_dashpots_unless_one_is_named(tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ def twin(folder: Path, *, adds: str = "false", sea: str = "sea: {hs_m: 2.0, tp_s
     path.write_text(TWIN.format(adds=adds, sea=sea))
     config = read_twin(path)
     assembly = assembled(config)
-    states = {"": (residuals(config, target_modes(config, ("side_side_1",) * 12, highest_hz=1.0)), {})}
+    states = {"": (residuals(config, target_modes(config, ("side_side_1",) * 12, pinned_hz=np.ones(12))), {})}
     return config, Evidence(assembly, None, states, RotorDamping({}, {}))
 
 

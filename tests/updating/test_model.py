@@ -7,6 +7,7 @@ from jackettwin.errors import InputError
 from jackettwin.soil.coefficients import law_rows
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.updating.extras import STEEL, Extras
 
 POINTS = {
     "kelvin-voigt": [2.5e9, 7.6e8],  # thesis table 8.1
@@ -98,6 +99,26 @@ def test_tower_modes_feel_the_vertical_springs(jacket15: Assembly, steel: Raylei
 def test_bad_options(jacket15: Assembly, steel: Rayleigh, options: dict, message: str) -> None:
     with pytest.raises(InputError, match=message):
         support_model(jacket15, family=family("kelvin-voigt"), rayleigh=steel, **options)
+
+
+def test_free_steel_is_bounded_where_it_would_overdamp_the_highest_mode(jacket15: Assembly) -> None:
+    """βω = 0.3 at the end of the band; the ratio's and the frequency's bounds give way alike."""
+
+    def bounds(highest: int, **given: tuple[float, float]) -> tuple[float, float, float]:
+        extras = Extras(rayleigh=True)
+        model = support_model(
+            jacket15, family=family("maxwell-3"), rayleigh=Rayleigh(), highest_mode=highest, extras=extras,
+            bounds=given,
+        )  # fmt: skip
+        ratio, frequency = model.parameters[-2:]
+        return ratio.high, frequency.low, model.condensed.radius
+
+    assert bounds(2)[:2] == (STEEL[0].high, STEEL[1].low)
+    ratio, low, radius = bounds(8)
+    np.testing.assert_allclose(ratio / (2.0 * np.pi * low) * radius, 0.3, rtol=1e-12)
+    np.testing.assert_allclose(STEEL[0].high / ratio, low / STEEL[1].low, rtol=1e-12)
+    with pytest.raises(InputError, match=r"bounds\.rayleigh_ratio: .*too strong.*got \[0\.2, 0\.1\]"):
+        bounds(8, rayleigh_ratio=(1e-4, 0.2))
 
 
 def test_unknown_law_suggests() -> None:

@@ -137,6 +137,19 @@ def test_a_search_that_does_not_settle_stops_and_says_so(
     assert "Not settled" not in settled.statement
 
 
+def test_a_search_that_ends_nowhere_says_what_is_in_reach(
+    models: dict[str, SupportModel], frequencies_alone: Residuals, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pinned feet give mode 1 0.183 Hz; no support is stiffer."""
+
+    def lost(*args, **options):
+        return replace(descend(*args, **options), settled=False)
+
+    monkeypatch.setattr("jackettwin.updating.solutions.descend", lost)
+    with pytest.raises(InputError, match=r"supports' reach \(got \{1: 0\.1.*undamped mode 1 .*to 0\.18\d Hz"):
+        search(single(models["kelvin-voigt"], frequencies_alone), starts=1)
+
+
 def test_ends_that_were_not_compared_are_listed_apart(
     models: dict[str, SupportModel], frequencies_alone: Residuals
 ) -> None:

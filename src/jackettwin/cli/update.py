@@ -38,7 +38,9 @@ def print_updates(result: TwinResult) -> None:
         output.print(f"\n[bold]{u.law}[/bold]")
         output.print(_parameters(u))
         output.print(_modes(result.measured, u))
-        for line in (*_relaxations(result, u), *_leg_scatter(u)):
+        if len(u.solutions) > 1 or u.best.locked_damper or u.best.locks_within:
+            output.print(_solutions(u))
+        for line in (u.search.statement, *_status(u), *_relaxations(result, u), *_leg_scatter(u)):
             output.print(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
@@ -59,6 +61,24 @@ def _parameters(u: Update) -> Table:
         bound = ", on its bound" if p.name in u.best.at_bound else ""
         table.add_row(p.name, f"{value:.3g}{unit}", span, verdict + bound)
     return table
+
+
+def _solutions(u: Update) -> Table:
+    """Return every solution, best first."""
+    table = Table("solution", *(p.name for p in u.problem.parameters), "cost", "starts", "damper")
+    for i, s in enumerate(u.solutions, start=1):
+        locked = "locked" if s.locked_damper else "locks within its extent" if s.locks_within else ""
+        table.add_row(str(i), *(f"{x:.3g}" for x in s.theta), f"{s.cost:.3g}", str(s.found), locked)
+    return table
+
+
+def _status(u: Update) -> list[str]:
+    """Return why there is no posterior, if there is none."""
+    if u.uncertainty is None:
+        return ["No intervals: they need the standard deviation of every target."]
+    if u.uncertainty.status == "ok":
+        return []
+    return [f"No posterior: {u.uncertainty.status}. The intervals are Laplace's."]
 
 
 def _relaxations(result: TwinResult, u: Update) -> list[str]:

@@ -194,6 +194,11 @@ def widest_band_hz(beta: float) -> float:
     return _STEEPEST / (2.0 * pi * beta) if beta > 0.0 else inf
 
 
+def strongest_beta(radius: float) -> float:
+    """Return how strong stiffness-proportional damping β [s] may be in a band of this radius [rad/s]."""
+    return _STEEPEST / radius
+
+
 def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
     """Refuse steel that is overdamped inside the band.
 
@@ -212,7 +217,7 @@ def check_rayleigh(rayleigh: FloatArray, radius: float) -> None:
             "stiffness-proportional damping of the steel is too strong for the band of the modes asked for",
             field="damping.rayleigh",
             value=worst,
-            allowed=f"β ≤ {_STEEPEST / radius:.3g} s",
+            allowed=f"β ≤ {strongest_beta(radius):.3g} s",
             remedy=f"leave the highest modes out: they take the band to {radius / (2.0 * np.pi):.3g} Hz; "
             "or state less damping",
         )

@@ -131,6 +131,8 @@ class TwinConfig:
     sensors: tuple[Sensor, ...]
     records: tuple[Path, ...]
     targets: tuple[Target, ...]
+    shapes: Mapping[int, Mapping[str, complex]]
+    """Of targets, at sensors of the twin: {mode: {channel: value}}."""
     relaxations: tuple[GivenRelaxation, ...]
     """Targets that do not oscillate."""
     identification: IdentificationSettings

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -66,7 +67,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         with located(field=f"update.laws.{i}"):
             family(law)
     with located(field="update"):
-        _check_update(schema.update)
+        _check_update(schema.update, {target.mode for target in schema.targets})
     with located(field="support"):
         _check_ties(schema.support, schema.update)
     targets, relaxations = _targets(schema)
@@ -90,6 +91,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
         targets=targets,
+        shapes=_shapes(schema, targets),
         relaxations=relaxations,
         identification=_identification(schema.identification),
         picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
@@ -113,6 +115,43 @@ def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxat
             remedy="give at least one mode as well: {mode: 1, frequency_hz: …}",
         )
     return modes, relaxations
+
+
+def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[str, complex]]:
+    """Return the shapes of the targets that are modes; ``update.mac_std`` weighs them."""
+    shapes = {t.mode: t.shape for t in schema.targets if t.mode is not None and t.mode_shape}
+    if not schema.targets:
+        return {}
+    if shapes and schema.update.mac_std is None:
+        raise InputError(
+            "shapes need the standard deviation of 1 − MAC to count beside the rest",
+            field="update.mac_std",
+            allowed="> 0",
+            remedy="e.g. mac_std: 0.02; or leave mode_shape out",
+        )
+    if schema.update.mac_std is not None and not shapes:
+        raise InputError(
+            "no target has a shape to be compared",
+            field="update.mac_std",
+            value=schema.update.mac_std,
+            remedy="give targets a mode_shape: {channel: value, …}, or leave mac_std out",
+        )
+    for t in targets:
+        if t.mode in shapes and t.frequency_hz is None:
+            raise InputError(
+                "a shape without its frequency",
+                field="targets.mode_shape",
+                value=t.mode,
+                remedy="give frequency_hz of the mode, too",
+            )
+        if t.mode in shapes and len(shapes[t.mode]) < 2:
+            raise InputError(
+                "a shape at one sensor says nothing",
+                field="targets.mode_shape",
+                value=list(shapes[t.mode]),
+                allowed="two channels or more",
+            )
+    return shapes
 
 
 def _identification(given: dict[str, Any]) -> IdentificationSettings:
@@ -161,7 +200,7 @@ def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
         raise InputError("a parameter is shared or scatters, not both", field="scatter", value=sorted(both))
 
 
-def _check_update(update: UpdateSchema) -> None:
+def _check_update(update: UpdateSchema, given_modes: Container[int | None]) -> None:
     """Refuse unknown bounds and priors now, not after the records have been identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
     known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters} | set(update.water)
@@ -177,7 +216,7 @@ def _check_update(update: UpdateSchema) -> None:
                 )
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
-    beyond = [mode for mode in update.modes if mode > PAIRED_MODES]
+    beyond = [mode for mode in update.modes or () if mode > PAIRED_MODES and mode not in given_modes]
     if beyond:
         raise InputError(
             f"measured modes are paired with the model's first {PAIRED_MODES} on pinned feet",
@@ -229,6 +268,21 @@ def _beside(name: str, folder: Path) -> str:
     return str(folder / name) if Path(name).suffix else name
 
 
+def _fitted_modes(schema: TwinSchema) -> tuple[int, ...]:
+    """Return the modes that are fitted: those asked for; by default the usual ones and all targets."""
+    if schema.update.modes is not None:
+        return tuple(schema.update.modes)
+    return tuple(sorted({*UpdateSettings().modes, *(t.mode for t in schema.targets if t.mode is not None)}))
+
+
+def _damping_of(schema: TwinSchema) -> str | tuple[str, ...]:
+    """Return whose damping is fitted: as asked for; by default that of all targets, of records fore-aft."""
+    wanted = schema.update.damping_of
+    if wanted is None:
+        return "all" if schema.targets else UpdateSettings().damping_of
+    return wanted if isinstance(wanted, str) else tuple(wanted)
+
+
 def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
     u = schema.update
     first = [schema.support.law] if schema.support.law else []
@@ -243,8 +297,8 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         bounds=dict(u.bounds),
         priors={name: (p.median, p.log_std) for name, p in u.priors.items()},
         weighting=u.weighting,
-        modes=tuple(u.modes),
-        damping_of=u.damping_of if isinstance(u.damping_of, str) else tuple(u.damping_of),
+        modes=_fitted_modes(schema),
+        damping_of=_damping_of(schema),
         model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping, e.rate) for e in u.model_error),
         mac_std=u.mac_std,
         dashpots=_dashpots(u),

@@ -4,32 +4,40 @@ from __future__ import annotations
 
 from math import hypot, pi
 
-from jackettwin.errors import InputError, located
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.twin.config import ModelError, TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.updating import Residuals, Target
 
+FloatArray = npt.NDArray[np.float64]
+
 _FAR_ABOVE = 3.0
 """A target this many times above the model's highest numbered mode is in another unit."""
+_STIFFEST = 1.5
+"""One this many times above its own mode on pinned feet is another mode's: supports only soften."""
 
 
 def target_modes(
-    config: TwinConfig, labels: tuple[str, ...], *, highest_hz: float
+    config: TwinConfig, labels: tuple[str, ...], *, pinned_hz: FloatArray
 ) -> tuple[MeasuredMode, ...]:
     """Return the modes that the twin file gives.
 
     Parameters
     ----------
     labels : of the model's numbered modes
-    highest_hz : of the model's numbered modes
+    pinned_hz : of the model's numbered modes
 
     Raises
     ------
     InputError
-        If a target is none of them or far above.
+        If a target is none of them, or far above.
     """
-    most = _FAR_ABOVE * highest_hz
+    _check_labels(config, labels)
+    most = _FAR_ABOVE * float(pinned_hz.max())
     for place, target in enumerate(config.targets):
         if target.mode > len(labels):
             raise InputError(
@@ -48,6 +56,16 @@ def target_modes(
                 value=target.frequency_hz,
                 allowed=f"up to {most:.3g} Hz here",
                 remedy="give Hz, not mHz, rad/s or cycles a minute",
+            )
+        own = float(pinned_hz[target.mode - 1])
+        if (target.frequency_hz or 0.0) > _STIFFEST * own:
+            raise InputError(
+                "no support lifts this mode so high",
+                file=config.path,
+                field=f"targets.{place}.frequency_hz",
+                value=target.frequency_hz,
+                allowed=f"up to {own:.4g} Hz, mode {target.mode} ({labels[target.mode - 1]}) on rigid feet",
+                remedy="check the mode's number (jackettwin modes lists them), the unit, and the structure",
             )
     for given in config.relaxations:
         if given.rate_rad_s > 2.0 * pi * most:
@@ -70,8 +88,10 @@ def target_modes(
             correlation=t.correlation,
             estimate=None,
             mac=None,
-            fits_frequency=t.frequency_hz is not None,
-            fits_damping=t.damping_ratio is not None,
+            fits_frequency=t.frequency_hz is not None and t.mode in config.update.modes,
+            fits_damping=t.damping_ratio is not None
+            and t.mode in config.update.modes
+            and config.update.fits_damping(labels[t.mode - 1]),
         )
         for t in sorted(config.targets, key=lambda t: t.mode)
     )
@@ -85,6 +105,7 @@ def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...])
     InputError
         If none of the records' modes is one of the model.
     """
+    _check_labels(config, labels)
     if not found.sightings:
         raise InputError(
             "no identified mode resembles a mode of the model",
@@ -98,14 +119,25 @@ def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...])
     )
 
 
+def _check_labels(config: TwinConfig, labels: tuple[str, ...]) -> None:
+    """Refuse labels in ``update.damping_of`` that no mode of the model has."""
+    wanted = config.update.damping_of
+    for label in wanted if isinstance(wanted, tuple) else ():
+        if label not in labels:
+            raise InputError(
+                "no mode of the structure has this label",
+                file=config.path,
+                field="update.damping_of",
+                value=label,
+                allowed=", ".join(labels),
+                remedy=did_you_mean(label, labels),
+            )
+
+
 def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighting, ...]) -> MeasuredMode:
     mean = fuse(mode, seen)
     best = max(seen, key=lambda s: s.mac)
     chosen = mode in config.update.modes
-    wanted = config.update.damping_of
-    damped = wanted == "all" or (
-        wanted != "none" and (label.startswith(wanted) if isinstance(wanted, str) else label in wanted)
-    )
     return MeasuredMode(
         mode=mode,
         label=label,
@@ -117,7 +149,7 @@ def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighti
         estimate=best.estimate,
         mac=best.mac,
         fits_frequency=chosen,
-        fits_damping=chosen and damped,
+        fits_damping=chosen and config.update.fits_damping(label),
     )
 
 

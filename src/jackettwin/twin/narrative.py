@@ -26,8 +26,7 @@ def assumptions(
         f"Steel damping: Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum, on the structure only."
         if config.rayleigh_ratio
         else "The steel is undamped.",
-        f"The support law acts on the three translations of {len(s.reactions)} reaction nodes "
-        f"(tie: {config.tie}).",
+        f"The support law {_acts_on(config)} of {len(s.reactions)} reaction nodes (tie: {config.tie}).",
         "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
         f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
     ]
@@ -53,6 +52,10 @@ def assumptions(
             "scatter."
         )
     return tuple(lines)
+
+
+def _acts_on(config: TwinConfig) -> str:
+    return "acts on the three translations" if config.heads is None else "scales the 6×6 pile heads"
 
 
 def _fitted(m: MeasuredMode) -> str:
@@ -83,6 +86,7 @@ def cautions(
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
         lines += [*found.turned, *_strangers(found), *_wind_without_rotor(config, found, measured)]
+    lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
         if u.best.locked_damper:
             lines.append(
@@ -109,6 +113,38 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
         f"damps in {', '.join(fitted)} is booked on the supports, whose damping is then an upper value. "
         "Give update.rotor or update.dashpots."
     ]
+
+
+def _unweighted(
+    config: TwinConfig, measured: tuple[MeasuredMode, ...], updates: tuple[Update, ...]
+) -> list[str]:
+    """Say that a few missing standard deviations took the weight, and all intervals, from the other data."""
+    if config.update.weighting != "auto" or all(u.problem.weighted for u in updates):
+        return []
+    stds = [(f"f{m.mode}", m.frequency_std_hz) for m in measured if m.fits_frequency]
+    stds += [(f"ζ{m.mode}", m.damping_ratio_std) for m in measured if m.fits_damping]
+    stds += [(f"real pole {r.rate_rad_s:.3g} 1/s", r.rate_std_rad_s) for r in config.relaxations]
+    without = [name for name, std in stds if std is None]
+    if not without or len(without) == len(stds):
+        return []
+    return [
+        f"{', '.join(without)} without a standard deviation: all data count by their relative error alone, "
+        "damping as much as frequency, and there are no intervals. State it, or update.model_error."
+    ]
+
+
+def _rotor_without_wind(config: TwinConfig, updates: tuple[Update, ...]) -> list[str]:
+    known = all(u.problem.parameters[i].median is not None for u in updates for i in _dashpots(config, u))
+    if config.update.rotor is None or known:
+        return []
+    return [
+        "The wind is not known, so that the rotor's geometry gives the dashpots' pattern and no prior. "
+        "Give update.wind_speed_m_s."
+    ]
+
+
+def _dashpots(config: TwinConfig, u: Update) -> list[int]:
+    return [i for i, p in enumerate(u.problem.parameters) if p.name in config.update.dashpots]
 
 
 def _strangers(found: Measured) -> list[str]:

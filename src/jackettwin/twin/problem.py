@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from jackettwin.errors import InputError, located
 from jackettwin.soil.files import read_support
 from jackettwin.soil.support import Support
@@ -21,6 +23,7 @@ from jackettwin.updating.joint import Growth
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
+from jackettwin.updating.targets import Residuals
 
 
 @dataclass(frozen=True)
@@ -123,7 +126,13 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
             head_priors=not relative,
         )
     except InputError as error:
-        raise error.at(file=config.path, field="update" if given.bounds or given.priors else None) from None
+        raise error.at(file=config.path, field=_place(error)) from None
+
+
+def _place(error: InputError) -> str | None:
+    """Return the block of the twin file that the field of an error of the model stands in."""
+    block = (error.field or "").partition(".")[0]
+    return {"bounds": "update", "priors": "update", "mode": "targets"}.get(block)
 
 
 def _heads(config: TwinConfig) -> Support | None:
@@ -139,7 +148,9 @@ def measured_shapes(config: TwinConfig, model: SupportModel, evidence: Evidence)
     """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
     found = evidence.found
     first, _ = next(iter(evidence.states.values()))
-    if config.update.mac_std is None or found is None or first.relative:
+    if found is None:
+        return _given_shapes(config, model, first)
+    if config.update.mac_std is None or first.relative:
         return ()
     by_channel = {sensor.channel: sensor for sensor in found.sensors}
     shapes = []
@@ -157,6 +168,30 @@ def measured_shapes(config: TwinConfig, model: SupportModel, evidence: Evidence)
                     config.update.mac_std,
                 )
             )
+    return tuple(shapes)
+
+
+def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> tuple[ShapeTarget, ...]:
+    """Return the shapes of the targets that are fitted."""
+    if config.update.mac_std is None:
+        return ()
+    if data.relative:
+        raise InputError(
+            "shapes count beside data with standard deviations, not beside relative errors",
+            file=config.path,
+            field="update.mac_std",
+            value=config.update.mac_std,
+            remedy="give every target its standard deviation, or leave shapes out",
+        )
+    places = {sensor.channel: sensor for sensor in config.sensors}
+    shapes = []
+    for t in data.used:
+        given = config.shapes.get(t.mode, {})
+        if given and t.frequency_hz is not None:
+            sensors, values = tuple(places[name] for name in given), np.array(list(given.values()))
+            with located(file=config.path):
+                seen = ShapeTarget.seen(model, t.mode, t.frequency_hz, sensors, values, config.update.mac_std)
+            shapes.append(seen)
     return tuple(shapes)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import located
 from jackettwin.loads import read_rotor
 from jackettwin.loads.rotor import Rotor, linearise
 from jackettwin.response.modal import UndampedModes
@@ -67,7 +68,8 @@ def rotor_damping(
     """
     if config.update.rotor is None:
         return RotorDamping({}, {})
-    per_wind = _per_wind(read_rotor(config.update.rotor)[0], config.update.shaft)
+    with located(file=config.path, field="update"):
+        per_wind = _per_wind(read_rotor(config.update.rotor)[0], config.update.shaft)
     top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
     patterns, priors = {}, {}
     for name in config.update.dashpots:

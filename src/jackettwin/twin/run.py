@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from jackettwin.errors import InputError
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig
@@ -44,8 +45,7 @@ def run_twin(
     ------
     InputError
         If records, sensors or targets do not fit the structure.
-    NumericalError
-        If no solution can be found.
+        Or are out of the supports' reach.
     """
     step("assemble the structure")
     assembly = assembled(config)
@@ -54,7 +54,7 @@ def run_twin(
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
     found = measure(config, assembly, numbered, compare=compare, step=step) if config.records else None
     measured = (
-        target_modes(config, labels, highest_hz=float(numbered.frequency_hz.max()))
+        target_modes(config, labels, pinned_hz=numbered.frequency_hz)
         if found is None
         else recorded_modes(config, found, labels)
     )
@@ -106,18 +106,22 @@ def _update(
     def progress(what: str) -> None:
         within(f"{law}: {what}")
 
-    how = config.update
-    return update(
-        law_problem(config, evidence, law),
-        modes=shown,
-        method=how.method,
-        starts=how.starts,
-        particles=how.particles,
-        sampler=how.sampler,
-        seed=how.seed,
-        most_evaluations=how.most_evaluations,
-        progress=progress,
-    )
+    how, problem = config.update, law_problem(config, evidence, law)
+    try:
+        return update(
+            problem,
+            modes=shown,
+            method=how.method,
+            starts=how.starts,
+            particles=how.particles,
+            sampler=how.sampler,
+            seed=how.seed,
+            most_evaluations=how.most_evaluations,
+            progress=progress,
+        )
+    except InputError as error:
+        source = "records" if config.records else "targets"
+        raise error.at(file=config.path, field=None if error.field else source) from None
 
 
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:

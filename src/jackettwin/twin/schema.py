@@ -20,8 +20,9 @@ Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Vector = tuple[float, float, float]
 
-_OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s", "mode_shape"}
+_OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s"}
 """What only a relaxation among the targets has."""
+_STANDARD_DEVIATIONS = {"frequency_hz": "frequency_std_hz", "damping_ratio": "damping_ratio_std"}
 
 
 class SteelSchema(Schema):
@@ -89,7 +90,7 @@ class SensorSchema(Schema):
 
 
 class TargetSchema(Schema):
-    """A mode known from elsewhere, or a relaxation: ``rate_rad_s`` and its shape at the sensors."""
+    """A mode known from elsewhere, or a relaxation: ``rate_rad_s``; either with its shape at the sensors."""
 
     mode: Annotated[int, Field(ge=1, le=50)] | None = None
     frequency_hz: Positive | None = None
@@ -114,15 +115,32 @@ class TargetSchema(Schema):
             If it is neither a mode nor a relaxation, or its shape is not at the sensors.
         """
         given = {name for name in self.model_fields_set if getattr(self, name) is not None}
+        for value, std in _STANDARD_DEVIATIONS.items():
+            if std in given and value not in given:
+                raise InputError(
+                    "a standard deviation without its value",
+                    field=std,
+                    value=getattr(self, std),
+                    remedy=f"give {value}, or leave {std} out",
+                )
+        self._check_channels(channels)
         if self.mode is not None and not given & _OF_RELAXATIONS:
-            values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode"})
+            values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode", "mode_shape"})
             return Target(mode=self.mode, **values)
-        if self.rate_rad_s is None or given - _OF_RELAXATIONS:
+        if self.rate_rad_s is None or given - _OF_RELAXATIONS - {"mode_shape"}:
             raise InputError(
                 "one target is a mode or a relaxation",
                 value=sorted(given),
                 remedy="a mode: {mode, frequency_hz, …}; a relaxation: {rate_rad_s, rate_std_rad_s}",
             )
+        return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, self.shape)
+
+    @property
+    def shape(self) -> dict[str, complex]:
+        """The shape at the sensors, empty if it is not given."""
+        return {n: complex(*v) if isinstance(v, tuple) else complex(v) for n, v in self.mode_shape.items()}
+
+    def _check_channels(self, channels: list[str]) -> None:
         strangers = [channel for channel in self.mode_shape if channel not in channels]
         if strangers:
             raise InputError(
@@ -132,8 +150,6 @@ class TargetSchema(Schema):
                 allowed=", ".join(channels) or None,
                 remedy="say under sensors: where it sits",
             )
-        shape = {n: complex(*v) if isinstance(v, tuple) else complex(v) for n, v in self.mode_shape.items()}
-        return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, shape)
 
 
 class ModelErrorSchema(Schema):
@@ -165,8 +181,8 @@ class UpdateSchema(Schema):
     bounds: dict[str, tuple[float, float]] = {}
     priors: dict[str, PriorSchema] = {}
     weighting: Literal["auto", "relative", "covariance"] = "auto"
-    modes: list[Annotated[int, Field(ge=1)]] = [1, 2, 3, 4, 5]
-    damping_of: Literal["fore_aft", "all", "none"] | list[str] = "fore_aft"
+    modes: list[Annotated[int, Field(ge=1)]] | None = None
+    damping_of: Literal["fore_aft", "all", "none"] | list[str] | None = None
     model_error: list[ModelErrorSchema] = []
     mac_std: Positive | None = None
     dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import pi, sqrt
 
 from jackettwin.errors import InputError
+from jackettwin.response.condensed import strongest_beta
 from jackettwin.soil.support import Support
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.extras import STEEL, Extras
 from jackettwin.updating.families import Family, Parameter
 from jackettwin.updating.feet import feet, priors_of
 from jackettwin.updating.model import SupportModel
@@ -74,6 +76,8 @@ def support_model(
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
     condensed = condensed_for(assembly, groups, rayleigh, extras, pinned_hz, highest_mode, fastest_rate)
+    if extras.rayleigh:
+        parameters = _inside_band(parameters, bounds, strongest_beta(condensed.radius))
     low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
     extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
     return SupportModel(
@@ -88,6 +92,33 @@ def support_model(
         extras,
         fastest_rate,
     )
+
+
+def _inside_band(
+    parameters: tuple[Parameter, ...], given: Mapping[str, tuple[float, float]], beta: float
+) -> tuple[Parameter, ...]:
+    """Return the parameters with the steel's damping bounded so that it overdamps no mode of the band.
+
+    Strong damping at a low frequency grows beyond what the condensed model takes, β = ζ/ω: the usual
+    bounds give way, the ratio's upper and the frequency's lower one alike; given ones are refused.
+    """
+    ratio, frequency = (next(p for p in parameters if p.name == s.name) for s in STEEL)
+    excess = ratio.high / (2.0 * pi * frequency.low) / beta
+    if excess <= 1.0:
+        return parameters
+    if ratio.name in given or frequency.name in given:
+        raise InputError(
+            "steel damping that grows with frequency, too strong for the modes asked for",
+            field=f"bounds.{ratio.name if ratio.name in given else frequency.name}",
+            value=[ratio.high, frequency.low],
+            allowed=f"highest ratio over lowest frequency up to {2.0 * pi * beta:.3g} 1/Hz",
+            remedy="narrow the bounds, or leave the highest modes out",
+        )
+    narrow = {
+        ratio.name: replace(ratio, high=ratio.high / sqrt(excess)),
+        frequency.name: replace(frequency, low=frequency.low * sqrt(excess)),
+    }
+    return tuple(narrow.get(p.name, p) for p in parameters)
 
 
 def _informed(

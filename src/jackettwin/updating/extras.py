@@ -28,8 +28,8 @@ WATER = {
 }
 """Factors on water that moves with the members, and on its linear drag; C_a and growth are known to a fifth,
 C_D and the sea to a half."""
-# wide, and still inside what the condensed model takes as stiffness-proportional damping
-_STEEL = (Parameter("rayleigh_ratio", 1e-4, 0.03, "-"), Parameter("rayleigh_frequency_hz", 0.1, 1.0, "Hz"))
+STEEL = (Parameter("rayleigh_ratio", 1e-4, 0.03, "-"), Parameter("rayleigh_frequency_hz", 0.1, 1.0, "Hz"))
+"""Ratio and frequency of the steel's least damping: wide, and narrowed where they would overdamp a mode."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Extras:
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters in the order of the vector: dashpots, water, then the steel's."""
         dashpots = (Parameter(name, *_DASHPOT_BOUNDS) for name in self.dashpots)
-        return (*dashpots, *(WATER[name] for name in self.water), *(_STEEL if self.rayleigh else ()))
+        return (*dashpots, *(WATER[name] for name in self.water), *(STEEL if self.rayleigh else ()))
 
     def springs(self, node: str, values: FloatArray) -> tuple[Spring, ...]:
         """Return the dashpots on a node at these values of the extra parameters."""

@@ -53,11 +53,13 @@ def next_measurements(problem: Problem, z: FloatArray) -> tuple[Measurement, ...
     near = problem.anchor(points.mean(axis=0))
     bases = [information(problem, point, near) for point in points]
     kept = [(point, base) for point, base in zip(points, bases, strict=True) if base is not None]
+    if not kept:
+        return ()
     found = [
         _judged(problem, what, [(base, extra(point, base)) for point, base in kept])
         for what, extra in _candidates(problem).items()
     ]
-    return tuple(sorted(found, key=lambda m: -m.gain_nats)) if kept else ()
+    return tuple(sorted(found, key=lambda m: -m.gain_nats))
 
 
 Extra = Callable[[FloatArray, FloatArray], FloatArray]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from jackettwin.errors import InputError, NumericalError
+from jackettwin.errors import InputError
 from jackettwin.updating.descent import End, descend, descend_simplex, settle
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.valleys import extent, gather
@@ -99,10 +99,14 @@ class Search:
         n = len(self.solutions)
         once = sum(s.found == 1 for s in self.solutions)
         unsettled = "" if self.spent is None else f"Not settled after {self.spent:,} evaluations: "
+        # end points that nobody had the time to compare may be one solution
+        if self.spent is not None and not once:
+            often = ", more of which may be one"
+        else:
+            often = f", {once} of them found only once" if once else ", each found more than once"
         return (
             f"{unsettled}{self.starts} starts and {self.deflated} deflated descents ended in "
-            f"{n} distinct solution{'s' if n > 1 else ''}"
-            f"{f', {once} of them found only once' if once else ', each found more than once'}; "
+            f"{n} distinct solution{'s' if n > 1 else ''}{often}; "
             f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
             "(95 % confidence)."
         )
@@ -134,9 +138,7 @@ def search(
     Raises
     ------
     InputError
-        If the method is unknown or there is no start.
-    NumericalError
-        If no start ends anywhere.
+        If the method is unknown, there is no start, or none ends anywhere: the data are out of reach.
     """
     if method not in METHODS:
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
@@ -165,10 +167,7 @@ def search(
     if deflated:
         valleys = _deflate(problem, valleys, points[:deflated])
     if not valleys:
-        raise NumericalError(
-            "no start of the search ended in a minimum: the targets are out of the supports' reach; check "
-            "their mode numbers, frequencies and damping ratios"
-        )
+        raise _out_of_reach(problem)
     kept = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
     # two ends of one valley may only be seen to be one from its middle
     valleys, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
@@ -178,6 +177,25 @@ def search(
         deflated,
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
         spent if not compared or (spent >= most_evaluations and not enough) else None,
+    )
+
+
+def _out_of_reach(problem: Problem) -> InputError:
+    """Return what the data ask for beside what the supports can give: frequencies from bound to bound."""
+    first = problem.states[0]
+    targets = first.residuals.used
+    ends = problem.vectors(np.stack([problem.prior.low, problem.prior.high]), first)
+    low, high = (problem.model.undamped_hz(theta, first.residuals.modes) for theta in ends)
+    reach = [
+        f"mode {t.mode} {'' if np.isnan(a) else f'from {a:.3g} '}to {b:.3g} Hz"
+        for t, a, b in zip(targets, low, high, strict=True)
+        if t.frequency_hz is not None and not np.isnan(b)
+    ]
+    return InputError(
+        "no start of the search ended in a minimum: the data are out of the supports' reach",
+        value={t.mode: t.frequency_hz and round(float(t.frequency_hz), 5) for t in targets},
+        allowed="undamped " + ", ".join(reach) if reach else None,
+        remedy="check mode numbers, frequencies, damping ratios, their standard deviations and update.bounds",
     )
 
 

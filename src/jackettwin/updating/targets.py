@@ -71,7 +71,9 @@ class Residuals:
             )
         modes = [target.mode for target in self.targets]
         if len(set(modes)) != len(modes):
-            raise InputError("a mode is given twice", field="targets.mode", value=modes)
+            raise InputError(
+                "a mode is given twice", field="targets.mode", value=modes, remedy="one target a mode"
+            )
         if not self.used:
             raise InputError("no target has a frequency or a damping ratio", field="targets", value=modes)
         for t in self.targets:

@@ -145,8 +145,8 @@ def update(
 
     Raises
     ------
-    NumericalError
-        If no start can follow the target modes.
+    InputError
+        If no start of the search ends in a minimum.
     """
     found = search(
         problem,
