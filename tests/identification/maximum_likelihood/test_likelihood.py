@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
+from jackettwin.identification.maximum_likelihood.admission import gain_of, needed_gain
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
-from jackettwin.identification.maximum_likelihood.refinement import gain_of, needed_gain, refine
+from jackettwin.identification.maximum_likelihood.refinement import refine
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
 from jackettwin.identification.synthetic import ModalSystem, simulate
 

@@ -1,15 +1,5 @@
 r"""From the modes of a subspace method to their maximum-likelihood estimates.
 
-Modes that the subspace method is sure of are fitted together; a doubtful one joins when it explains
-enough of what the others leave, by the gain of log-likelihood
-
-.. math:: g(s) = \sum_k n_k\left[\frac{s h_k\,b_k}{1+s h_k a_k} - \ln(1+s h_k a_k)\right], \quad
-          a = \phi^T E^{-1}\phi,\ b = \phi^T E^{-1}\hat S E^{-1}\phi
-
-of adding power s with its shape and kernel h held: one unit at least for each parameter of a mode (Akaike's
-criterion; poles that fit noise have 0 to 3, with eight channels 11 are asked). In a narrow band, where shapes
-may lag and the model is less exact, it must gain as much as it must to stay: Schwarz's criterion.
-
 What a small sample does is taken back: the bias b of ln ζ from the curvature of the model
 (``accuracy.curvature_bias``), and that of ζ over its logarithm, whose error is the one that is nearly
 Gaussian: :math:`\hat\zeta = \zeta\,e^{-b}/(1+\sigma^2/2)`, σ the standard deviation of ln ζ. The information
@@ -24,12 +14,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import minimize_scalar
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
+from jackettwin.identification.maximum_likelihood.admission import (
+    APPROACH,
+    PARAMETERS_OF_A_MODE,
+    joined,
+    needed_gain,
+    thinned,
+)
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
-from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,22 +36,14 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
-SUSPECT = 2.5
-"""A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
-APPROACH = 4
-"""Steps before the doubtful modes are judged."""
 HOPELESS = 3.0
-"""A fit is given up then if it lacks this many times what it may …"""
+"""A fit is given up when the doubtful modes are judged, if it lacks this many times what it may …"""
 WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
-PARAMETERS_OF_A_MODE = 3
-"""f, ζ and colour; its shape has one for each channel."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""
-MOST_ADDED = 6
-"""Doubtful modes admitted at most."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +157,7 @@ def refine(
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else needed_gain(data)
-    climb, chosen, gain = _joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
+    climb, chosen, gain = joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
     lack = accuracy.lack_of_fit(data, climb.parameters)
     if lack > HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
@@ -183,7 +170,7 @@ def refine(
         lack = accuracy.lack_of_fit(data, climb.parameters)
     known = accuracy.accuracy_of(data, climb.parameters)
     if lack <= most_lack_of_fit:
-        climb, chosen, known = _thinned(data, climb, chosen, known)
+        climb, chosen, known = thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
 
 
@@ -200,82 +187,6 @@ def _beside(
         len(size),
     )
     return replace(first, lag=np.zeros_like(unit))
-
-
-def _joined(
-    data: Periodogram,
-    climb: likelihood.Climb,
-    chosen: IntArray,
-    frequency_hz: FloatArray,
-    damping_ratio: FloatArray,
-    unit: FloatArray,
-    least: float,
-) -> tuple[likelihood.Climb, IntArray, FloatArray]:
-    """Admit the doubtful candidate that explains most, again and again, while one gains enough."""
-    gain = np.full(len(frequency_hz), np.inf)
-    for _ in range(MOST_ADDED):
-        doubtful = np.setdiff1d(np.arange(len(frequency_hz)), chosen)
-        if not len(doubtful):
-            break
-        p = climb.parameters
-        tried = [gain_of(data, p, frequency_hz[i], damping_ratio[i], unit[i]) for i in doubtful]
-        gain[doubtful] = [g for g, _ in tried]
-        best = int(np.argmax(gain[doubtful]))
-        i = doubtful[best]
-        if gain[i] < least:
-            break
-        shape = unit[i] * np.sqrt(tried[best][1])
-        joined = p.joined(float(np.log(frequency_hz[i])), float(np.log(damping_ratio[i])), shape)
-        climb, chosen = likelihood.climbed(data, joined, APPROACH), np.append(chosen, i)
-    return climb, chosen, gain
-
-
-def _thinned(
-    data: Periodogram, climb: likelihood.Climb, chosen: IntArray, known: accuracy.Accuracy
-) -> tuple[likelihood.Climb, IntArray, accuracy.Accuracy]:
-    """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
-    kept: set[int] = set()
-    while len(chosen) > 1:
-        p = climb.parameters
-        mode = p.held + np.arange(len(chosen))
-        std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
-        limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
-        suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
-        suspect = [k for k in suspect if int(chosen[k]) not in kept]
-        if not suspect:
-            break
-        fewer = likelihood.climbed(data, p.without(p.held + suspect[0]))
-        if climb.value - fewer.value < needed_gain(data):
-            climb, chosen = fewer, np.delete(chosen, suspect[0])
-            known = accuracy.accuracy_of(data, climb.parameters)
-        else:
-            kept.add(int(chosen[suspect[0]]))
-    return climb, chosen, known
-
-
-def needed_gain(data: Periodogram) -> float:
-    """Return what a fitted mode must add to the log-likelihood to stay: Schwarz's criterion."""
-    n_parameters = PARAMETERS_OF_A_MODE + data.floor.shape[1]
-    return float(0.5 * n_parameters * np.log(data.count.sum()))
-
-
-def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatArray) -> tuple[float, float]:
-    """Return the largest gain of log-likelihood by adding a mode, and the power at which it is reached."""
-    model = expected(data, p)
-    inverse = np.linalg.inv(model.matrix)
-    left = inverse @ phi
-    a = np.real(left @ phi)
-    b = np.einsum("ka,kab,kb->k", left.conj(), data.density, left, optimize=True).real
-    b += np.sum(np.abs(left) ** 2 * data.dither, axis=1)
-    h = response_power(data, f, zeta)
-
-    def loss(log_s: float) -> float:
-        s = np.exp(log_s) * h
-        return float(-np.sum(data.count * (s * b / (1.0 + s * a) - np.log1p(s * a))))
-
-    middle = -np.log(np.max(h * a))
-    found = minimize_scalar(loss, bounds=(middle - 15.0, middle + 15.0), method="bounded")
-    return max(-float(found.fun), 0.0), float(np.exp(found.x))
 
 
 def _result(
