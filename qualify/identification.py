@@ -1,7 +1,8 @@
 """Monte Carlo of the automatic identification: ten-minute records of systems whose truth is known.
 
-Usage: ``python qualify/identification.py [--records 1000] [--variant 200] [--seed 2026] [--sets 20]``.
-A thousand records and two hundred of each variant take about 70 CPU-minutes, on two processes. What is
+Usage: ``python qualify/identification.py [--records 2000] [--variant 100] [--seed 2026] [--sets 20]``.
+Two thousand records, so that twenty sets of a hundred share none, and a hundred of each variant take about
+80 CPU-minutes, on two processes. What is
 identified is kept in ``out/qualify`` as it comes, so that an interrupted run resumes; a change of the code
 starts afresh. The tables go between two markers of the verification page, whose other text stays.
 
@@ -261,8 +262,8 @@ def say(text: str) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--records", type=int, default=1000)
-    parser.add_argument("--variant", type=int, default=200)
+    parser.add_argument("--records", type=int, default=2000)
+    parser.add_argument("--variant", type=int, default=100)
     parser.add_argument("--seed", type=int, default=2026)
     parser.add_argument("--sets", type=int, default=20)
     chosen = parser.parse_args()
