@@ -2,9 +2,9 @@
 
 Usage: ``python qualify/identification.py [--records 2000] [--variant 100] [--seed 2026] [--sets 20]``.
 Two thousand records, so that twenty sets of a hundred share none, and a hundred of each variant take about
-80 CPU-minutes, on two processes. What is
-identified is kept in ``out/qualify`` as it comes, so that an interrupted run resumes; a change of the code
-starts afresh. The tables go between two markers of the verification page, whose other text stays.
+80 CPU-minutes, on two processes. What is identified is kept in ``out/qualify`` as it comes, so that an
+interrupted run resumes; a change of the code starts afresh. The tables go between two markers of the
+verification page, whose other text stays.
 
 The records come from the exact spectral matrix of the modal system (``identification/synthetic.py``); the
 modes from the automatic selection, no truth used but to name them afterwards.
