@@ -92,9 +92,9 @@ def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
         "tell apart, or a pair whose shapes one record leaves mixed."
     )
     needles = (
-        "Mode shapes in the complex plane as the subspace method found them (the likelihood takes shapes "
-        "as real), one needle a sensor. The needles of a real mode lie on a line; a fan is mostly a close "
-        "pair that one record does not separate."
+        "Mode shapes in the complex plane as the subspace method found them (of the likelihood only "
+        "real parts are kept), one needle a sensor. The needles of a real mode lie on a line; a fan is "
+        "mostly a close pair that one record does not separate."
     )
     return [
         Plot("mac", caption, figures_likeness.mac_matrix(found, names)),
