@@ -40,22 +40,26 @@ def read_extptfm(path: Path) -> Superelement:
     """
     text = read_text(path, what="superelement file")
     lines = text.splitlines()
-    if _kind(lines) != "input":
-        return parse_flex_ascii(text, path) if _kind(lines) != "guyan" else _guyan(lines, path)
+    kind = _kind(lines)
+    if kind != "input":
+        return _whole(text, path, guyan=kind == "guyan")
     named = path.parent / _value(lines, "Red_FileName", path).strip("\"' ").replace("\\", "/")
-    kind = _value(lines, "FileFormat", path).strip()
-    if kind not in ("0", "1"):
+    form = _value(lines, "FileFormat", path).strip()
+    if form not in ("0", "1"):
         raise InputError(
             "unknown format",
             file=path,
             field="FileFormat",
-            value=kind,
+            value=form,
             allowed="0 (Guyan), 1 (FlexASCII)",
             remedy="write the superelement in one of these",
         )
-    text = read_text(named, what="superelement file")
-    whole = parse_flex_ascii(text, named) if kind == "1" else _guyan(text.splitlines(), named)
+    whole = _whole(read_text(named, what="superelement file"), named, guyan=form == "0")
     return _active(whole, lines, path)
+
+
+def _whole(text: str, path: Path, *, guyan: bool) -> Superelement:
+    return _guyan(text.splitlines(), path) if guyan else parse_flex_ascii(text, path)
 
 
 def _kind(lines: list[str]) -> str | None:
