@@ -21,6 +21,7 @@ from scipy.optimize import minimize_scalar
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
+from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
@@ -76,7 +77,7 @@ def thinned(
         p = climb.parameters
         mode = p.held + np.arange(len(chosen))
         std = np.sqrt(np.diag(known.covariance))[len(p.log_f) + mode]
-        limit = 1.0 / np.sqrt(np.exp(p.log_f + p.log_zeta)[mode] * 2.0 * np.pi * data.duration_s)
+        limit = long_data_limits(np.exp(p.log_f[mode]), np.exp(p.log_zeta[mode]), data.duration_s)[1]
         suspect = [int(k) for k in np.argsort(-std / limit) if std[k] > SUSPECT * limit[k]]
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:

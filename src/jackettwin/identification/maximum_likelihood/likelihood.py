@@ -126,8 +126,18 @@ def start(
     none = np.zeros(len(pairs), dtype=complex)
     noise = np.stack([_noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
     first = [
-        Parameters(np.log(f), np.log(zeta), np.full(n, c), scaled, none, noise, pairs, 0, outside, c)
-        for c in COLOURS
+        Parameters(
+            np.log(f),
+            np.log(zeta),
+            np.full(n, colour),
+            scaled,
+            none,
+            noise,
+            pairs,
+            outside=outside,
+            exponent=colour,
+        )
+        for colour in COLOURS
     ]
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
 

@@ -178,13 +178,12 @@ def _beside(
     narrow: Narrow, data: Periodogram, f: FloatArray, zeta: FloatArray, unit: FloatArray
 ) -> Parameters:
     """Return first parameters of the modes of a narrow band and of those beside it."""
-    size = np.linalg.norm(narrow.shapes, axis=1, keepdims=True)
     first = likelihood.start(
         data,
         np.append(narrow.frequency_hz, f),
         np.append(narrow.damping_ratio, zeta),
-        np.vstack([narrow.shapes / size, unit]),
-        len(size),
+        np.vstack([narrow.shapes, unit]),
+        len(narrow.shapes),
     )
     return replace(first, lag=np.zeros_like(unit))
 

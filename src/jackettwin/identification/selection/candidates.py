@@ -140,7 +140,7 @@ def find_tones(
     f, zeta = poles.frequency_hz, poles.damping_ratio
     clean, lines, followed, steady = y, transform(y), list(drifting), []
     for k in sorted(likely):
-        if any(_passed(tone, f[k]) for tone in followed):
+        if any(tone.passes(f[k]) for tone in followed):
             continue
         track = tone_at(lines, y.shape[1] / sample_rate_hz, f[k])
         if track is not None:
@@ -151,13 +151,8 @@ def find_tones(
             steady.append(k)
             clean = without_tones(clean, sample_rate_hz, [f[k]])
             lines = transform(clean)
-    passed = {k for k in likely if any(_passed(tone, f[k]) for tone in followed)}
+    passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
-
-
-def _passed(tone: PhaseTrack, frequency_hz: float) -> bool:
-    low, high = tone.swept_hz
-    return low < frequency_hz < high
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:

@@ -134,7 +134,7 @@ def tone_at(lines: ComplexArray, duration_s: float, frequency_hz: float) -> Phas
         band = band_of(lines, duration_s, frequency_hz, max(drift * frequency_hz, FEWEST_LINES / duration_s))
         share = STEADY_SHARE if band.variance < band.expected else 1.0
         track = _tone_in(lines, duration_s, band, share)
-        if track is not None and track.swept_hz[0] < frequency_hz < track.swept_hz[1]:
+        if track is not None and track.passes(frequency_hz):
             return track
     return None
 

@@ -86,12 +86,17 @@ class PhaseTrack:
         t = np.arange(n_samples) / n_samples
         return np.asarray(2.0 * np.pi * self.middle_hz * self.duration_s * t + self._spline(t))
 
-    @property
+    @cached_property
     def swept_hz(self) -> tuple[float, float]:
         """Lowest and highest frequency [Hz]; at its very ends a spline is hardly known."""
         t = np.linspace(END, 1.0 - END, 8 * len(self.coefficients))
         f = self.middle_hz + self._spline.derivative()(t) / (2.0 * np.pi * self.duration_s)
         return float(f.min()), float(f.max())
+
+    def passes(self, frequency_hz: float) -> bool:
+        """Return whether the tone is at a frequency at some time."""
+        low, high = self.swept_hz
+        return low < frequency_hz < high
 
     @property
     def disturbed_hz(self) -> tuple[float, float]:
