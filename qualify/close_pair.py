@@ -13,7 +13,7 @@ import numpy.typing as npt
 from common.page import write_page
 
 from jackettwin.identification.maximum_likelihood.local_refinement import groups, refine_group
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 FloatArray = npt.NDArray[np.float64]

@@ -17,7 +17,7 @@ from scipy.stats import binomtest
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.budget import SOURCES, damping_budget
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.solutions import search
 
 MODES = (1, 2, 4)
@@ -35,7 +35,7 @@ def twin_model(bounds: dict[str, tuple[float, float]]) -> SupportModel:
         rayleigh=Rayleigh.minimum(0.0055, 0.1832),
         bounds=bounds,
         highest_mode=5,
-        extras=Extras(("c_fore_aft", "c_side_side")),
+        nuisance=NuisanceParameters(("c_fore_aft", "c_side_side")),
     )
 
 

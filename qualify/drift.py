@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import binomtest
 
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Residuals, SupportModel, Target, family, joint, support_model
 from jackettwin.updating.drift import Drift, find_drift

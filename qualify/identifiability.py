@@ -17,8 +17,8 @@ from scipy.special import logsumexp
 from jackettwin.errors import NumericalError
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
-from jackettwin.updating.extras import Extras
 from jackettwin.updating.identifiability import IDENTIFIED, WEAK, identifiability, verdict_of
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.posterior import sample_posterior
 
 MODES = (1, 2, 4)
@@ -152,7 +152,7 @@ def main() -> None:
             rayleigh=steel,
             bounds=bounds,
             highest_mode=5,
-            extras=Extras((DASHPOT,)) if DASHPOT in bounds else None,
+            nuisance=NuisanceParameters((DASHPOT,)) if DASHPOT in bounds else None,
         )
         for law, bounds in LAWS.items()
     }

@@ -14,10 +14,10 @@ from common.page import percent, write_page
 from scipy.stats import binomtest, chisquare
 
 from jackettwin.errors import NumericalError
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.posterior import sample_posterior
 
 MODES = (1, 2, 4)
@@ -35,7 +35,7 @@ def twin_model() -> SupportModel:
         rayleigh=Rayleigh.minimum(0.0055, 0.1832),
         bounds={"k": (1e9, 3e10), "loss_factor": (0.02, 0.4), "c_side_side": (1e4, 2e5)},
         highest_mode=5,
-        extras=Extras(("c_side_side",)),
+        nuisance=NuisanceParameters(("c_side_side",)),
     )
 
 

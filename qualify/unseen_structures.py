@@ -19,7 +19,7 @@ from common.cases import Result, cases
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.soil.files import read_support
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.twin import read_twin, run_twin

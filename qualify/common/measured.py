@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.errors import NumericalError
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.updating import Problem, Target
 from jackettwin.updating.posterior import Posterior, sample_posterior
 

@@ -6,8 +6,8 @@ import scipy.linalg as la
 from tests.response.conftest import monopile_structure
 
 from jackettwin.errors import InputError
-from jackettwin.response.follow import follow
 from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import Support, on_translations, pinned
 from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, zener
@@ -98,8 +98,8 @@ def numbered(assembly, law, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndar
     system = build_system(assembly, on_translations(structure, law), rayleigh=Rayleigh.minimum(0.01, f1))
     damped, undamped = damped_modes(system, below_hz=1.2), undamped_modes(system, 12)
     rows = [mode - 1 for mode in modes]
-    d = follow(assembly.mass, reference.omega, reference.shapes, damped.shapes)[rows]
-    u = follow(assembly.mass, reference.omega, reference.shapes, undamped.shapes)[rows]
+    d = track_modes(assembly.mass, reference.omega, reference.shapes, damped.shapes)[rows]
+    u = track_modes(assembly.mass, reference.omega, reference.shapes, undamped.shapes)[rows]
     assert (d >= 0).all() and (u >= 0).all()
     return damped.frequency_hz[d], damped.damping_ratio[d], undamped.frequency_hz[u]
 
@@ -139,8 +139,8 @@ def test_figure_8_1_limits_are_the_reference_systems(jacket15, mode: int, c: flo
         build_system(jacket15, on_translations(structure, zener(8.92e7, c, 9.99e9))), below_hz=1.0
     )
     elastic = undamped_modes(build_system(jacket15, on_translations(structure, Prony(k0=k))), 12)
-    d = follow(jacket15.mass, reference.omega, reference.shapes, damped.shapes)[mode - 1]
-    u = follow(jacket15.mass, reference.omega, reference.shapes, elastic.shapes)[mode - 1]
+    d = track_modes(jacket15.mass, reference.omega, reference.shapes, damped.shapes)[mode - 1]
+    u = track_modes(jacket15.mass, reference.omega, reference.shapes, elastic.shapes)[mode - 1]
     assert damped.frequency_hz[d] == pytest.approx(elastic.frequency_hz[u], rel=1e-6)
 
 

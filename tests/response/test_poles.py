@@ -79,9 +79,20 @@ def test_none_missing_none_extra_and_each_to_1e8(assembly, name: str) -> None:
     refined = np.array([trace_newton(full, value) for value in oscillating])
     refined = refined[np.argsort(np.abs(refined))]
     np.testing.assert_allclose(found.eigenvalues, refined, rtol=1e-8)
-    # dense eig itself knows the slow, sixfold real poles −k/c of a locked damper to 4e-5 only
-    np.testing.assert_allclose(np.sort(found.real_poles), np.sort(real.real), rtol=1e-4)
+    # dense eig itself knows the slow, sixfold real poles −k/c of a locked damper to 4e-5 or 2e-4, as its LAPACK
+    # rounds: it counts them, and F itself says whether they are poles
+    np.testing.assert_allclose(np.sort(found.real_poles), np.sort(real.real), rtol=1e-3)
+    for value in found.real_poles:
+        assert abs(newton_step(full, value)) < 1e-6 * abs(value)
     assert_eigenpairs(system, found)
+
+
+def newton_step(pencil: Pencil, value: float) -> float:
+    """Return the Newton step to the next real pole, on the vector nearest to the kernel of F."""
+    F, slope = pencil.F(complex(value)).real, pencil.dF(complex(value)).real
+    values, vectors = np.linalg.eigh(F)
+    x = vectors[:, np.argmin(np.abs(values))]
+    return float(x @ F @ x / (x @ slope @ x))
 
 
 def assert_eigenpairs(system: System, modes: DampedModes) -> None:

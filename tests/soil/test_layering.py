@@ -8,8 +8,8 @@ from jackettwin.soil.layering import equivalent_depths
 from jackettwin.soil.pile_curves import CurveOptions, linearised, pile_curves
 from jackettwin.soil.piles import Pile
 from jackettwin.soil.profile import Clay, Layer, Point, Sand, SoilProfile
+from jackettwin.soil.py_curves import sand_coefficients
 from jackettwin.soil.scour import Scour
-from jackettwin.soil.springs import sand_coefficients
 from jackettwin.structure import Section
 
 PILE = Pile(40.0, Section(2.0, 0.05))

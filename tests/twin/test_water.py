@@ -19,7 +19,7 @@ from jackettwin.twin.rotor import RotorDamping
 from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
 from jackettwin.updating import family, support_model
 from jackettwin.updating.budget import damping_budget
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 
 TWIN = """
 structure: jacket15
@@ -87,7 +87,7 @@ def test_the_share_of_water_is_that_of_the_simulated_record() -> None:
         assembly,
         family=family("kelvin-voigt"),
         rayleigh=config.rayleigh,
-        extras=Extras((), water=drag),
+        nuisance=NuisanceParameters((), water=drag),
         highest_mode=5,
     )
     budget = damping_budget(model, np.array([2.5e9, 7.6e8, 1.0]), (1, 2, 3, 4, 5))

@@ -8,14 +8,14 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.updating import Residuals, SupportModel, Target, single, update
 from jackettwin.updating.budget import beyond_literature, damping_budget
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 
 MODES = (1, 2, 4)
 
 
 @pytest.fixture(scope="module")
 def model(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
-    return maxwell_3(extras=Extras(("c_fore_aft", "c_side_side"), rayleigh=True))
+    return maxwell_3(nuisance=NuisanceParameters(("c_fore_aft", "c_side_side"), rayleigh=True))
 
 
 TRUTH = np.array([3e9, 0.15, 1e4, 1.24e5, 0.0055, 0.183])
@@ -68,7 +68,7 @@ def test_the_first_pair_is_met_in_both_assignments(
     """1.27 % and 5.9 % (thesis table 6.1), which no support at the feet can give together."""
     model = maxwell_3(
         bounds={name: (1e3, 1e6) for name in ("c_fore_aft", "c_side_side")} | {"k": (1e9, 1e11)},
-        extras=Extras(("c_fore_aft", "c_side_side")),
+        nuisance=NuisanceParameters(("c_fore_aft", "c_side_side")),
     )
     residuals = Residuals(
         (
@@ -91,7 +91,7 @@ def test_the_first_pair_is_met_in_both_assignments(
 
 def test_unknown_dashpot() -> None:
     with pytest.raises(InputError, match="no such dashpot"):
-        Extras(("c_yaw",))
+        NuisanceParameters(("c_yaw",))
 
 
 def test_shares_beyond_the_literature_are_named() -> None:

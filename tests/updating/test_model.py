@@ -7,7 +7,7 @@ from jackettwin.errors import InputError
 from jackettwin.soil.coefficients import law_rows
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import SupportModel, family, support_model
-from jackettwin.updating.extras import STEEL, Extras
+from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
 
 POINTS = {
     "kelvin-voigt": [2.5e9, 7.6e8],  # thesis table 8.1
@@ -105,10 +105,10 @@ def test_free_steel_is_bounded_where_it_would_overdamp_the_highest_mode(jacket15
     """βω = 0.3 at the end of the band; the ratio's and the frequency's bounds give way alike."""
 
     def bounds(highest: int, **given: tuple[float, float]) -> tuple[float, float, float]:
-        extras = Extras(rayleigh=True)
+        nuisance = NuisanceParameters(rayleigh=True)
         model = support_model(
-            jacket15, family=family("maxwell-3"), rayleigh=Rayleigh(), highest_mode=highest, extras=extras,
-            bounds=given,
+            jacket15, family=family("maxwell-3"), rayleigh=Rayleigh(), highest_mode=highest,
+            nuisance=nuisance, bounds=given,
         )  # fmt: skip
         ratio, frequency = model.parameters[-2:]
         return ratio.high, frequency.low, model.condensed.radius

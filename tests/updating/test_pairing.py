@@ -42,7 +42,7 @@ def test_every_mode_of_the_model_finds_itself_in_any_order(rng: np.random.Genera
     measured = tuple(estimate(FREQUENCY[i] * 1.01, SHAPES[:, i] * np.exp(1j * i)) for i in order)
     found = pair(measured, FREQUENCY, SHAPES)
     assert {mode: int(order[index]) for mode, (index, _) in found.items()} == {i: i for i in range(5)}
-    assert all(likeness == pytest.approx(1.0) for _, likeness in found.values())
+    assert all(subspace_mac == pytest.approx(1.0) for _, subspace_mac in found.values())
 
 
 def test_the_right_shape_at_the_wrong_frequency_is_not_paired() -> None:

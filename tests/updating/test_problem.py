@@ -8,8 +8,8 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint, single
-from jackettwin.updating.extras import Extras
 from jackettwin.updating.joint import Growth
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.posterior import sample_posterior
 from jackettwin.updating.problem import NEVER
 
@@ -21,7 +21,7 @@ def model(maxwell_3: Callable[..., SupportModel]) -> SupportModel:
     return maxwell_3(
         bounds={"k": (1e8, 1e11), "loss_factor": (1e-3, 0.6), "c_side_side": (1e3, 1e6)},
         priors={"loss_factor": (0.05, 1.0)},
-        extras=Extras(("c_side_side",)),
+        nuisance=NuisanceParameters(("c_side_side",)),
     )
 
 

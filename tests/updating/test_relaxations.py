@@ -10,7 +10,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, support_model
 from jackettwin.updating.descent import constrained
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.predictive import predict_quantities
 from jackettwin.updating.problem import NEVER
 from jackettwin.updating.relaxations import RelaxationTarget
@@ -83,7 +83,7 @@ def test_gradients_are_differences(jacket15: Assembly, law: str, theta: list[flo
         rayleigh=Rayleigh(),
         tie="horizontal-vertical",
         highest_mode=5,
-        extras=Extras(("c_side_side",), rayleigh=True),
+        nuisance=NuisanceParameters(("c_side_side",), rayleigh=True),
     )
     z, h = np.log(theta), 1e-4
     target = RelaxationTarget("a1", near)

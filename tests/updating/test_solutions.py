@@ -10,8 +10,8 @@ from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.descent import descend
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
+from jackettwin.updating.solution_clusters import gather
 from jackettwin.updating.solutions import search
-from jackettwin.updating.valleys import gather
 
 F_BAR, ZETA_BAR = 0.0040, 0.0067  # the thesis's own errors, tables 8.1 and 8.2
 

@@ -13,7 +13,7 @@ from jackettwin.loads.water import Water, water_mass
 from jackettwin.structure import Assembly
 from jackettwin.updating import SupportModel
 from jackettwin.updating.budget import SOURCES, damping_budget
-from jackettwin.updating.extras import Extras
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 
 MODES = (1, 2, 3, 4, 5)
 TRUTH = np.array([3e9, 0.1, 2e4, 1.2, 1.5])
@@ -26,7 +26,7 @@ def wet(jacket15: Assembly, maxwell_3: Callable[..., SupportModel]) -> SupportMo
         "water_mass": water_mass(jacket15, grid, Water()),
         "water_damping": sea_drag_damping(grid, SeaState(3.0, 8.0), 72.0),
     }
-    return maxwell_3(extras=Extras(("c_side_side",), water=water))
+    return maxwell_3(nuisance=NuisanceParameters(("c_side_side",), water=water))
 
 
 def test_factors_are_lognormal_around_one(wet: SupportModel) -> None:
@@ -46,7 +46,7 @@ def test_poles_are_those_of_the_full_model(wet: SupportModel) -> None:
 def test_without_more_mass_and_without_drag_nothing_changes(
     wet: SupportModel, maxwell_3: Callable[..., SupportModel]
 ) -> None:
-    dry = maxwell_3(extras=Extras(("c_side_side",)))
+    dry = maxwell_3(nuisance=NuisanceParameters(("c_side_side",)))
     still = np.array([*TRUTH[:3], 1.0, 1e-12])
     poles = dry.predict(TRUTH[:3], MODES).poles
     np.testing.assert_allclose(wet.predict(still, MODES).poles, poles, rtol=1e-8)
@@ -65,7 +65,7 @@ def test_more_water_is_slower_by_the_modal_mass_it_adds(wet: SupportModel, jacke
     """Rayleigh's quotient: d ln f/dw = −½ φᵀM_wφ / φᵀMφ."""
     theta = np.array([3e9, 0.1, 1e2, 1.0, 1e-6])
     phi = wet.exact_modes(theta, (4,)).shapes[:, 0]
-    mass = wet.extras.water["water_mass"]
+    mass = wet.nuisance.water["water_mass"]
     share = float((phi.conj() @ (mass @ phi)).real / (phi.conj() @ (jacket15.mass @ phi)).real)
     pole, slope = (a[0] for a in (wet.predict(theta, (4,)).poles, wet.predict(theta, (4,)).slopes))
     d_ln_f = float((np.conj(pole) * slope[3]).real / abs(pole) ** 2)
@@ -78,7 +78,7 @@ def test_more_water_than_the_structure_weighs_is_refused(
 ) -> None:
     heavy = {"water_mass": 2.1 * jacket15.mass}
     with pytest.raises(InputError, match="cannot hold that much water"):
-        maxwell_3(extras=Extras((), water=heavy))
+        maxwell_3(nuisance=NuisanceParameters((), water=heavy))
 
 
 def test_the_budget_has_a_share_of_water(wet: SupportModel) -> None:

@@ -13,9 +13,9 @@ from rich.table import Table
 
 from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.errors import InputError
-from jackettwin.response.follow import follow
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
@@ -114,7 +114,7 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
         system, below_hz=1.1 * float(undamped.frequency_hz[min(number + free, undamped.omega.size) - 1])
     )
     damped = _enough(system, damped, number)
-    static = follow(M, undamped.omega, undamped.shapes, damped.shapes)
+    static = track_modes(M, undamped.omega, undamped.shapes, damped.shapes)
     of_damped = {int(column): row for row, column in enumerate(static) if column >= 0}
     numbers = _numbers(assembly, damped, number)
     labels = mode_labels(mode_kinds(assembly, damped.shapes))
@@ -160,7 +160,7 @@ def _numbers(assembly: Assembly, damped: DampedModes, number: int) -> dict[int, 
     if not assembly.structure.reactions:
         return {}
     reference = numbered_modes(assembly, number + 6)
-    successor = follow(assembly.mass, reference.omega, reference.shapes, damped.shapes)
+    successor = track_modes(assembly.mass, reference.omega, reference.shapes, damped.shapes)
     return {int(column): mode + 1 for mode, column in enumerate(successor) if column >= 0}
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from jackettwin.records.signs import LEAST_CYCLES, strongest_line
+from jackettwin.records.sensor_polarity import LEAST_CYCLES, strongest_line
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -221,8 +221,8 @@ def _against_others(
 
 def _most_alike(x: ComplexArray, own: ComplexArray, n: int) -> npt.NDArray[np.intp]:
     power = np.sqrt(np.sum(np.abs(x) ** 2, axis=1))
-    likeness = np.abs(x.conj() @ own) / np.where(power > 0.0, power, np.inf)
-    return np.sort(np.argsort(-likeness)[: max(n, 1)])
+    subspace_mac = np.abs(x.conj() @ own) / np.where(power > 0.0, power, np.inf)
+    return np.sort(np.argsort(-subspace_mac)[: max(n, 1)])
 
 
 def _split(i: int, seen: _Against, *, certain: bool) -> Change | None:

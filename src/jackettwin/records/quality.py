@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records import faults, filters, signs
+from jackettwin.records import faults, filters, sensor_polarity
 from jackettwin.records.changes import Change, changes, described
 from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
-from jackettwin.records.gains import wrong_units
 from jackettwin.records.record import LARGEST
+from jackettwin.records.unit_errors import wrong_units
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -82,8 +82,8 @@ def assess(record: Record) -> Quality:
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
-    groups = list(signs.parallel_groups(record, slow_free))
-    swapped = signs.swapped(record, groups)
+    groups = list(sensor_polarity.parallel_groups(record, slow_free))
+    swapped = sensor_polarity.swapped(record, groups)
     changed = _changed(record, slow_free)
     judged = [
         _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))

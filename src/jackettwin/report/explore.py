@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.report.figures_landscape import Curve, Locus
-from jackettwin.response.follow import follow
 from jackettwin.response.modal import undamped_modes
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.updating import Problem, SupportModel, Update, numbered_modes
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 
@@ -44,7 +44,7 @@ def locus(
     Where the poles at a bound are the limits c → 0 and c → ∞ of a dashpot.
     """
     width = len(model.family.parameters)
-    n_law = width * len(model.feet.suffixes)
+    n_law = width * len(model.tie_groups.suffixes)
     p = model.parameters[_LOSSY]
 
     def poles_at(values: FloatArray) -> ComplexArray:
@@ -79,7 +79,7 @@ def undamped_shapes(update: Update) -> FloatArray:
     model, modes = update.model, update.shown
     reference = numbered_modes(model.assembly, max(modes) + 2)
     undamped = undamped_modes(model.system(update.best.theta), max(modes) + 12)
-    found = follow(model.assembly.mass, reference.omega, reference.shapes, undamped.shapes)[
+    found = track_modes(model.assembly.mass, reference.omega, reference.shapes, undamped.shapes)[
         [m - 1 for m in modes]
     ]
     return np.asarray(np.where(found >= 0, undamped.shapes[:, found], np.nan))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.many_records.convergence import convergence
-from jackettwin.report.figures_likeness import interval_history
+from jackettwin.report.figures_subspace_mac import interval_history
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page

@@ -5,7 +5,7 @@ from __future__ import annotations
 from jackettwin.identification import FusedMode, Identification, fuse
 from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
-from jackettwin.report import figures_identification, figures_likeness, figures_record
+from jackettwin.report import figures_identification, figures_record, figures_subspace_mac
 from jackettwin.report import tables_records as tables
 from jackettwin.report.page import Block, Plot
 from jackettwin.twin import TwinResult
@@ -56,7 +56,7 @@ def what_was_identified(result: TwinResult) -> list[Block]:
 
 
 def diagrams(found: Identification, names: tuple[str, ...]) -> list[Block]:
-    """Return the stabilisation diagrams of a record, its modes' intervals and likeness."""
+    """Return the stabilisation diagrams of a record, its modes' intervals and subspace MACs."""
     s = found.settings
     modes = list(zip(names, found.modes, strict=True))
     caption = (
@@ -97,8 +97,8 @@ def _likeness(found: Identification, names: tuple[str, ...]) -> list[Block]:
         "mostly a close pair that one record does not separate."
     )
     return [
-        Plot("mac", caption, figures_likeness.mac_matrix(found, names)),
-        Plot("complexity", needles, figures_likeness.complexity(found, names)),
+        Plot("mac", caption, figures_subspace_mac.mac_matrix(found, names)),
+        Plot("complexity", needles, figures_subspace_mac.complexity(found, names)),
     ]
 
 
@@ -114,4 +114,4 @@ def _history(result: TwinResult) -> list[Block]:
     if not histories:
         return []
     caption = "Damping ratios with 95 % intervals as records are fused, in their order."
-    return [Plot("interval_history", caption, figures_likeness.interval_history(histories))]
+    return [Plot("interval_history", caption, figures_subspace_mac.interval_history(histories))]

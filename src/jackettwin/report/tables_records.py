@@ -165,7 +165,7 @@ def pairing_table(measured: Sequence[MeasuredMode], unpaired: Sequence[ModalEsti
         ("no counterpart in the model", UNKNOWN, frequency(e.frequency_hz), UNKNOWN, "no", "no")
         for e in unpaired
     ]
-    columns = ("mode of the model", "no.", "identified f [Hz]", "likeness [-]", "f fitted", "ζ fitted")
+    columns = ("mode of the model", "no.", "identified f [Hz]", "subspace MAC [-]", "f fitted", "ζ fitted")
     return Table(
         "Which identified mode is which: the modal assurance criterion at the sensors; for modes closer than "
         "6 % in frequency, whose measured shapes mix, the share of the shape in the plane of the pair.",

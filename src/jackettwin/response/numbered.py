@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from jackettwin.response.certified import REAL, SAME, STEP, AllModes, all_modes, kernels
 from jackettwin.response.condensed import Condensed, check_rayleigh
-from jackettwin.response.follow import follow
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.soil.coefficients import static_rows
 from jackettwin.structure.damping import Rayleigh
 
@@ -149,7 +149,7 @@ def _successors(model: Condensed, found: AllModes, modes: tuple[int, ...]) -> In
     number = max(modes) + _BYSTANDERS
     successor = np.full(number, -1, dtype=np.intp)
     omega, phi = model.pinned.omega[:number], model.pinned.shapes[:, :number]
-    successor[: omega.size] = follow(model.pencil.M, omega, phi, found.shapes.T)
+    successor[: omega.size] = track_modes(model.pencil.M, omega, phi, found.shapes.T)
     return np.asarray(successor[np.array(modes) - 1])
 
 

@@ -12,7 +12,8 @@ from jackettwin.soil.curves import NOTHING, Curve, secant_stiffness
 from jackettwin.soil.layering import equivalent_points
 from jackettwin.soil.piles import Pile, PileSprings, Stations, stations
 from jackettwin.soil.profile import Clay, Point, Sand, SoilProfile, ground_at
-from jackettwin.soil.shaft import (
+from jackettwin.soil.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
+from jackettwin.soil.tz_curves import (
     clay_bearing,
     clay_friction,
     clay_tz,
@@ -21,7 +22,6 @@ from jackettwin.soil.shaft import (
     sand_tz,
     tip_qz,
 )
-from jackettwin.soil.springs import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
 
 FloatArray = npt.NDArray[np.float64]
 

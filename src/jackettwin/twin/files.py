@@ -20,8 +20,8 @@ from jackettwin.twin.config import PAIRED_MODES, GivenRelaxation, ModelError, Tw
 from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
-from jackettwin.updating.extras import DASHPOTS, Extras
-from jackettwin.updating.feet import SIDES, SPLIT_LEGS
+from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters
+from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
 
 
 def shipped_twins() -> tuple[str, ...]:
@@ -203,7 +203,9 @@ def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
 def _check_update(update: UpdateSchema, given_modes: Container[int | None]) -> None:
     """Refuse unknown bounds and priors now, not after the records have been identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
-    known |= {p.name for p in Extras(_dashpots(update), rayleigh=True).parameters} | set(update.water)
+    known |= {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters} | set(
+        update.water
+    )
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
             if not any(name == k or name.startswith(f"{k}_") for k in known):

@@ -15,7 +15,7 @@ from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
 from jackettwin.twin.observe import Observation, observe
-from jackettwin.twin.turned_sensors import turned_sensors
+from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Target
 from jackettwin.updating.pairing import pair
 
@@ -95,13 +95,13 @@ def measure(
         with located(file=config.path):
             shapes = observation_matrix(assembly, places) @ numbered.shapes
         pairs = pair(found.modes, numbered.frequency_hz, shapes)
-        for mode, (index, likeness) in pairs.items():
+        for mode, (index, subspace_mac) in pairs.items():
             sightings.setdefault(mode + 1, []).append(
-                Sighting(found.modes[index], likeness, found.duration_s, _wind(seen.record), names)
+                Sighting(found.modes[index], subspace_mac, found.duration_s, _wind(seen.record), names)
             )
         turned += [
             f"{seen.record.name}: {one.described(names)}"
-            for one in turned_sensors(found.modes, numbered.frequency_hz, shapes)
+            for one in sensor_polarity(found.modes, numbered.frequency_hz, shapes)
         ]
         number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))

@@ -18,9 +18,9 @@ from jackettwin.twin.result import MeasuredRelaxation
 from jackettwin.twin.rotor import RotorDamping, States
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import Problem, family, joint, support_model
-from jackettwin.updating.extras import Extras
 from jackettwin.updating.joint import Growth
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
@@ -82,7 +82,7 @@ def tied_problem(
     growth: Growth | None = None,
 ) -> Problem:
     """Return the problem of a model in some states, its legs tied as the twin says."""
-    law = {p.name + side for p in model.family.parameters for side in ("", *model.feet.sides)}
+    law = {p.name + side for p in model.family.parameters for side in ("", *model.tie_groups.sides)}
     with located(file=config.path):
         return joint(
             model,
@@ -108,8 +108,10 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
     with located(file=config.path):
         records = () if evidence.found is None else [seen.record for seen in evidence.found.observations]
         water = water_effects(in_the_records_sea(config.water, records), evidence.assembly, given.water)
-    extras = Extras(given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water)
-    own = {p.name for p in (*chosen.parameters, *extras.parameters)}
+    nuisance = NuisanceParameters(
+        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water
+    )
+    own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())
     try:
         return support_model(
@@ -121,7 +123,7 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
             priors=_of_law({**evidence.rotor.priors, **given.priors}, own),
             highest_mode=max(mode for residuals, _ in states.values() for mode in residuals.modes),
             fastest_rate=max((r.rate_rad_s for r in evidence.relaxations), default=0.0),
-            extras=extras,
+            nuisance=nuisance,
             heads=_heads(config),
             head_priors=not relative,
         )

@@ -17,7 +17,7 @@ from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, Sighting, fuse
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Residuals, Target
-from jackettwin.updating.extras import DASHPOTS
+from jackettwin.updating.nuisance_parameters import DASHPOTS
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -50,7 +50,7 @@ def moving_mass(water: WaterConfig, assembly: Assembly) -> sp.csr_array:
 def water_effects(
     water: WaterConfig | None, assembly: Assembly, wanted: tuple[str, ...]
 ) -> Mapping[str, sp.csr_array]:
-    """Return the patterns of the water's free factors, as the updating's ``Extras`` takes them.
+    """Return the patterns of the water's free factors, as the updating's ``NuisanceParameters`` takes them.
 
     Raises
     ------

@@ -15,8 +15,8 @@ from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
-from jackettwin.updating.extras import Extras
-from jackettwin.updating.feet import Feet
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
+from jackettwin.updating.tie_groups import TieGroups
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,9 +33,9 @@ def numbered_modes(assembly: Assembly, number: int) -> UndampedModes:
 
 def condensed_for(
     assembly: Assembly,
-    groups: Feet,
+    groups: TieGroups,
     rayleigh: Rayleigh,
-    extras: Extras,
+    nuisance: NuisanceParameters,
     pinned_hz: FloatArray,
     highest_mode: int,
     fastest_rate: float,
@@ -58,13 +58,13 @@ def condensed_for(
         assembly,
         groups.support(stand_ins),
         rayleigh=rayleigh,
-        dashpots=extras.springs(
-            assembly.structure.top_node, np.array([1e3 + i for i in range(len(extras.dashpots))])
+        dashpots=nuisance.springs(
+            assembly.structure.top_node, np.array([1e3 + i for i in range(len(nuisance.dashpots))])
         ),
     )
     below_hz = max(_ROOM * float(pinned_hz[-1]), _BEYOND * fastest_rate / (2.0 * pi))
     _check_band(rayleigh, pinned_hz, highest_mode, fastest_rate)
-    return condense(system, below_hz=below_hz, spread=tuple(extras.water.values()))
+    return condense(system, below_hz=below_hz, spread=tuple(nuisance.water.values()))
 
 
 def _check_band(rayleigh: Rayleigh, pinned_hz: FloatArray, highest_mode: int, fastest_rate: float) -> None:

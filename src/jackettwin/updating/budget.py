@@ -110,8 +110,8 @@ def _shares(ratio: FloatArray) -> FloatArray:
 
 def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatArray:
     """Return (n_sets, n_modes, n_sources) damping ratios."""
-    pencil, n_soil = model.condensed.pencil, len(model.feet.suffixes)
-    n_rotor = n_soil + len(model.extras.dashpots)
+    pencil, n_soil = model.condensed.pencil, len(model.tie_groups.suffixes)
+    n_rotor = n_soil + len(model.nuisance.dashpots)
     known = ~np.isnan(found.poles)
     x, pole = np.where(known[..., None], found.shapes, 1.0), np.where(known, found.poles, 1j)
     m = np.einsum("kmi,kmi->km", x.conj() @ pencil.M, x).real
@@ -123,8 +123,8 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
         groups[..., g] = D.imag / pole.imag * np.einsum("kmi,kmi->km", x.conj() @ group.S, x).real
     soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:n_rotor].sum(axis=-1)
     lost = np.stack([a * m + b * k, soil, rotor], axis=-1)
-    if "water_damping" in model.extras.water:
-        drag = n_rotor + list(model.extras.water).index("water_damping")
+    if "water_damping" in model.nuisance.water:
+        drag = n_rotor + list(model.nuisance.water).index("water_damping")
         lost = np.concatenate([lost, groups[..., drag : drag + 1]], axis=-1)
     # M and K of the coordinates leave out what the truncated modes move (1e-4): close the sum on ζ itself
     zeta = -pole.real / np.abs(pole)

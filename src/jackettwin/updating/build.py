@@ -12,10 +12,10 @@ from jackettwin.soil.support import Support
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
-from jackettwin.updating.extras import STEEL, Extras
 from jackettwin.updating.families import Family, Parameter
-from jackettwin.updating.feet import feet, priors_of
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
+from jackettwin.updating.tie_groups import priors_of, tie_groups
 
 Lognormal = tuple[float, float]
 """Median and standard deviation of ln θ."""
@@ -31,7 +31,7 @@ def support_model(
     priors: Mapping[str, Lognormal] | None = None,
     highest_mode: int = 8,
     fastest_rate: float = 0.0,
-    extras: Extras | None = None,
+    nuisance: NuisanceParameters | None = None,
     heads: Support | None = None,
     head_priors: bool = False,
 ) -> SupportModel:
@@ -49,10 +49,10 @@ def support_model(
         The last numbered mode that will be asked for.
     fastest_rate : float
         Of the real poles that will be asked for [rad/s].
-    extras : Extras, optional
+    nuisance : NuisanceParameters, optional
         Nacelle dashpots and steel damping to update as well.
     heads : Support, optional
-        Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.feet.feet`).
+        Pile heads whose 6×6 stiffness the laws scale (:func:`jackettwin.updating.tie_groups.tie_groups`).
     head_priors : bool
         Whether the heads give priors to the parameters that have none.
 
@@ -63,23 +63,28 @@ def support_model(
     """
     pinned_hz = numbered_modes(assembly, highest_mode).frequency_hz
     first_hz = float(pinned_hz[0])
-    groups = feet(assembly.structure, tie, heads=heads, reference_hz=first_hz)
-    suffixes, extras, bounds, priors = groups.suffixes, extras or Extras(), bounds or {}, priors or {}
+    groups = tie_groups(assembly.structure, tie, heads=heads, reference_hz=first_hz)
+    suffixes, nuisance, bounds, priors = (
+        groups.suffixes,
+        nuisance or NuisanceParameters(),
+        bounds or {},
+        priors or {},
+    )
     derived = priors_of(groups, first_hz) if head_priors else {}
     parameters = tuple(
         _informed(replace(p, name=p.name + suffix), (p.name + side, p.name), bounds, priors, derived)
         for suffix, side in zip(suffixes, groups.sides, strict=True)
         for p in family.parameters
-    ) + tuple(_informed(p, (), bounds, priors, {}) for p in extras.parameters)
+    ) + tuple(_informed(p, (), bounds, priors, {}) for p in nuisance.parameters)
     known = {p.name + suffix for p in family.parameters for suffix in ("", *groups.sides, *suffixes)}
-    known |= {p.name for p in extras.parameters}
+    known |= {p.name for p in nuisance.parameters}
     for field, names in (("bounds", bounds), ("priors", priors)):
         _no_unknown(field, names, known, family)
-    condensed = condensed_for(assembly, groups, rayleigh, extras, pinned_hz, highest_mode, fastest_rate)
-    if extras.rayleigh:
+    condensed = condensed_for(assembly, groups, rayleigh, nuisance, pinned_hz, highest_mode, fastest_rate)
+    if nuisance.rayleigh:
         parameters = _inside_band(parameters, bounds, strongest_beta(condensed.radius))
     low = next((p.low for p in parameters if p.name == "water_mass"), 1.0)
-    extras.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
+    nuisance.check_mass(condensed.pencil.M, [g.S for g in condensed.pencil.groups[len(suffixes) :]], low)
     return SupportModel(
         assembly,
         rayleigh,
@@ -89,7 +94,7 @@ def support_model(
         condensed,
         first_hz,
         highest_mode,
-        extras,
+        nuisance,
         fastest_rate,
     )
 

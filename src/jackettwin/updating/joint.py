@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.updating.families import Parameter
-from jackettwin.updating.feet import SIDES
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
@@ -19,6 +18,7 @@ from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.scatter import Legs, ScatteredPrior
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
+from jackettwin.updating.tie_groups import SIDES
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -130,7 +130,7 @@ def joint(
 
 def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...]) -> dict[str, str]:
     """Return {the model's name: the problem's} of shared parameters; refuse what is none of the law's."""
-    law = {p.name + side: None for side in ("", *model.feet.sides) for p in model.family.parameters}
+    law = {p.name + side: None for side in ("", *model.tie_groups.sides) for p in model.family.parameters}
     for name in given:
         if name not in law:
             raise InputError(
@@ -144,9 +144,9 @@ def _members(model: SupportModel, name: str) -> list[list[str]]:
 
     ``k`` is every leg's; ``k_vertical`` that of every leg's vertical spring.
     """
-    feet, law = model.feet, [p.name for p in model.family.parameters]
+    tie_groups, law = model.tie_groups, [p.name for p in model.family.parameters]
     by_side: dict[str, list[str]] = {}
-    for suffix, side in zip(feet.suffixes, feet.sides, strict=True):
+    for suffix, side in zip(tie_groups.suffixes, tie_groups.sides, strict=True):
         for own in law:
             if name in (own, own + side):
                 by_side.setdefault(side, []).append(own + suffix)

@@ -11,17 +11,17 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.response.condensed import Condensed
-from jackettwin.response.follow import follow
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
 from jackettwin.response.system import System, build_system
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
-from jackettwin.updating.extras import Extras
 from jackettwin.updating.families import Family, Parameter
-from jackettwin.updating.feet import Feet
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
+from jackettwin.updating.tie_groups import TieGroups
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -56,7 +56,7 @@ class SupportModel:
     family : Family
     parameters : tuple of Parameter
         One set of the family's for each tie group.
-    feet : Feet
+    tie_groups : TieGroups
         The tie groups.
     condensed : Condensed
         The structure on its support DOFs; its groups are the tie groups.
@@ -64,7 +64,7 @@ class SupportModel:
         Where storage stiffness and loss factor are stated: the first pinned frequency.
     highest_mode : int
         The last numbered mode inside the condensed model's band.
-    extras : Extras
+    nuisance : NuisanceParameters
         Free parameters beside those of the law: they follow them in ``parameters``.
     fastest_rate : float
         Relaxations up to this rate [rad/s] are well inside the band, too.
@@ -74,11 +74,11 @@ class SupportModel:
     rayleigh: Rayleigh
     family: Family
     parameters: tuple[Parameter, ...]
-    feet: Feet
+    tie_groups: TieGroups
     condensed: Condensed
     reference_hz: float
     highest_mode: int
-    extras: Extras = Extras()
+    nuisance: NuisanceParameters = NuisanceParameters()
     fastest_rate: float = 0.0
 
     def reaching(self, mode: int) -> SupportModel:
@@ -87,33 +87,39 @@ class SupportModel:
             return self
         pinned_hz = numbered_modes(self.assembly, mode).frequency_hz
         condensed = condensed_for(
-            self.assembly, self.feet, self.rayleigh, self.extras, pinned_hz, mode, self.fastest_rate
+            self.assembly,
+            self.tie_groups,
+            self.rayleigh,
+            self.nuisance,
+            pinned_hz,
+            mode,
+            self.fastest_rate,
         )
         return replace(self, condensed=condensed, highest_mode=mode)
 
     def laws(self, theta: FloatArray) -> list[Law]:
         """Return the law of each tie group."""
-        per_group = np.reshape(self._split(theta)[0], (len(self.feet.suffixes), -1))
+        per_group = np.reshape(self._split(theta)[0], (len(self.tie_groups.suffixes), -1))
         return [self.family.build(values, self.reference_hz) for values in per_group]
 
     def _split(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the parameters of the laws and the extra ones of one vector or many."""
-        n = len(self.feet.suffixes) * len(self.family.parameters)
+        n = len(self.tie_groups.suffixes) * len(self.family.parameters)
         return theta[..., :n], theta[..., n:]
 
     def points(self, theta: FloatArray) -> Points:
         """Return parameter vectors (n_sets, n_parameters) as what the condensed model takes."""
         own, extra = self._split(theta)
-        n_sets, n_groups, p = len(theta), len(self.feet.suffixes), len(self.family.parameters)
+        n_sets, n_groups, p = len(theta), len(self.tie_groups.suffixes), len(self.family.parameters)
         rows, slopes = self.family.rows(np.reshape(own, (-1, p)), self.reference_hz)
         soil, slopes = rows.reshape(n_sets, n_groups, -1), slopes.reshape(n_sets, n_groups, -1, p)
-        rotor, rotor_slopes = self.extras.rows(extra, soil.shape[2])
+        rotor, rotor_slopes = self.nuisance.rows(extra, soil.shape[2])
         rows = np.concatenate([soil, rotor], axis=1)
         jacobian = np.zeros((*rows.shape, theta.shape[1]))
         for g in range(n_groups):
             jacobian[:, g, :, g * p : (g + 1) * p] = slopes[:, g]
         jacobian[:, n_groups:, :, own.shape[1] :] = rotor_slopes
-        ab, ab_slopes = self.extras.rayleigh_rows(self.rayleigh, extra)
+        ab, ab_slopes = self.nuisance.rayleigh_rows(self.rayleigh, extra)
         by_all = np.zeros((n_sets, 2, theta.shape[1]))
         by_all[:, :, own.shape[1] :] = ab_slopes
         return Points(rows, ab, jacobian, by_all)
@@ -167,12 +173,12 @@ class SupportModel:
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
         extra = self._split(theta)[1]
-        mass, damping = self.extras.water_effects(extra)
+        mass, damping = self.nuisance.water_effects(extra)
         return build_system(
             self.assembly if mass is None else replace(self.assembly, mass=self.assembly.mass + mass),
-            self.feet.support(self.laws(theta)),
-            rayleigh=self.extras.steel(self.rayleigh, extra),
-            dashpots=self.extras.springs(self.assembly.structure.top_node, extra),
+            self.tie_groups.support(self.laws(theta)),
+            rayleigh=self.nuisance.steel(self.rayleigh, extra),
+            dashpots=self.nuisance.springs(self.assembly.structure.top_node, extra),
             spread=() if damping is None else ((damping, Prony(c=1.0)),),
         )
 
@@ -184,8 +190,8 @@ class SupportModel:
         damped = damped_modes(system, below_hz=1.2 * float(reference.frequency_hz[-1]))
         undamped = undamped_modes(system, len(damped.eigenvalues) + 6)
         rows = [m - 1 for m in modes]
-        d = follow(M, reference.omega, reference.shapes, damped.shapes)[rows]
-        u = follow(M, reference.omega, reference.shapes, undamped.shapes)[rows]
+        d = track_modes(M, reference.omega, reference.shapes, damped.shapes)[rows]
+        u = track_modes(M, reference.omega, reference.shapes, undamped.shapes)[rows]
         return ExactModes(
             poles=_taken(damped.eigenvalues, d),
             shapes=_taken(damped.shapes, d),

@@ -9,8 +9,8 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.updating.extras import DASHPOTS
 from jackettwin.updating.identifiability import information
+from jackettwin.updating.nuisance_parameters import DASHPOTS
 from jackettwin.updating.problem import Problem
 
 FloatArray = npt.NDArray[np.float64]

@@ -69,7 +69,7 @@ def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, Floa
     s = 1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]]
     rows = model.points(theta).plain().rows
     quantities = {}
-    for g, suffix in enumerate(model.feet.suffixes):
+    for g, suffix in enumerate(model.tie_groups.suffixes):
         D = law_stiffness(rows[:, g], np.broadcast_to(s, (len(theta), 2)))
         loss = D.imag / D.real
         quantities[f"static_stiffness{suffix}"] = static_rows(rows[:, g])[:, 0]

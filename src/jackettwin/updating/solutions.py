@@ -1,4 +1,4 @@
-"""Search for every solution: scattered starts, deflation of what is known, one list of distinct valleys."""
+"""Search for every solution: scattered starts, deflation of what is known, one list of distinct clusters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scipy.stats import qmc
 from jackettwin.errors import InputError
 from jackettwin.updating.descent import End, descend, descend_simplex, settle
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.valleys import extent, gather
+from jackettwin.updating.solution_clusters import extent, gather
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -35,12 +35,12 @@ _CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Solution:
-    """A minimum of the cost, or a valley of equal ones.
+    """A minimum of the cost, or a cluster of equal ones.
 
     Attributes
     ----------
     theta : (n_parameters,)
-        Of a valley, the point nearest the middle of the bounds.
+        Of a cluster, the point nearest the middle of the bounds.
     cost : float
         Sum of squared residuals.
     frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
@@ -48,7 +48,7 @@ class Solution:
     locked_damper : bool
         An undamped frequency is more than 5 % from the damped one.
     locks_within : bool
-        A valley's ends are looked at, too: at some of them a damper is locked.
+        A cluster's ends are looked at, too: at some of them a damper is locked.
     at_bound : tuple of str
         Parameters that ended on a bound.
     found : int
@@ -147,7 +147,7 @@ def search(
     deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
     run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
-    valleys: list[tuple[End, int]] = []
+    clusters: list[tuple[End, int]] = []
     n, tried, spent = starts, 0, 0
     while True:
         new: list[tuple[End, int]] = []
@@ -158,21 +158,21 @@ def search(
             tried, spent = tried + 1, spent + end.evaluations
             new += [(end, 1)] if end.settled else []
             if progress is not None:
-                progress(f"{tried} of {n} starts, {len(valleys)} distinct solutions before them")
-        valleys, compared = gather(problem, new, known=valleys)
-        enough = all(count > 1 for _, count in valleys) if valleys else n >= _HOPELESS * starts
+                progress(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
+        clusters, compared = gather(problem, new, known=clusters)
+        enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
         if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
             break
         n *= 2
     if deflated:
-        valleys = _deflate(problem, valleys, points[:deflated])
-    if not valleys:
+        clusters = _deflate(problem, clusters, points[:deflated])
+    if not clusters:
         raise _out_of_reach(problem)
-    kept = [v for v in valleys if v[0].cost <= valleys[0][0].cost + problem.hopeless]
-    # two ends of one valley may only be seen to be one from its middle
-    valleys, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    kept = [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
+    # two ends of one cluster may only be seen to be one from its middle
+    clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
     return Search(
-        tuple(_solution(problem, end, count) for end, count in valleys),
+        tuple(_solution(problem, end, count) for end, count in clusters),
         tried,
         deflated,
         1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
@@ -206,13 +206,13 @@ def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 
 
-def _deflate(problem: Problem, valleys: list[tuple[End, int]], points: FloatArray) -> list[tuple[End, int]]:
-    """Return the valleys and what further descents find with them deflated."""
+def _deflate(problem: Problem, clusters: list[tuple[End, int]], points: FloatArray) -> list[tuple[End, int]]:
+    """Return the clusters and what further descents find with them deflated."""
     for point in points:
-        end = descend(problem, point, known=tuple(valley.z for valley, _ in valleys))
+        end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
         if end.settled:
-            valleys, _ = gather(problem, [(end, 1)], known=valleys)
-    return valleys
+            clusters, _ = gather(problem, [(end, 1)], known=clusters)
+    return clusters
 
 
 def _solution(problem: Problem, end: End, found: int) -> Solution:

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from jackettwin.errors import InputError
-from jackettwin.response.follow import follow
 from jackettwin.response.modal import UndampedModes
+from jackettwin.response.mode_tracking import track_modes
 from jackettwin.structure.assemble import assemble
 from jackettwin.structure.model import Structure
 from jackettwin.updating.band import numbered_modes
@@ -122,7 +122,9 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
         scale = np.exp(z)
         at = assemble(_scaled(structure, factors, scale))
         found = numbered_modes(at, number)
-        order = follow(start.mass, reference.omega, reference.shapes, found.shapes)[[m - 1 for m in modes]]
+        order = track_modes(start.mass, reference.omega, reference.shapes, found.shapes)[
+            [m - 1 for m in modes]
+        ]
         omega, phi = found.omega[order], found.shapes[:, order]
         slopes = np.empty((len(modes), len(factors)))
         for j, (K, M) in enumerate(zip(K_parts, M_parts, strict=True)):

@@ -57,9 +57,9 @@ def records(truth: Truth, n: int, *, fewest_channels: int = 8) -> list[Identific
 def of_true_mode(fused: FusedIdentification, k: int):
     """Return the fused mode that has the shape of a true one, and that shape's order of channels."""
     order = [int(c.name[1:]) for c in fused.channels]
-    likeness = [mac(SHAPES[k][order], mode.mode_shape) for mode in fused.modes]
-    assert max(likeness) > 0.98
-    return fused.modes[int(np.argmax(likeness))]
+    subspace_mac = [mac(SHAPES[k][order], mode.mode_shape) for mode in fused.modes]
+    assert max(subspace_mac) > 0.98
+    return fused.modes[int(np.argmax(subspace_mac))]
 
 
 def seen_rightly(found: list[Identification], fused: FusedIdentification, truth: Truth, k: int) -> float:

@@ -91,10 +91,10 @@ def _turned(
     if shares[0] > 1.0 - PURE or shares[1] < PURE:
         return None
     pure = (plane @ vectors).T
-    likeness = mac(np.array([a.mode_shape, b.mode_shape]), pure)
-    if likeness.max(axis=1).min() > APART:
+    subspace_mac = mac(np.array([a.mode_shape, b.mode_shape]), pure)
+    if subspace_mac.max(axis=1).min() > APART:
         return None
-    swapped = likeness[0, 1] + likeness[1, 0] > likeness[0, 0] + likeness[1, 1]
+    swapped = subspace_mac[0, 1] + subspace_mac[1, 0] > subspace_mac[0, 0] + subspace_mac[1, 1]
     for_a, for_b = pure[::-1] if swapped else pure
     return _with_shape(a, for_a), _with_shape(b, for_b)
 

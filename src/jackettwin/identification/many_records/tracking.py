@@ -224,10 +224,10 @@ def _distance(track: Track, seen: Sequence[_Glimpse]) -> FloatArray:
     does not count. Shapes are compared by the channels both records have; where there is none, not at all.
     """
     size = 1 + max(int(one.at.max()) for one in (*seen, *track.recent))
-    likeness = _shared_mac(_spread(seen, size), _spread(list(track.recent), size))
+    subspace_mac = _shared_mac(_spread(seen, size), _spread(list(track.recent), size))
     vague = np.add.outer([s.vagueness for s in seen], [s.vagueness for s in track.recent])
-    unlike = np.maximum(1.0 - likeness - SHAPE_SLACK * vague, 0.0)
-    comparable = np.isfinite(likeness).any(axis=0)
+    unlike = np.maximum(1.0 - subspace_mac - SHAPE_SLACK * vague, 0.0)
+    comparable = np.isfinite(subspace_mac).any(axis=0)
     if not comparable.any():
         return np.full(len(seen), np.inf)
     change = np.abs(np.array([s.log_f for s in seen]) - track.log_f)

@@ -20,8 +20,8 @@ import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters

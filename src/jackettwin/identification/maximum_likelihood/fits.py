@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
+from jackettwin.identification.maximum_likelihood.mode_drift import strayed
 from jackettwin.identification.maximum_likelihood.refinement import Refined, refine
-from jackettwin.identification.maximum_likelihood.straying import strayed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,7 +92,7 @@ class _Tried:
     obstacle: str = ""
 
 
-def believed_fits(
+def accepted_fits(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start
 ) -> tuple[list[Believed], tuple[str, ...]]:
     """Return the fits that are believed, and a sentence on each group of modes that none describes.

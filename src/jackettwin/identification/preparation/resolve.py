@@ -11,7 +11,7 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
-from jackettwin.records.copies import copies
+from jackettwin.records.duplicate_channels import duplicate_channels
 from jackettwin.records.record import SMALLEST
 from jackettwin.records.repair import without_stuck
 
@@ -66,7 +66,7 @@ def usable_channels(record: Record) -> tuple[Record, tuple[str, ...]]:
             warnings.append(f"channel {channel.name} left out: constant")
         else:
             alive.append(channel.name)
-    twins = copies(record.select(alive).data) if alive else {}
+    twins = duplicate_channels(record.select(alive).data) if alive else {}
     warnings += [f"channel {alive[i]} left out: a copy of {alive[j]}" for i, j in twins.items()]
     alive = [name for i, name in enumerate(alive) if i not in twins]
     if not alive:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.tones.drifting_tones import tone_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform

@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
-from jackettwin.identification.maximum_likelihood.fits import Start, believed_fits
+from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
-from jackettwin.identification.maximum_likelihood.straying import long_data_limits
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.selection.candidates import beside_tones, with_covariance
 
@@ -67,7 +67,7 @@ def chosen_modes(
         else:
             start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
             band = guarded_band_hz(resolved)
-            fits, warnings = believed_fits(y, resolved.sample_rate_hz, band, start)
+            fits, warnings = accepted_fits(y, resolved.sample_rate_hz, band, start)
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil import shaft, springs
+from jackettwin.soil import py_curves, tz_curves
 from jackettwin.soil.curves import CubeRoot, Table, Tanh, secant_stiffness, tangent_stiffness
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile, ground_at
 from jackettwin.soil.scour import Scour
@@ -29,9 +29,9 @@ def test_sand_py(name: str) -> None:
     z, D = given["z_m"], given["D_m"]
     phi = given["phi_deg"]
     np.testing.assert_allclose(
-        springs.sand_coefficients(phi), [case["C1"], case["C2"], case["C3"]], rtol=CLOSED_FORM
+        py_curves.sand_coefficients(phi), [case["C1"], case["C2"], case["C3"]], rtol=CLOSED_FORM
     )
-    curve = springs.sand_py(friction_angle_deg=phi, stress_pa=given["gamma_eff_kN_m3"] * z * KILO, z=z, D=D)
+    curve = py_curves.sand_py(friction_angle_deg=phi, stress_pa=given["gamma_eff_kN_m3"] * z * KILO, z=z, D=D)
     assert curve.capacity == pytest.approx(case["A"] * case["pu"] * KILO, rel=CLOSED_FORM)
     assert curve.initial_stiffness == pytest.approx(case["k_init_kN_m2"] * KILO, rel=CLOSED_FORM)
     for y, p in case["p_kN_m"].items():
@@ -51,8 +51,8 @@ def test_clay_py(name: str) -> None:
         "strain_50": given["eps50"],
         "J": given["J"],
     }
-    table = springs.soft_clay_py(**clay)
-    parabola = springs.soft_clay_py(**clay, form="cube-root")
+    table = py_curves.soft_clay_py(**clay)
+    parabola = py_curves.soft_clay_py(**clay, form="cube-root")
     y = np.array(case["y_m"])
     np.testing.assert_allclose(table.force(y), np.multiply(case["p_table_kN_m"], KILO), rtol=CLOSED_FORM)
     np.testing.assert_allclose(
@@ -61,7 +61,7 @@ def test_clay_py(name: str) -> None:
     for curve in (table, parabola):
         assert curve.initial_stiffness == pytest.approx(case["k_init_0p1y50_kN_m2"] * KILO, rel=CLOSED_FORM)
     for xi, key in ((10.0, "xi10"), (30.0, "xi30")):
-        k = springs.clay_initial_stiffness(
+        k = py_curves.clay_initial_stiffness(
             capacity_n_m=case["pu"] * KILO, D=given["D_m"], strain_50=given["eps50"], xi=xi
         )
         assert k == pytest.approx(case["dnv_initial_k_kN_m2"][key] * KILO, rel=CLOSED_FORM)
@@ -70,9 +70,9 @@ def test_clay_py(name: str) -> None:
 def test_clay_tz() -> None:
     case = CASES["TZ_CLAY_1"]
     given = case["inputs"]
-    f = shaft.clay_friction(strength_pa=given["su_kPa"] * KILO, stress_pa=given["sigma_v_eff_kPa"] * KILO)
+    f = tz_curves.clay_friction(strength_pa=given["su_kPa"] * KILO, stress_pa=given["sigma_v_eff_kPa"] * KILO)
     assert f == pytest.approx(case["f_kPa"] * KILO, rel=CLOSED_FORM)
-    curve = shaft.clay_tz(friction_pa=f, D=given["D_m"], residual=given["residual"])
+    curve = tz_curves.clay_tz(friction_pa=f, D=given["D_m"], residual=given["residual"])
     perimeter = np.pi * given["D_m"]
     np.testing.assert_allclose(
         curve.force(case["z_m"]), np.multiply(case["t_kPa"], KILO * perimeter), rtol=CLOSED_FORM
@@ -83,26 +83,26 @@ def test_clay_tz() -> None:
 def test_sand_tz_in_both_forms() -> None:
     case = CASES["TZ_SAND_1"]
     given = case["inputs"]
-    f = shaft.sand_friction(
+    f = tz_curves.sand_friction(
         stress_pa=given["sigma_v_eff_kPa"] * KILO, beta=given["beta"], limit_pa=case["f_lim_kPa"] * KILO
     )
     assert f == pytest.approx(case["f_kPa"] * KILO, rel=CLOSED_FORM)
     perimeter = np.pi * given["D_m"]
     for form, key in (("rp2a", "2.54mm"), ("rp2geo", "0.3f at 0.16%D")):
-        curve = shaft.sand_tz(friction_pa=f, D=given["D_m"], form=form)
+        curve = tz_curves.sand_tz(friction_pa=f, D=given["D_m"], form=form)
         assert curve.initial_stiffness == pytest.approx(
             case["k_init_kPa_per_m"][key] * KILO * perimeter, rel=CLOSED_FORM
         )
     with pytest.raises(InputError, match="rp2geo, rp2a"):
-        shaft.sand_tz(friction_pa=f, D=2.0, form="iso")
+        tz_curves.sand_tz(friction_pa=f, D=2.0, form="iso")
 
 
 def test_clay_tip() -> None:
     case = CASES["QZ_CLAY_1"]
     D = case["inputs"]["D_m"]
-    q = shaft.clay_bearing(case["inputs"]["su_kPa"] * KILO)
+    q = tz_curves.clay_bearing(case["inputs"]["su_kPa"] * KILO)
     assert q == pytest.approx(case["q_kPa"] * KILO, rel=CLOSED_FORM)
-    curve = shaft.tip_qz(bearing_pa=q, D=D, area_m2=0.25 * np.pi * D**2)
+    curve = tz_curves.tip_qz(bearing_pa=q, D=D, area_m2=0.25 * np.pi * D**2)
     np.testing.assert_allclose(
         curve.force(case["z_m"]) / (0.25 * np.pi * D**2), np.multiply(case["Q_kPa"], KILO), rtol=CLOSED_FORM
     )
@@ -112,7 +112,7 @@ def test_clay_tip() -> None:
 def test_deep_soft_clay_flows_around_the_pile() -> None:
     """Below z_R the capacity is 9 s_u D whatever the overburden."""
     shallow, deep = (
-        springs.soft_clay_capacity(strength_pa=30e3, stress_pa=6e3 * z, z=z, D=2.0, J=0.5)
+        py_curves.soft_clay_capacity(strength_pa=30e3, stress_pa=6e3 * z, z=z, D=2.0, J=0.5)
         for z in (2.0, 40.0)
     )
     assert deep == pytest.approx(9.0 * 30e3 * 2.0)
@@ -123,10 +123,10 @@ def test_cyclic_clay_keeps_072_below_the_transition_and_loses_it_above() -> None
     """API RP 2GEO (2011) table 2: 0.72 beyond 3 y50, and 0.72 z/z_R at 15 y50 above z_R."""
     clay = {"strength_pa": 50e3, "D": 2.0, "strain_50": 0.01, "cyclic": True}
     y50 = 0.05
-    deep = springs.soft_clay_py(**clay, stress_pa=8e3 * 30, z=30.0)
+    deep = py_curves.soft_clay_py(**clay, stress_pa=8e3 * 30, z=30.0)
     assert float(deep.force(20 * y50)) == pytest.approx(0.72 * 9.0 * 50e3 * 2.0)
     z = 4.0
-    shallow = springs.soft_clay_py(**clay, stress_pa=8e3 * z, z=z)
+    shallow = py_curves.soft_clay_py(**clay, stress_pa=8e3 * z, z=z)
     z_R = CASES["PY_CLAY_1"]["z_R"]
     assert float(shallow.force(20 * y50)) == pytest.approx(0.72 * 464e3 * z / z_R, rel=CLOSED_FORM)
 
@@ -135,7 +135,7 @@ def test_cyclic_clay_keeps_072_below_the_transition_and_loses_it_above() -> None
 def test_stiff_clay_is_continuous_brittle_and_never_pulls(cyclic: bool) -> None:
     """Reese 1975: the pieces meet (0.936 A at 0.6 y_p is rounded to three digits) and fall after a peak."""
     D, z, su, e50 = 1.5, 6.0, 150e3, 0.005
-    curve = springs.stiff_clay_py(strength_pa=su, stress_pa=9e3 * z, z=z, D=D, strain_50=e50, cyclic=cyclic)
+    curve = py_curves.stiff_clay_py(strength_pa=su, stress_pa=9e3 * z, z=z, D=D, strain_50=e50, cyclic=cyclic)
     pc = min((2 * su + 9e3 * z) * D + 2.83 * su * z, 11 * su * D)
     p = np.array(curve.p)
     assert p.min() >= 0.0
@@ -153,7 +153,7 @@ def test_stiff_clay_takes_its_mean_strength_near_the_bed_and_its_own_deep_down()
     """Reese 1975: (2 s_a + σ'_v) D + 2.83 s_a z against 11 s_u D; strength grows from 50 to 250 kPa."""
     D, e50 = 2.0, 0.005
     for z, su, mean, deep in ((3.0, 80e3, 65e3, False), (60.0, 250e3, 150e3, True)):
-        curve = springs.stiff_clay_py(
+        curve = py_curves.stiff_clay_py(
             strength_pa=su, stress_pa=9e3 * z, z=z, D=D, strain_50=e50, mean_strength_pa=mean
         )
         pc = min((2 * mean + 9e3 * z) * D + 2.83 * mean * z, 11 * su * D)
@@ -167,13 +167,13 @@ def test_stiff_clay_without_free_water() -> None:
     D, z, su, e50 = 1.2, 5.0, 100e3, 0.005
     clay = {"strength_pa": su, "stress_pa": 18e3 * z, "z": z, "D": D, "strain_50": e50}
     pu, y50 = (3 * su + 18e3 * z) * D + 0.5 * su * z, 2.5 * e50 * D
-    still = springs.dry_stiff_clay_py(**clay)
+    still = py_curves.dry_stiff_clay_py(**clay)
     # straight lines between points 4 % apart
     np.testing.assert_allclose(still.force(np.array([1.0, 16.0, 40.0]) * y50), [pu / 2, pu, pu], rtol=1e-4)
     assert still.initial_stiffness == pytest.approx(0.5 * 0.1**0.25 * pu / (0.1 * y50))
-    cycled = springs.dry_stiff_clay_py(**clay, cycles=100.0)
+    cycled = py_curves.dry_stiff_clay_py(**clay, cycles=100.0)
     assert float(cycled.force((1.0 + 9.6 * 2.0 / 16.0) * y50)) == pytest.approx(pu / 2, rel=1e-3)
-    deep = springs.dry_stiff_clay_py(**{**clay, "z": 40.0, "stress_pa": 720e3})
+    deep = py_curves.dry_stiff_clay_py(**{**clay, "z": 40.0, "stress_pa": 720e3})
     assert float(deep.force(1.0)) == pytest.approx(9.0 * su * D)
 
 

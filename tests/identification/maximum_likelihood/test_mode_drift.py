@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.maximum_likelihood.fits import Start, believed_fits
+from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
+from jackettwin.identification.maximum_likelihood.mode_drift import has_left, long_data_limits, strayed
 from jackettwin.identification.maximum_likelihood.refinement import Refined
-from jackettwin.identification.maximum_likelihood.straying import has_left, long_data_limits, strayed
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 T = 600.0
@@ -108,7 +108,7 @@ def test_a_mode_whose_start_is_nowhere_near_is_left_unrefined(tower, rng):
         avoid_hz=(),
         most_damping=0.15,
     )
-    fits, warnings = believed_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
+    fits, warnings = accepted_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
     assert [np.flatnonzero(fit.candidates).tolist() for fit in fits] == [[0, 1]]
     assert len(warnings) == 1
     assert "1.2, 1.26 Hz not refined: the fit left the peak at 1.2" in warnings[0]

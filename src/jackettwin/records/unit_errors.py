@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.quantities import G0
-from jackettwin.records.signs import CERTAIN, Group, Together, one_motion
+from jackettwin.records.sensor_polarity import CERTAIN, Group, Together, one_motion
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
@@ -80,7 +80,7 @@ def wrong_units(record: Record, groups: Sequence[Group]) -> dict[str, WrongUnit]
     Parameters
     ----------
     record : Record
-    groups : of ``signs.parallel_groups``
+    groups : of ``sensor_polarity.parallel_groups``
     """
     found = {w.channel: w for group in groups for w in _in_group(record, group)}
     return found | {w.channel: w for w in _by_gravity(record)}

@@ -32,7 +32,7 @@ _STIFFNESS_LOG_STD, _LOSS_LOG_STD = 0.7, 1.0
 
 
 @dataclass(frozen=True)
-class Feet:
+class TieGroups:
     """Patterns of the tie groups: D of a group times its pattern is what holds a foot.
 
     Attributes
@@ -59,9 +59,9 @@ class Feet:
         return Support(springs=springs, masses=self.masses)
 
 
-def feet(
+def tie_groups(
     structure: Structure, tie: str, *, heads: Support | None = None, reference_hz: float | None = None
-) -> Feet:
+) -> TieGroups:
     """Return the tie groups of a structure's feet.
 
     Parameters
@@ -96,7 +96,7 @@ def feet(
         groups = {suffix: (dofs, nodes) for suffix, dofs in SIDES.items()}
     elif tie == SPLIT_LEGS:
         groups = {f"_{node}{side}": (dofs, (node,)) for node in nodes for side, dofs in SIDES.items()}
-    plain = Feet(
+    plain = TieGroups(
         tuple(groups),
         tuple(
             (g, node, _part(_TRANSLATIONS, dofs))
@@ -108,7 +108,7 @@ def feet(
     return plain if heads is None else _on_heads(plain, list(groups.values()), heads, reference_hz or 1.0)
 
 
-def priors_of(groups: Feet, reference_hz: float) -> dict[str, tuple[float, float]]:
+def priors_of(groups: TieGroups, reference_hz: float) -> dict[str, tuple[float, float]]:
     """Return lognormal priors, median and standard deviation of ln θ, from the heads behind the patterns.
 
     Linearised p-y and t-z curves miss the small-strain stiffness by a factor of two or three, and the loss
@@ -127,7 +127,7 @@ def priors_of(groups: Feet, reference_hz: float) -> dict[str, tuple[float, float
     return priors
 
 
-def _on_heads(plain: Feet, groups: list[Group], heads: Support, reference_hz: float) -> Feet:
+def _on_heads(plain: TieGroups, groups: list[Group], heads: Support, reference_hz: float) -> TieGroups:
     K = _impedance(plain, heads, reference_hz)
     stiffness, loss, patterns = [], [], []
     for g, (dofs, members) in enumerate(groups):
@@ -145,7 +145,9 @@ def _on_heads(plain: Feet, groups: list[Group], heads: Support, reference_hz: fl
     )
 
 
-def _impedance(plain: Feet, heads: Support, reference_hz: float) -> dict[str, npt.NDArray[np.complex128]]:
+def _impedance(
+    plain: TieGroups, heads: Support, reference_hz: float
+) -> dict[str, npt.NDArray[np.complex128]]:
     """Return the 6×6 complex stiffness of every foot at a frequency."""
     nodes = {node for _, node, _ in plain.patterns}
     K = {node: np.zeros((6, 6), complex) for node in nodes}

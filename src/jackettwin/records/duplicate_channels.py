@@ -12,7 +12,7 @@ ROUNDING = 1e-6
 Two sensors differ by their noise, a hundred times that at least."""
 
 
-def copies(y: FloatArray) -> dict[int, int]:
+def duplicate_channels(y: FloatArray) -> dict[int, int]:
     """Return the rows that repeat an earlier one, and which.
 
     Parameters
@@ -24,7 +24,7 @@ def copies(y: FloatArray) -> dict[int, int]:
     --------
     >>> rng = np.random.default_rng(1)
     >>> a, b = rng.standard_normal((2, 1000))
-    >>> copies(np.array([a, b, a + 3.0, -b]))
+    >>> duplicate_channels(np.array([a, b, a + 3.0, -b]))
     {2: 0}
     """
     size = np.nanstd(y, axis=1)

@@ -33,7 +33,7 @@ STEEL = (Parameter("rayleigh_ratio", 1e-4, 0.03, "-"), Parameter("rayleigh_frequ
 
 
 @dataclass(frozen=True)
-class Extras:
+class NuisanceParameters:
     """Free parameters beside those of the support law.
 
     Attributes

@@ -12,8 +12,8 @@ from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.structure.model import STEEL, Member, PointMass, Reaction, Section, Structure
 from jackettwin.updating import Residuals, Target, family, joint, support_model
-from jackettwin.updating.feet import TIES, feet, priors_of
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.tie_groups import TIES, priors_of, tie_groups
 
 F1 = 0.1832
 HEAD = np.diag([6e8, 6e8, 4e9, 3e11, 3e11, 6e10])
@@ -39,7 +39,7 @@ def test_at_their_own_stiffness_the_heads_are_themselves(
     jacket15: Assembly, heads: Support, tie: str
 ) -> None:
     model = on_heads(jacket15, heads, tie)
-    theta = np.array([value for k in model.feet.stiffness for value in (k, 1e-4)])
+    theta = np.array([value for k in model.tie_groups.stiffness for value in (k, 1e-4)])
     exact = undamped_modes(build_system(jacket15, heads), 5).frequency_hz
     # a loss factor of 1e-4 and the heads' own 2 % move frequencies by less than 1e-5; with one law for both
     # sides the parts keep their proportion
@@ -54,7 +54,7 @@ def test_the_axial_stiffness_is_the_closed_form(jacket15: Assembly, heads: Suppo
     k, tip, EA, L = 1.6e8, 4.0e8, 2.1e11 * np.pi / 4 * (2.8**2 - 2.68**2), 60.0
     root = np.sqrt(k * EA)
     t, kappa = np.tanh(np.sqrt(k / EA) * L), tip / root
-    found = feet(jacket15.structure, "horizontal-vertical", heads=heads, reference_hz=F1)
+    found = tie_groups(jacket15.structure, "horizontal-vertical", heads=heads, reference_hz=F1)
     # finite elements of the pile
     assert found.stiffness[1] == pytest.approx(root * (t + kappa) / (1 + kappa * t), rel=1e-2)
     # dashpots of eq. (5.4) with ζ = 0.02 lose 4 % at the reference frequency in the soil, less in the steel
@@ -66,9 +66,9 @@ def test_heads_give_priors_where_there_are_none(jacket15: Assembly, heads: Suppo
     model = on_heads(jacket15, heads, "horizontal-vertical", head_priors=True, priors=given)
     known = {p.name: (p.median, p.log_std) for p in model.parameters}
     assert known["k_vertical"] == (3e9, 0.2)
-    assert known["k_horizontal"][0] == pytest.approx(model.feet.stiffness[0])
-    assert known["loss_factor_vertical"][0] == pytest.approx(model.feet.loss_factor[1])
-    assert priors_of(feet(jacket15.structure, "all"), F1) == {}
+    assert known["k_horizontal"][0] == pytest.approx(model.tie_groups.stiffness[0])
+    assert known["loss_factor_vertical"][0] == pytest.approx(model.tie_groups.loss_factor[1])
+    assert priors_of(tie_groups(jacket15.structure, "all"), F1) == {}
 
 
 def test_gradients_on_heads_are_differences(jacket15: Assembly, heads: Support) -> None:
@@ -85,7 +85,7 @@ def test_gradients_on_heads_are_differences(jacket15: Assembly, heads: Support) 
 
 def test_rigid_heads_are_refused(jacket15: Assembly) -> None:
     with pytest.raises(InputError, match="no stiffness that a law could scale"):
-        feet(jacket15.structure, "all", heads=pinned(jacket15.structure))
+        tie_groups(jacket15.structure, "all", heads=pinned(jacket15.structure))
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +117,7 @@ def test_a_monopile_is_numbered_clamped_and_fitted_on_its_pile_head(monopile: As
         highest_mode=5,
     )
     exact = undamped_modes(build_system(monopile, head), 5).frequency_hz
-    k_h, k_v = model.feet.stiffness
+    k_h, k_v = model.tie_groups.stiffness
     found = model.predict(np.array([k_h, 1e-4, k_v, 1e-4]), (1, 2, 4)).poles
     # a loss factor of 1e-4 stiffens the head by as much again up to the second bending mode
     np.testing.assert_allclose(np.abs(found) / (2 * np.pi), exact[[0, 1, 3]], rtol=2e-4)

@@ -31,7 +31,7 @@ def near_degenerate(frequencies: FloatArray, closer_than: float = NEAR_DEGENERAT
     return np.split(np.arange(frequencies.size), cuts)
 
 
-def follow(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any]) -> IntArray:
+def track_modes(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any]) -> IntArray:
     """Return for each reference mode the index of its successor among the candidates, or −1.
 
     Parameters

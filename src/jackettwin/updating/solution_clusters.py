@@ -1,4 +1,4 @@
-"""Which end points belong together: a valley is one solution, with its extent."""
+"""Which end points belong together: a cluster is one solution, with its extent."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MOST_STEPS = 10_000
 _JUMP = 4.0
 """Followers that move by more than so many steps may have jumped a ridge."""
 _NARROW = 0.05
-"""A solution whose ln θ the cost fixes better than this is a point, not a valley."""
+"""A solution whose ln θ the cost fixes better than this is a point, not a cluster."""
 
 
 def gather(
@@ -29,12 +29,12 @@ def gather(
     known: list[tuple[End, int]] | None = None,
     most_steps: int = _MOST_STEPS,
 ) -> tuple[list[tuple[End, int]], bool]:
-    """Return one end point a valley, lowest first, and how many ended in it; and whether all were compared.
+    """Return one end point a cluster, lowest first, and how many ended in it; and whether all were compared.
 
     Parameters
     ----------
     ends : end points and how many searches each stands for
-    known : valleys gathered before, known to be distinct
+    known : clusters gathered before, known to be distinct
     most_steps : of all walks between them
     """
     before = known or []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.twin.turned_sensors import turned_sensors
+from jackettwin.twin.sensor_polarity import sensor_polarity
 
 FREQUENCY = np.array([0.17, 0.18, 0.55, 0.75, 0.79])
 HEIGHTS = np.array([1.0, 0.5, 0.25, 0.12])
@@ -38,7 +38,7 @@ def measured(shapes: np.ndarray, rng: np.random.Generator) -> tuple[ModalEstimat
 def test_a_turned_sensor_is_found(i: int, rng: np.random.Generator) -> None:
     shapes = SHAPES.copy()
     shapes[i] *= -1.0
-    (found,) = turned_sensors(measured(shapes, rng), FREQUENCY, SHAPES)
+    (found,) = sensor_polarity(measured(shapes, rng), FREQUENCY, SHAPES)
     assert found.rows == (i,)
     assert found.after > 0.95 > found.before
     assert f"s{i} points the other way" in found.described(tuple(f"s{k}" for k in range(8)))
@@ -47,14 +47,14 @@ def test_a_turned_sensor_is_found(i: int, rng: np.random.Generator) -> None:
 def test_two_turned_sensors_are_found(rng: np.random.Generator) -> None:
     shapes = SHAPES.copy()
     shapes[[1, 4]] *= -1.0
-    found = turned_sensors(measured(shapes, rng), FREQUENCY, SHAPES)
+    found = sensor_polarity(measured(shapes, rng), FREQUENCY, SHAPES)
     assert {one.rows for one in found} == {(1,), (4,)}
 
 
 def test_of_two_sensors_in_one_mode_either_may_be_turned() -> None:
     shape = np.array([1.0, -0.6], dtype=complex)
     mode = ModalEstimate(0.2, 0.01, shape, mpc=1.0, mpd_rad=0.0, order_share=1.0)
-    (found,) = turned_sensors((mode,), np.array([0.2]), np.array([[1.0], [0.6]]))
+    (found,) = sensor_polarity((mode,), np.array([0.2]), np.array([[1.0], [0.6]]))
     assert found.rows == (0, 1)
 
 
@@ -63,8 +63,8 @@ def test_no_sound_sensor_is_blamed_for_a_poor_model() -> None:
     for seed in range(200):
         rng = np.random.default_rng(seed)
         poor = SHAPES * (1.0 + 0.2 * rng.normal(size=SHAPES.shape))
-        assert not turned_sensors(measured(SHAPES, rng), FREQUENCY, poor)
+        assert not sensor_polarity(measured(SHAPES, rng), FREQUENCY, poor)
 
 
 def test_without_modes_nothing_is_said() -> None:
-    assert turned_sensors((), FREQUENCY, SHAPES) == ()
+    assert sensor_polarity((), FREQUENCY, SHAPES) == ()

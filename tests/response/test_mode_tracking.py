@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jackettwin.response.follow import follow, mass_mac
 from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.mode_tracking import mass_mac, track_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import on_translations, pinned
 from jackettwin.soil.viscoelastic import kelvin_voigt, zener
@@ -30,7 +30,7 @@ def test_mac_is_one_with_itself_zero_with_others_and_ignores_scale_and_phase(bas
 def test_a_permutation_is_undone(basis) -> None:
     M, phi = basis
     order = [2, 0, 3, 1]
-    assert list(follow(M, OMEGA, phi, phi[:, order])) == [1, 3, 0, 2]
+    assert list(track_modes(M, OMEGA, phi, phi[:, order])) == [1, 3, 0, 2]
 
 
 def test_a_rotated_pair_is_followed_as_a_subspace(basis) -> None:
@@ -39,7 +39,7 @@ def test_a_rotated_pair_is_followed_as_a_subspace(basis) -> None:
     c, s = np.cos(np.pi / 3), np.sin(np.pi / 3)
     turned = phi.copy()
     turned[:, :2] = phi[:, :2] @ np.array([[c, -s], [s, c]])
-    assert list(follow(M, OMEGA, phi, turned)) == [1, 0, 2, 3]
+    assert list(track_modes(M, OMEGA, phi, turned)) == [1, 0, 2, 3]
 
 
 def test_a_mode_without_kin_is_not_followed(basis, rng) -> None:
@@ -47,8 +47,8 @@ def test_a_mode_without_kin_is_not_followed(basis, rng) -> None:
     foreign = rng.standard_normal(8)
     foreign -= phi @ (phi.T @ (M @ foreign))
     x = np.column_stack([phi[:, 0], phi[:, 1], foreign])
-    assert list(follow(M, OMEGA, phi, x)) == [0, 1, -1, -1]
-    assert list(follow(M, OMEGA, phi, np.empty((8, 0)))) == [-1, -1, -1, -1]
+    assert list(track_modes(M, OMEGA, phi, x)) == [0, 1, -1, -1]
+    assert list(track_modes(M, OMEGA, phi, np.empty((8, 0)))) == [-1, -1, -1, -1]
 
 
 @pytest.mark.parametrize("law_of", [lambda c: kelvin_voigt(1.1e8, c), lambda c: zener(1.1e8, c, 1e12)])
@@ -64,7 +64,7 @@ def test_numbers_hold_from_a_free_to_a_locked_damper(jacket15, law_of) -> None:
     for c in 10.0 ** np.arange(4, 15):
         system = build_system(jacket15, on_translations(structure, law_of(c)), rayleigh=rayleigh)
         modes = damped_modes(system, below_hz=1.2)
-        successor = follow(M, reference.omega, reference.shapes, modes.shapes)[:5]
+        successor = track_modes(M, reference.omega, reference.shapes, modes.shapes)[:5]
         assert (successor >= 0).all()
         assert np.unique(successor).size == 5
         frequency.append(modes.frequency_hz[successor])

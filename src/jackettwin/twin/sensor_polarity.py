@@ -1,7 +1,7 @@
 r"""Sensors that point the other way than the twin says: told by the shapes of its model.
 
 A sensor whose sign is wrong turns its row in every measured shape. Where it holds the share p of a shape, the
-likeness with the model's falls from 1 to :math:`(1-2p)^2`, in every mode; turned back, no mode may suffer.
+subspace MAC with the model falls from 1 to :math:`(1-2p)^2`, in every mode; turned back, none may suffer.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.pairing import likeness_nearby
+from jackettwin.updating.pairing import subspace_mac_nearby
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 LEAST_GAIN = 0.15
-"""Rise of the likeness, summed over the modes, below which nothing is said."""
+"""Rise of the subspace MAC, summed over the modes, below which nothing is said."""
 LIKE = 0.9
 """Likeness that the modes which gain reach at least, turned back."""
 SUFFERS = 0.02
-"""Fall of a mode's likeness that a turned sensor cannot cause."""
+"""Fall of a mode's subspace MAC that a turned sensor cannot cause."""
 ALIKE = 0.05
 """Sensors whose turn gains the same within this cannot be told from each other."""
 LARGEST_SHARE = 3
@@ -38,7 +38,7 @@ class Turned:
     rows : tuple of int
         Of the shapes.
     before, after : float
-        Mean likeness of the modes that gain.
+        Mean subspace MAC of the modes that gain.
     """
 
     rows: tuple[int, ...]
@@ -54,7 +54,7 @@ class Turned:
         )
 
 
-def turned_sensors(
+def sensor_polarity(
     modes: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: FloatArray | ComplexArray
 ) -> tuple[Turned, ...]:
     """Return the sensors whose turned sign would make the measured shapes those of the model.
@@ -71,8 +71,10 @@ def turned_sensors(
     signs = np.ones(n)
     found: list[Turned] = []
     while len(found) < max(n // LARGEST_SHARE, 1):
-        old = likeness_nearby(modes, frequency_hz, signs[:, None] * shapes)
-        tries = [likeness_nearby(modes, frequency_hz, _flip(signs, i)[:, None] * shapes) for i in range(n)]
+        old = subspace_mac_nearby(modes, frequency_hz, signs[:, None] * shapes)
+        tries = [
+            subspace_mac_nearby(modes, frequency_hz, _flip(signs, i)[:, None] * shapes) for i in range(n)
+        ]
         gains = np.array([_gain(old, new) for new in tries])
         best = int(np.argmax(gains))
         if gains[best] < LEAST_GAIN:
