@@ -79,7 +79,7 @@ def test_none_missing_none_extra_and_each_to_1e8(assembly, name: str) -> None:
     refined = np.array([trace_newton(full, value) for value in oscillating])
     refined = refined[np.argsort(np.abs(refined))]
     np.testing.assert_allclose(found.eigenvalues, refined, rtol=1e-8)
-    # dense eig itself knows the slow, sixfold real poles −k/c of a locked damper to 4e-5 or 2e-4, as its LAPACK
+    # dense eig itself knows the slow, sixfold real poles −k/c of a locked damper to 4e-5 or 2e-4, as LAPACK
     # rounds: it counts them, and F itself says whether they are poles
     np.testing.assert_allclose(np.sort(found.real_poles), np.sort(real.real), rtol=1e-3)
     for value in found.real_poles:

@@ -1,0 +1,74 @@
+"""Findings: what is worth saying of a record, a mode, a model or a state, as data.
+
+A finding has a code, a severity, a subject and parameters; its sentence is made from them by the catalogue, so
+that the same finding reads the same on the terminal, in the report, in the store and behind the API.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Severity = Literal["info", "warning", "alarm"]
+Value = float | int | str | bool | None
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What all findings of one code have in common.
+
+    Attributes
+    ----------
+    severity : {"info", "warning", "alarm"}
+        ``info`` needs nobody, ``warning`` limits what may be concluded, ``alarm`` asks for a person.
+    sentence : str
+        A format string over the parameters, without the subject: ``"{share:.2%} of the samples are missing"``.
+    """
+
+    severity: Severity
+    sentence: str
+
+
+CATALOGUE: dict[str, Kind] = {
+    # records
+    "gaps": Kind("info", "{share:.2%} of the samples are missing, at most {longest_s:.3g} s in a row"),
+}
+"""Every code there is, by the package that finds it."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing worth saying.
+
+    Attributes
+    ----------
+    code : str
+        A key of :data:`CATALOGUE`.
+    subject : str or None
+        The channel, mode, record or parameter it concerns; None if it concerns the whole.
+    params : mapping
+        Numbers and names the sentence is made from, SI units.
+    """
+
+    code: str
+    subject: str | None = None
+    params: Mapping[str, Value] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.code not in CATALOGUE:
+            raise KeyError(f"no finding has the code {self.code!r}")
+
+    @property
+    def severity(self) -> Severity:
+        """How much it matters."""
+        return CATALOGUE[self.code].severity
+
+    @property
+    def text(self) -> str:
+        """The sentence, without its subject."""
+        return CATALOGUE[self.code].sentence.format(**self.params)
+
+    def __str__(self) -> str:
+        """The sentence, with its subject."""
+        return self.text if self.subject is None else f"{self.subject}: {self.text}"
