@@ -1,7 +1,7 @@
 """Findings: what is worth saying of a record, a mode, a model or a state, as data.
 
-A finding has a code, a severity, a subject and parameters; its sentence is made from them by the catalogue, so
-that the same finding reads the same on the terminal, in the report, in the store and behind the API.
+A finding has a code, a severity, a subject and parameters; the catalogue makes its sentence from them,
+so that the same finding reads the same on the terminal, in the report, in the store and behind the API.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Kind:
     severity : {"info", "warning", "alarm"}
         ``info`` needs nobody, ``warning`` limits what may be concluded, ``alarm`` asks for a person.
     sentence : str
-        A format string over the parameters, without the subject: ``"{share:.2%} of the samples are missing"``.
+        A format string over the parameters, without subject: ``"{share:.2%} of the samples are missing"``.
     """
 
     severity: Severity
