@@ -33,6 +33,14 @@ class Kind:
 CATALOGUE: dict[str, Kind] = {
     # records
     "gaps": Kind("info", "{share:.2%} of the samples are missing, at most {longest_s:.3g} s in a row"),
+    # identification
+    "steady_tone_near": Kind(
+        "warning", "a steady tone at {frequency_hz:.4g} Hz is too near to trust the damping"
+    ),
+    "tone_passes": Kind(
+        "warning", "a tone passes here, between {low_hz:.4g} and {high_hz:.4g} Hz: distrust the damping"
+    ),
+    "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
 }
 """Every code there is, by the package that finds it."""
 

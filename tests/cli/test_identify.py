@@ -29,7 +29,7 @@ def test_one_record_as_json() -> None:
     assert set(document["modes"][0]["mode_shape"]) == {
         f"acc_{place}_{axis}" for place in ("top", "g77", "g41", "tp") for axis in "xy"
     }
-    assert all(set(r) == {"frequency_hz", "damping_ratio", "reason"} for r in document["rejected"])
+    assert all(set(r) == {"frequency_hz", "damping_ratio", "reason", "status"} for r in document["rejected"])
 
 
 def test_another_method_prints_a_table_and_few_lines() -> None:

@@ -215,6 +215,9 @@ def _print_one(document: Mapping[str, Any]) -> None:
     for m in document["modes"]:
         table.add_row(*_numbers(m), f"{m['mpc']:.3f}", m["status"])
     output.print(table)
+    for m in document["modes"]:
+        if m["status_reason"] is not None:
+            output.print(f"{m['frequency_hz']:.4f} Hz is {m['status']}: {m['status_reason']}", soft_wrap=True)
     if "methods" in document:
         _print_methods(document)
     for pole in document["real_poles"]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.identification.status import ModeStatus, sentence, worse
+
 if TYPE_CHECKING:
+    from jackettwin.findings import Finding
     from jackettwin.identification.picks import Pick
     from jackettwin.records import Channel
 
@@ -51,8 +54,10 @@ class ModalEstimate:
         Least standard deviations of ln f and ln ζ any unbiased method can have, of the fitted spectral model.
     mode_shape_unaligned : (n_channels,) complex or None
         The shape as identified, of a mode whose shape was turned within the plane of a close pair.
-    status : str
-        ``"ok"``, or a sentence on what to distrust.
+    status : ModeStatus
+        ``"ok"``, ``"damping unknown"``, ``"doubtful"`` or ``"not a mode: …"``.
+    reasons : tuple of Finding
+        Why the status is not ``"ok"``.
     """
 
     frequency_hz: float
@@ -62,7 +67,8 @@ class ModalEstimate:
     mpd_rad: float
     order_share: float
     method: str = "ssi-cov"
-    status: str = "ok"
+    status: ModeStatus = ModeStatus.OK
+    reasons: tuple[Finding, ...] = ()
     frequency_std_hz: float | None = None
     damping_ratio_std: float | None = None
     frequency_interval_95: tuple[float, float] | None = None
@@ -73,6 +79,15 @@ class ModalEstimate:
     unrefined: ModalEstimate | None = None
     cramer_rao_log_std: FloatArray | None = None
     mode_shape_unaligned: ComplexArray | None = None
+
+    @property
+    def status_reason(self) -> str | None:
+        """Why the status is not ``"ok"``, as one text; None if it is."""
+        return sentence(self.reasons)
+
+    def flagged(self, status: ModeStatus, reason: Finding) -> ModalEstimate:
+        """Return the mode with one more reason; its status is the worse of the old and the given one."""
+        return replace(self, status=worse(self.status, status), reasons=(*self.reasons, reason))
 
 
 @dataclass(frozen=True)
@@ -111,6 +126,7 @@ class Rejected:
     frequency_hz: float
     damping_ratio: float | None
     reason: str
+    status: ModeStatus = ModeStatus.NOISE
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.findings import Finding
 from jackettwin.identification.estimate import (
     Identification,
     ModalEstimate,
@@ -21,6 +22,7 @@ from jackettwin.identification.estimate import (
     Stabilisation,
 )
 from jackettwin.identification.picks import Pick, plain_picks
+from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Channel
 
 _ARRAYS = ("log_covariance", "mode_shape_std", "cramer_rao_log_std")
@@ -69,7 +71,10 @@ def from_plain(data: dict[str, Any]) -> Identification:
         records=tuple(data["records"]),
         channels=tuple(Channel(**{**c, "direction": tuple(c["direction"])}) for c in data["channels"]),
         modes=tuple(_mode(mode) for mode in data["modes"]),
-        rejected=tuple(Rejected(**rejected) for rejected in data["rejected"]),
+        rejected=tuple(
+            Rejected(**{**rejected, "status": ModeStatus(rejected["status"])})
+            for rejected in data["rejected"]
+        ),
         stabilisation=None,  # type: ignore[arg-type]
         spectrum=None,  # type: ignore[arg-type]
         settings=ResolvedSettings(**{**settings, "orders": tuple(settings["orders"])}),
@@ -96,6 +101,8 @@ def _plain_mode(mode: ModalEstimate) -> dict[str, Any]:
     for name, value in vars(mode).items():
         if isinstance(value, ModalEstimate):
             plain[name] = _plain_mode(value)
+        elif name == "reasons":
+            plain[name] = [asdict(finding) for finding in value]
         elif isinstance(value, np.ndarray):
             plain[name] = [value.real.tolist(), value.imag.tolist()] if _is_shape(name) else value.tolist()
         else:
@@ -110,6 +117,10 @@ def _mode(plain: dict[str, Any]) -> ModalEstimate:
             values[name] = None
         elif isinstance(value, dict):
             values[name] = _mode(value)
+        elif name == "reasons":
+            values[name] = tuple(Finding(**finding) for finding in value)
+        elif name == "status":
+            values[name] = ModeStatus(value)
         elif _is_shape(name):
             values[name] = _complex(value)
         elif name in _ARRAYS:

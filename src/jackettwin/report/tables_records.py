@@ -77,7 +77,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
     rows = [
         (
             words(name) if name else "not in the model",
-            m.status,
+            m.status.value if m.status_reason is None else f"{m.status.value}: {m.status_reason}",
             frequency(m.frequency_hz, m.frequency_std_hz),
             interval(frequency_interval(m), 1.0, 4),
             percent(m.damping_ratio, m.damping_ratio_std),

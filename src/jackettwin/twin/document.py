@@ -291,7 +291,12 @@ def identification_document(found: Identification, quality: dict[str, Any]) -> d
         "records": list(found.records),
         "modes": [mode_document(m, names) for m in found.modes],
         "rejected": [
-            {"frequency_hz": r.frequency_hz, "damping_ratio": r.damping_ratio, "reason": r.reason}
+            {
+                "frequency_hz": r.frequency_hz,
+                "damping_ratio": r.damping_ratio,
+                "reason": r.reason,
+                "status": r.status.value,
+            }
             for r in found.rejected
         ],
         "settings": {
@@ -332,7 +337,9 @@ def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any
         "damping_ratio_interval_95": m.damping_ratio_interval_95,
         "mpc": m.mpc,
         "method": m.method,
-        "status": m.status,
+        "status": m.status.value,
+        "status_reason": m.status_reason,
+        "status_codes": [finding.code for finding in m.reasons],
         "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
         "least_relative_std": {
             "damping_ratio_long_data": m.damping_ratio_cov_limit,

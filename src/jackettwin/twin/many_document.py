@@ -64,6 +64,7 @@ def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
                 "frequency_hz": r.frequency_hz,
                 "damping_ratio": r.damping_ratio,
                 "reason": r.reason,
+                "status": r.status.value,
             }
 
 

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.errors import InputError, located
+from jackettwin.findings import Finding
 from jackettwin.identification import Identification, IdentificationSettings, identify
 from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
+from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.findings import ChannelQuality
@@ -111,8 +113,9 @@ def _beside_orders(found: Identification, orders: tuple[RotorOrder, ...]) -> Ide
     for mode in found.modes:
         half = mode.damping_ratio * mode.frequency_hz
         passing = [o for o in orders if o.low_hz - half < mode.frequency_hz < o.high_hz + half]
-        if passing and mode.status == "ok":
-            mode = replace(mode, status=f"{passing[0].order}P of the rotor passes here: distrust the damping")
+        if passing:
+            order = Finding("rotor_order_passes", params={"order": passing[0].order})
+            mode = mode.flagged(ModeStatus.DOUBTFUL, order)
         modes.append(mode)
     return replace(found, modes=tuple(modes), warnings=(*notes, *found.warnings))
 

@@ -44,7 +44,7 @@ def test_a_tone_as_strong_as_the_channel_is_not_a_mode(tower, rng, ratio):
         if abs(f_tone - mode.frequency_hz) > 6.0 * mode.damping_ratio * mode.frequency_hz:
             assert nearest.damping_ratio == pytest.approx(mode.damping_ratio, rel=0.05)
             continue
-        assert "tone" in nearest.status
+        assert "tone" in nearest.status_reason
         low, high = nearest.damping_ratio_interval_95
         assert low < tower.damping_ratio[np.argmin(np.abs(tower.frequency_hz - mode.frequency_hz))] < high
 
@@ -106,7 +106,7 @@ def test_a_tone_within_a_mode_flags_it_and_is_no_mode(rng, amplitude, half_bandw
     direction = np.array([0.6, 1.0, -0.5, 0.9])[:, None] * record.data.std(axis=1, keepdims=True)
     wave = np.sqrt(2.0) * amplitude * direction * np.sin(2.0 * np.pi * tone_hz * t + 0.7)
     first, second = identify(replace(record, data=record.data + wave)).modes
-    assert "tone" in first.status
+    assert "tone" in first.status_reason
     assert second.status == "ok"
     for mode, truth in zip((first, second), zeta, strict=True):
         low, high = mode.damping_ratio_interval_95

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.drifting_tones import tone_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
@@ -85,7 +87,8 @@ class Candidate:
     def rejected(self) -> Rejected:
         """The candidate with the reason it was left out."""
         reason = self.objection or self.doubt or ""
-        return Rejected(self.mode.frequency_hz, self.mode.damping_ratio, reason)
+        status = ModeStatus.TONE if self.is_tone else ModeStatus.NOISE
+        return Rejected(self.mode.frequency_hz, self.mode.damping_ratio, reason, status)
 
 
 def candidates(
@@ -169,8 +172,12 @@ def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -
     if not near:
         return mode
     low, high = near[0]
-    tone = f"a steady tone at {low:.4g} Hz" if low == high else f"a tone between {low:.4g} and {high:.4g} Hz"
-    mode = replace(mode, status=f"{tone} is too near to trust the damping")
+    tone = (
+        Finding("steady_tone_near", params={"frequency_hz": low})
+        if low == high
+        else Finding("tone_passes", params={"low_hz": low, "high_hz": high})
+    )
+    mode = mode.flagged(ModeStatus.DOUBTFUL, tone)
     if mode.log_covariance is None:
         return mode
     return with_covariance(mode, TONE_WIDENING**2 * mode.log_covariance)

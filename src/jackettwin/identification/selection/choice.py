@@ -15,6 +15,7 @@ from jackettwin.identification.maximum_likelihood.mode_drift import long_data_li
 from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.selection.candidates import beside_tones, with_covariance
+from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -175,7 +176,7 @@ def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
     found = [(f, steady) for f in ready.tones_hz]
     found += [(0.5 * sum(tone.swept_hz), drifting) for tone in ready.drifting]
-    return [Rejected(f, None, reason) for f, reason in sorted(found) if low < f < high]
+    return [Rejected(f, None, reason, ModeStatus.TONE) for f, reason in sorted(found) if low < f < high]
 
 
 def _hidden(judged: Sequence[Candidate], found: Choice) -> list[str]:
