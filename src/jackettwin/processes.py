@@ -1,15 +1,24 @@
-"""Processes that share a job: one BLAS thread each, deaf to Ctrl-C, gone when the job ends."""
+"""Processes that share a job: one BLAS thread each, deaf to Ctrl-C, gone with the job or the parent."""
 
 from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
+from typing import TypeVar
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_AHEAD = 2
+"""Items handed out for every worker: the others are not even opened."""
+_ORPHANED = 1
+"""Exit code of a worker whose parent died."""
 
 
 @contextmanager
@@ -18,12 +27,65 @@ def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
     They are spawned, not forked: a forked child shares locks and BLAS threads it cannot use.
     """
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_ignore_interrupt)
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepare_worker)
     with _one_thread_each():
         try:
             yield pool
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def in_processes(work: Callable[[T], R], items: Sequence[T], workers: int) -> Iterator[tuple[int, R | None]]:
+    """Yield position and result of every item as they come; None for one that takes its process with it.
+
+    A process that ends abruptly (out of memory, a crash in a library) breaks its pool. The items under way
+    are then run once more, each in a process of its own, so that only the one to blame is lost. A bounded
+    number of items is under way.
+    """
+    waiting = iter(range(len(items)))
+    broken = True
+    while broken:
+        lost: list[int] = []
+        yield from _until_broken(work, items, waiting, workers, lost)
+        for i in lost:
+            yield i, _alone(work, items[i])
+        broken = bool(lost)
+
+
+def _until_broken(
+    work: Callable[[T], R], items: Sequence[T], waiting: Iterator[int], workers: int, lost: list[int]
+) -> Iterator[tuple[int, R]]:
+    """Yield results until all are there or the pool breaks; then ``lost`` holds what was under way."""
+    under_way: dict[Future[R], int] = {}
+    with worker_pool(workers) as pool:
+        while True:
+            for i in waiting:
+                try:
+                    under_way[pool.submit(work, items[i])] = i
+                except BrokenExecutor:
+                    lost.extend([*under_way.values(), i])
+                    return
+                if len(under_way) >= _AHEAD * workers:
+                    break
+            if not under_way:
+                return
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                if isinstance(future.exception(), BrokenExecutor):
+                    lost.append(under_way.pop(future))
+                else:
+                    yield under_way.pop(future), future.result()
+            if lost:
+                lost.extend(under_way.values())
+                return
+
+
+def _alone(work: Callable[[T], R], item: T) -> R | None:
+    """Return the result of one item in a process of its own; None if the process ends abruptly."""
+    with worker_pool(1) as pool:
+        try:
+            return pool.submit(work, item).result()
+        except BrokenExecutor:
+            return None
 
 
 @contextmanager
@@ -39,6 +101,21 @@ def _one_thread_each() -> Iterator[None]:
                 del os.environ[name]
 
 
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the parent: a child that dies with the queue's lock in hand hangs its brothers."""
+def _prepare_worker() -> None:
+    """Leave Ctrl-C to the parent, and end with it."""
+    # a child that dies with the queue's lock in hand hangs its brothers
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent's end, and end this process then, whatever it is doing.
+
+    A worker waits for work on a pipe whose other end it holds itself, so it never learns that nobody is left
+    to send any. The parent's sentinel becomes ready when the parent is gone, also by ``kill -9``, on every
+    platform. ``PR_SET_PDEATHSIG`` would not do: it tells of the end of the thread that started the worker.
+    """
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(_ORPHANED)

@@ -94,3 +94,14 @@ def test_fused_frequencies_are_within_one_per_cent(results, asset):
         for mode, label in zip(pair(fused.modes, true, labels), labels, strict=True):
             low, high = mode.frequency_interval_95
             assert abs(mode.frequency_hz / true[label][0] - 1.0) < 0.01 or low < true[label][0] < high
+
+
+@pytest.mark.parametrize("name", np.random.default_rng(13).choice(RIGID, 3, replace=False))
+def test_one_channel_at_a_time(name):
+    """A single sensor is a record, too: it shows the first mode of its direction at least."""
+    record = read_record(str(RECORDS / f"{name}.parquet")).of_quantity("acceleration")
+    lowest = min(f for f, _ in truth(name).values())
+    for channel in np.random.default_rng(13).choice(record.channel_names, 2, replace=False):
+        found = identify(record.select([channel]))
+        # ten minutes leave 1 % of the wide first peak's frequency, three times that is far
+        assert min(abs(m.frequency_hz / lowest - 1.0) for m in found.modes) < 0.03

@@ -16,7 +16,7 @@ from jackettwin.files import json_pieces
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import read_record, write_record
-from jackettwin.twin import many
+from jackettwin.twin import many, observe
 from jackettwin.twin.export import export_modes
 from jackettwin.twin.many import Batch, observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -62,6 +62,23 @@ def test_a_broken_record_stops_nothing(batch: Batch) -> None:
     assert "r9.parquet" in batch.failed[0].problem
 
 
+def test_a_fault_of_ours_in_one_record_stops_nothing(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever is raised: alone such a record shows the traceback, in a batch its reason."""
+
+    def broken(file: Path, *rest, **more):
+        if file.stem == "r1":
+            raise FloatingPointError("underflow")
+        return observe(file, *rest, **more)
+
+    monkeypatch.setattr(many, "observe", broken)
+    files = [folder / "r0.parquet", folder / "r1.parquet"]
+    found = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
+    assert [s.identification.records[0] for s in found] == ["r0"]
+    assert "FloatingPointError: underflow" in found.failed[0].problem
+
+
 def test_processes_give_the_same_as_one(folder: Path, tmp_path: Path, batch: Batch) -> None:
     files = [folder / "r0.parquet", folder / "r9.parquet", folder / "r1.parquet"]
     again = observe_many(files, SETTINGS, folder=tmp_path, workers=2)
@@ -101,9 +118,9 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
 
 
 def counted(function, started: list[str]):
-    def one(file: Path, *rest):
+    def one(work, file: Path):
         started.append(file.name)
-        return function(file, *rest)
+        return function(work, file)
 
     return one
 

@@ -75,7 +75,8 @@ def follow_twin(
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     assembly = assembled(config)
     found = measure(new, assembly, numbered_modes(assembly, PAIRED_MODES), step=step)
-    warnings = [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
+    warnings = [f"left out: {one.problem}" for one in found.failed]
+    warnings += [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
     followed = follow_modes(
         config, assembly, _record_modes(new, found), law=law, each=each, prior=prior, step=step
     )
@@ -144,7 +145,7 @@ def _record_modes(config: TwinConfig, found: Measured) -> list[RecordModes]:
             )
         records.append(
             RecordModes(
-                config.records[i].stem,
+                seen.record.name,
                 start,
                 found.of_record(i),
                 placed_sensors(config, seen.record),

@@ -12,8 +12,8 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from jackettwin.files.json import null_for_nan
 from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
-from jackettwin.processes import worker_pool
+from jackettwin.processes import in_processes
 from jackettwin.records.readers import FORMATS, description_file
 from jackettwin.records.readers.table import Unsaid
 from jackettwin.twin.observe import Observation, observe
@@ -31,8 +31,7 @@ from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 6
 """Fewer records are done sooner than other processes are started."""
-_AHEAD = 2
-"""Records handed out for every worker: the others are not even opened."""
+_DIED = "the process that worked on it ended abruptly, twice: out of memory?"
 
 
 @dataclass(frozen=True)
@@ -60,6 +59,16 @@ class Failed:
 
     record: str
     problem: str
+
+
+def failure(file: Path, error: Exception) -> Failed:
+    """Return a record that could not be identified, with the reason: the input, or a fault of ours."""
+    ours = (
+        ""
+        if isinstance(error, JackettwinError)
+        else f"{file}: a fault of jackettwin, {type(error).__name__}: "
+    )
+    return Failed(str(file), f"{ours}{error}")
 
 
 @dataclass(frozen=True)
@@ -186,28 +195,19 @@ def _computed(
     n_workers = min(workers or os.cpu_count() or 1, len(left))
     if n_workers < 2 or (workers is None and len(left) < FEWEST_FOR_PROCESSES):
         for i in left:
-            yield i, _one(files[i], work)
+            yield i, _one(work, files[i])
         return
-    under_way: dict[Future[Seen | Failed], int] = {}
-    waiting = iter(left)
-    with worker_pool(n_workers) as pool:
-        while True:
-            for i in waiting:
-                under_way[pool.submit(_one, files[i], work)] = i
-                if len(under_way) >= _AHEAD * n_workers:
-                    break
-            if not under_way:
-                return
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                yield under_way.pop(future), future.result()
+    for k, result in in_processes(partial(_one, work), [files[i] for i in left], n_workers):
+        yield left[k], result or Failed(str(files[left[k]]), _DIED)
 
 
-def _one(file: Path, work: _Work) -> Seen | Failed:
+def _one(work: _Work, file: Path) -> Seen | Failed:
+    """Return what a record shows, or why it shows nothing, whatever went wrong."""
     try:
         seen = observe(file, work.settings, drop_dead=work.drop_dead, picks=work.picks, unsaid=work.unsaid)
         return kept(seen)
-    except JackettwinError as error:
-        return Failed(str(file), str(error))
+    except Exception as error:  # one record must not end a batch; alone it shows the traceback
+        return failure(file, error)
 
 
 def _place(folder: Path, file: Path, work: _Work) -> Path:

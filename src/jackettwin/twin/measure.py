@@ -14,6 +14,7 @@ from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
+from jackettwin.twin.many import Failed, failure
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Target
@@ -43,6 +44,7 @@ class Measured:
     numbers : for each record, the mode number of each identified mode; None if the model lacks it
     relaxations : for each record, the real poles it shows
     turned : what the model's shapes say against the signs of sensors
+    failed : records that could not be identified, and why; the others go on without them
     """
 
     observations: tuple[Observation, ...]
@@ -51,6 +53,7 @@ class Measured:
     numbers: tuple[tuple[int | None, ...], ...]
     relaxations: tuple[tuple[GivenRelaxation, ...], ...] = ()
     turned: tuple[str, ...] = ()
+    failed: tuple[Failed, ...] = ()
 
     def of_record(self, i: int) -> dict[int, Sighting]:
         """Return the modes seen in one record, {mode number: sighting}."""
@@ -71,19 +74,9 @@ def measure(
     Raises
     ------
     InputError
-        If a record cannot be read or identified, or a sensor and a channel disagree; names file and field.
+        If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
-    observations = []
-    for i, path in enumerate(config.records):
-        step(f"identify {path.name}")
-        seen = observe(
-            path,
-            config.identification,
-            sensors=config.sensors,
-            picks=config.picks,
-            compare=compare and i == 0,
-        )
-        observations.append(seen)
+    observations, failed = _observed(config, compare=compare, step=step)
     sightings: dict[int, list[Sighting]] = {}
     numbers = []
     turned: list[str] = []
@@ -112,7 +105,37 @@ def measure(
         tuple(numbers),
         tuple(_relaxations(seen.identification) for seen in observations),
         tuple(turned),
+        failed,
     )
+
+
+def _observed(
+    config: TwinConfig, *, compare: bool, step: Callable[[str], None]
+) -> tuple[list[Observation], tuple[Failed, ...]]:
+    """Return what the records show, and those that show nothing; the error of the first if none does."""
+    observations: list[Observation] = []
+    failed: list[Failed] = []
+    first: Exception | None = None
+    for path in config.records:
+        step(f"identify {path.name}")
+        try:
+            seen = observe(
+                path,
+                config.identification,
+                sensors=config.sensors,
+                picks=config.picks,
+                compare=compare and not observations,
+            )
+        except Exception as error:  # of many records, one that fails must not stop the others
+            if not path.exists():
+                raise
+            first = first or error
+            failed.append(failure(path, error))
+        else:
+            observations.append(seen)
+    if first is not None and not observations:
+        raise first
+    return observations, tuple(failed)
 
 
 def _relaxations(found: Identification) -> tuple[GivenRelaxation, ...]:

@@ -81,6 +81,7 @@ def cautions(
     """Return what the reader should beware of."""
     lines = []
     if found is not None:
+        lines += [f"left out: {one.problem}" for one in found.failed]
         for seen in found.observations:
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]

@@ -201,3 +201,23 @@ def test_damping_under_one_bent_force_is_as_sharp_as_the_record_allows_and_no_sh
     assert len(sharpness) == 20
     assert inside >= 16
     assert 0.8 < np.median(sharpness) < 1.6
+
+
+def test_a_single_channel_has_nothing_to_lag_behind(tower, rng):
+    """Its modes are fitted in narrow bands as well, shapes of one number, and stay where they are."""
+    y = simulate(tower, rng, sample_rate_hz=RATE).data[1:2]
+    f, zeta = tower.frequency_hz[[0, 2]], tower.damping_ratio[[0, 2]]
+    (low, _) = groups(f, np.array([True, True]), (0.2, 2.0))
+    fit = refine_group(
+        y / y.std(),
+        RATE,
+        low,
+        frequency_hz=f,
+        damping_ratio=zeta,
+        shapes=np.ones((2, 1)),
+        sure=np.array([True, True]),
+        derivatives=[0],
+    )
+    assert fit.converged
+    assert fit.shapes.shape == (1, 1)
+    assert abs(np.log(fit.frequency_hz[0] / f[0])) < 3.0 * np.sqrt(fit.covariance[0, 0, 0])

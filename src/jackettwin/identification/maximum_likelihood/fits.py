@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.errors import NumericalError
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import strayed
 from jackettwin.identification.maximum_likelihood.refinement import Refined, refine
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+BREAKDOWNS = (ArithmeticError, ValueError, NumericalError, RuntimeWarning)
+"""What a fit that breaks down raises, ``LinAlgError`` among the value errors: a reason to keep what the
+subspace method found, never to lose the record."""
 MOST_LACK_OF_FIT = 1.4
 """Mean square of the misfit over its expectation up to which a fit of the whole band is believed;
 records that are what the model says have 0.8 to 1.1."""
@@ -153,9 +157,13 @@ def _given(start: Start) -> dict[str, Any]:
 def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: float) -> _Tried:
     none = np.zeros(len(start.sure), dtype=bool)
     try:
-        refined = fit()
-    except np.linalg.LinAlgError:
-        return _Tried(None, none, "the arithmetic of the fit broke down")
+        # what overflows is found by its result
+        with np.errstate(all="ignore"):
+            refined = fit()
+    except BREAKDOWNS as error:
+        return _Tried(None, none, f"the arithmetic of the fit broke down ({type(error).__name__})")
+    if not _finite(refined):
+        return _Tried(None, none, "the arithmetic of the fit broke down (not a number)")
     if not refined.converged:
         return _Tried(None, none, "the fit of the spectral model did not converge")
     if refined.lack_of_fit > most:
@@ -175,6 +183,13 @@ def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: fl
     )
     none[refined.candidate[lost]] = True
     return _Tried(refined, none)
+
+
+def _finite(refined: Refined) -> bool:
+    """Tell whether a fit is of numbers, variances above zero among them."""
+    numbers = (getattr(refined, name) for name in OF_EACH_MODE)
+    variances = np.diagonal(refined.covariance, axis1=1, axis2=2)
+    return all(np.isfinite(x).all() for x in numbers) and bool(np.all(variances > 0.0))
 
 
 def _believed(tried: _Tried, candidates: BoolArray) -> Believed:

@@ -185,7 +185,8 @@ def _beside(
         np.vstack([narrow.shapes, unit]),
         len(narrow.shapes),
     )
-    return replace(first, lag=np.zeros_like(unit))
+    # one channel has nothing to lag behind: its phase is that of the mode, which no spectrum knows
+    return replace(first, lag=np.zeros_like(unit)) if unit.shape[1] > 1 else first
 
 
 def _result(

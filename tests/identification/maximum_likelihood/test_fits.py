@@ -1,0 +1,67 @@
+"""A fit that breaks down costs the refinement, never the record."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import NumericalError
+from jackettwin.identification import identify
+from jackettwin.identification.maximum_likelihood import fits
+from jackettwin.identification.synthetic import simulate
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        np.linalg.LinAlgError("singular"),
+        ValueError("non-broadcastable"),
+        FloatingPointError("underflow"),
+        NumericalError("no digits left"),
+        RuntimeWarning("ill-conditioned"),
+    ],
+)
+def test_what_breaks_down_leaves_the_modes_as_the_subspace_method_found_them(error, tower, rng, monkeypatch):
+    def broken(*args, **more):
+        raise error
+
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    monkeypatch.setattr(fits, "refine", broken)
+    monkeypatch.setattr(fits, "refine_group", broken)
+    found = identify(record)
+    assert len(found.modes) == 4
+    assert {mode.method for mode in found.modes} == {"ssi-cov"}
+    assert any(f"broke down ({type(error).__name__})" in text for text in found.warnings)
+
+
+def test_a_result_that_is_no_number_is_not_believed(tower, rng, monkeypatch):
+    def with_a_hole(fit):
+        def wrapped(*args, **more):
+            refined = fit(*args, **more)
+            refined.frequency_hz[0] = np.nan
+            return refined
+
+        return wrapped
+
+    record = simulate(tower, rng, sample_rate_hz=5.0)
+    monkeypatch.setattr(fits, "refine", with_a_hole(fits.refine))
+    monkeypatch.setattr(fits, "refine_group", with_a_hole(fits.refine_group))
+    found = identify(record)
+    assert {mode.method for mode in found.modes} == {"ssi-cov"}
+    assert any("broke down (not a number)" in text for text in found.warnings)
+
+
+def test_overflow_inside_a_fit_is_no_warning(tower, rng, monkeypatch):
+    whole = fits.refine
+
+    def overflowing(*args, **more):
+        np.exp(np.array([1e3]))
+        return whole(*args, **more)
+
+    monkeypatch.setattr(fits, "refine", overflowing)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = identify(simulate(tower, rng, sample_rate_hz=5.0))
+    assert {mode.method for mode in found.modes} == {"maximum likelihood"}

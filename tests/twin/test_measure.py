@@ -1,0 +1,62 @@
+"""Records to measured modes: one that fails is listed, the others count."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.twin import measure as module
+from jackettwin.twin import read_twin
+from jackettwin.twin.assembled import assembled
+from jackettwin.twin.config import PAIRED_MODES, TwinConfig
+from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.narrative import cautions
+from jackettwin.updating import numbered_modes
+
+
+def measured(config: TwinConfig) -> Measured:
+    assembly = assembled(config)
+    return measure(config, assembly, numbered_modes(assembly, PAIRED_MODES), step=lambda _: None)
+
+
+@pytest.fixture
+def config() -> TwinConfig:
+    twin = read_twin("openfast_pile")
+    return replace(twin, records=twin.records[:2])
+
+
+def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"not a parquet file")
+    found = measured(replace(config, records=(broken, config.records[0])))
+    assert [seen.record.name for seen in found.observations] == [config.records[0].stem]
+    assert found.sightings
+    assert "broken.parquet" in found.failed[0].problem
+    assert cautions(config, found, (), ())[0].startswith("left out: ")
+
+
+def test_a_fault_of_ours_costs_one_record(config: TwinConfig, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = module.observe
+
+    def faulty(path: Path, *rest, **more):
+        if path == config.records[1]:
+            raise ValueError("shapes disagree")
+        return whole(path, *rest, **more)
+
+    monkeypatch.setattr(module, "observe", faulty)
+    found = measured(config)
+    assert len(found.observations) == 1
+    assert "ValueError: shapes disagree" in found.failed[0].problem
+
+
+def test_without_any_record_the_first_reason_is_raised(config: TwinConfig, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"not a parquet file")
+    with pytest.raises(InputError, match="not readable"):
+        measured(replace(config, records=(broken,)))
+    # a name that is wrong is no record
+    with pytest.raises(InputError, match="no such file"):
+        measured(replace(config, records=(config.records[0], tmp_path / "missing.parquet")))
