@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.superelement import Superelement, fixed_interface_frequencies, superelement
@@ -16,8 +17,9 @@ from jackettwin.soil import own_support
 from jackettwin.structure import Structure, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.eigen import lowest_modes
+from jackettwin.structure.model import PointMass, Reaction
 from jackettwin.structure.rectangles import rectangular_section
-from jackettwin.structure.two_node import BeamSection, beam_matrices
+from jackettwin.structure.two_node import BeamSection, beam_matrices, cable_matrices, two_node_element
 
 # six significant figures are printed
 PRINTED = 2e-6
@@ -245,6 +247,35 @@ def test_an_arbitrary_beam_with_a_tubes_numbers_is_that_tube(tmp_path: Path, fem
     first, second = reduced(tube)[0], reduced(other)[0]
     np.testing.assert_allclose(second.K, first.K, rtol=1e-7, atol=1e-6 * np.abs(first.K).max())
     np.testing.assert_allclose(second.M, first.M, rtol=1e-7, atol=1e-6 * np.abs(first.M).max())
+    # and gravity makes both as soft: P-Δ of any section is that of its axial force
+    softened = [
+        (assemble(deck, gravity=True).stiffness - assemble(deck).stiffness).toarray()
+        for deck in (tube, other)
+    ]
+    lowered = [np.sort(np.linalg.eigvalsh(one)) for one in softened]
+    np.testing.assert_allclose(lowered[1], lowered[0], atol=1e-6 * np.abs(lowered[0]).max())
+    assert lowered[0][0] < -1e3
+
+
+def test_a_weight_on_a_cable_is_a_pendulum() -> None:
+    """Across a cable without pretension stands mg/L, and nothing without gravity."""
+    top, bob, L, m = np.array([0.0, 0.0, 5.0]), np.zeros(3), 5.0, 1000.0
+    K, M = cable_matrices(top, bob, EA=1e9, tension=0.0, mass_per_m=1e-9)
+    # the static solution wants something across and about the bob: 1 kN/m, 1 kN·m
+    hold = np.diag([0.0] * 6 + [1e3, 1e3, 0.0, 1e3, 1e3, 1e3])
+    pendulum = Structure(
+        "pendulum",
+        {"top": (0.0, 0.0, L), "bob": (0.0, 0.0, 0.0)},
+        (),
+        masses=(PointMass("bob", m),),
+        elements=(
+            two_node_element("rope", "cable", ("top", "bob"), K, M),
+            two_node_element("hold", "spring", ("top", "bob"), hold),
+        ),
+        reactions=(Reaction("top"),),
+    )
+    across = [assemble(pendulum, gravity=gravity).stiffness.toarray()[6, 6] for gravity in (False, True)]
+    np.testing.assert_allclose(across, [1e3, 1e3 + m * GRAVITY_M_S2 / L], rtol=1e-9)
 
 
 def test_planes_of_an_arbitrary_beam() -> None:

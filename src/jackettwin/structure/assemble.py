@@ -8,14 +8,15 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
-import scipy.sparse.linalg as spla
 
-from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
+from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
-from jackettwin.structure.masses import lever_arm_stiffness, rigid_body_mass, rigid_transfer
+from jackettwin.structure.gather import of_blocks, of_elements
+from jackettwin.structure.masses import rigid_body_mass, rigid_transfer
 from jackettwin.structure.mesh import Mesh, discretise
 from jackettwin.structure.model import Structure
+from jackettwin.structure.weight import WeightForces, geometric_stiffness, weight_forces
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -34,7 +35,8 @@ class Assembly:
         Gives every node's motion from the independent DOFs (rigid links are eliminated).
     independent : (n_dof,)
         Which of the mesh's DOFs the independent ones are.
-    gravity : bool
+    weight : WeightForces, optional
+        What self-weight presses on; None where gravity does not act.
     """
 
     structure: Structure
@@ -43,7 +45,12 @@ class Assembly:
     mass: sp.csc_array
     expand: sp.csr_array
     independent: IntArray
-    gravity: bool
+    weight: WeightForces | None
+
+    @property
+    def gravity(self) -> bool:
+        """Whether ``stiffness`` holds the geometric part of the self-weight."""
+        return self.weight is not None
 
     @property
     def n_dof(self) -> int:
@@ -78,6 +85,7 @@ def assemble(
     rotary_inertia: bool | None = None,
     subdivide: int | None = None,
     gravity: bool = False,
+    weight: WeightForces | None = None,
 ) -> Assembly:
     """Return the sparse matrices of the free structure.
 
@@ -92,6 +100,8 @@ def assemble(
     gravity : bool
         Add the geometric (P-Δ) stiffness of the self-weight; axial forces from a static solution with the
         reaction nodes clamped.
+    weight : WeightForces, optional
+        The forces to take for that: those of the whole of which this structure is a part.
 
     Raises
     ------
@@ -104,37 +114,22 @@ def assemble(
     ) or theory == "timoshenko"
     mesh = discretise(structure, theory=theory, subdivide=subdivide)
     p, R = mesh.properties, mesh.axes
-    K = _gather(mesh, beam.to_global(beam.stiffness(p), R))
+    K = of_elements(mesh, beam.to_global(beam.stiffness(p), R))
     inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
-    M = _gather(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
+    M = of_elements(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
     K = K + _elements(structure, mesh, "stiffness")
     M = M + _elements(structure, mesh, "mass") + _point_masses(structure, mesh)
     T, independent = _rigid_links(structure, mesh)
     if gravity:
-        K = K + _gravity_stiffness(structure, mesh, K, M, T)
+        weight = weight_forces(structure, mesh, K, M, T) if weight is None else weight
+        K = K + geometric_stiffness(structure, mesh, weight)
     K, M = sp.csc_array(T.T @ K @ T), sp.csc_array(T.T @ M @ T)
-    return Assembly(structure, mesh, K, M, T, independent, gravity)
-
-
-def _gather(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
-    dofs = mesh.element_dofs()
-    rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
-    return sp.coo_array((matrices.ravel(), (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
-
-
-def _blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_array:
-    """Return the sum of dense blocks, each on its own DOFs."""
-    total = sp.dok_array((mesh.n_dof, mesh.n_dof))
-    for dofs, block in blocks:
-        for i, row in enumerate(dofs):
-            for j, column in enumerate(dofs):
-                total[row, column] += block[i, j]
-    return total.tocsc()
+    return Assembly(structure, mesh, K, M, T, independent, weight if gravity else None)
 
 
 def _elements(structure: Structure, mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
     """Return the matrices of the elements that are no tubes."""
-    return _blocks(
+    return of_blocks(
         mesh,
         [
             (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
@@ -148,7 +143,7 @@ def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
     for reaction in structure.reactions:
         if reaction.mass is not None:
             blocks.append((mesh.node_dofs(reaction.node), np.array(reaction.mass)))
-    return _blocks(mesh, blocks)
+    return of_blocks(mesh, blocks)
 
 
 def _rigid_links(structure: Structure, mesh: Mesh) -> tuple[sp.csr_array, IntArray]:
@@ -168,40 +163,3 @@ def _rigid_links(structure: Structure, mesh: Mesh) -> tuple[sp.csr_array, IntArr
     result = sp.csr_array(T.tocsc()[:, keep])
     result.eliminate_zeros()
     return result, np.asarray(keep, dtype=np.intp)
-
-
-def _gravity_stiffness(
-    structure: Structure, mesh: Mesh, K: sp.csc_array, M: sp.csc_array, T: sp.csr_array
-) -> sp.csc_array:
-    """Return the geometric stiffness of the self-weight on all DOFs."""
-    if not structure.reactions:
-        raise InputError(
-            "gravity needs ground under the structure",
-            field="reaction_nodes",
-            value=[],
-            remedy="name the nodes that stand on the ground, or leave gravity out",
-        )
-    downwards = np.tile([0.0, 0.0, -GRAVITY_M_S2, 0.0, 0.0, 0.0], len(mesh.node_names))
-    weight = M @ downwards
-    held = np.concatenate([mesh.node_dofs(name) for name in structure.reaction_nodes])
-    free = np.setdiff1d(np.arange(T.shape[1]), (T[held].nonzero())[1])
-    Tf = sp.csc_array(T[:, free])
-    u = Tf @ spla.spsolve(sp.csc_array(Tf.T @ K @ Tf), Tf.T @ weight)
-    N = beam.axial_force(mesh.properties, mesh.axes, u[mesh.element_dofs()])
-    Kg = _gather(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
-    return sp.csc_array(Kg + _blocks(mesh, _lever_arms(structure, mesh, weight - K @ u)))
-
-
-def _lever_arms(
-    structure: Structure, mesh: Mesh, link_force: FloatArray
-) -> list[tuple[IntArray, FloatArray]]:
-    """Return the rotational stiffness of forces at the end of rigid arms: eccentric masses, rigid links."""
-    blocks = []
-    for body in structure.masses:
-        force = np.array([0.0, 0.0, -body.mass_kg * GRAVITY_M_S2])
-        blocks.append((mesh.node_dofs(body.node)[3:], lever_arm_stiffness(force, np.array(body.cg_offset_m))))
-    for link in structure.rigid_links:
-        arm = np.subtract(structure.nodes[link.follower], structure.nodes[link.leader])
-        force = link_force[mesh.node_dofs(link.follower)[:3]]
-        blocks.append((mesh.node_dofs(link.leader)[3:], lever_arm_stiffness(force, arm)))
-    return blocks

@@ -234,7 +234,8 @@ def _add_beam(
         L = float(np.linalg.norm(b - a))
         K, M = beam_matrices(axes, L, section, E=E, G=G, rho=rho, shear=shear)
         piece = name if pieces == 1 else f"{name}/{k}"
-        parts.elements.append(two_node_element(piece, "beam", pair, K, M))
+        radius = float(np.sqrt(section.I_p / section.A))
+        parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
 
 
 def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:

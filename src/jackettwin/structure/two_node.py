@@ -1,7 +1,7 @@
 r"""Elements that are no tubes, as matrices between two nodes: cables, springs, beams of any section.
 
 They stand in a structure as finished 12×12 matrices: they carry load and weigh, but no wave loads them, no
-code checks them and gravity adds no stiffness to them.
+code checks them. Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ _EACH = 12
 
 @dataclass(frozen=True)
 class TwoNodeElement:
-    """Stiffness and mass between two nodes, on [u, v, w, θx, θy, θz] of each in global axes, (12, 12)."""
+    """Stiffness and mass between two nodes, on [u, v, w, θx, θy, θz] of each in global axes, (12, 12).
+
+    ``polar_radius_m`` is a beam's √(I_p/A): what an axial force does to its torsion.
+    """
 
     name: str
     kind: str
@@ -29,6 +32,7 @@ class TwoNodeElement:
     end: str
     stiffness: Matrix
     mass: Matrix
+    polar_radius_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -49,12 +53,18 @@ class BeamSection:
 
 
 def two_node_element(
-    name: str, kind: str, nodes: tuple[str, str], stiffness: FloatArray, mass: FloatArray | None = None
+    name: str,
+    kind: str,
+    nodes: tuple[str, str],
+    stiffness: FloatArray,
+    mass: FloatArray | None = None,
+    *,
+    polar_radius_m: float = 0.0,
 ) -> TwoNodeElement:
     """Return an element from its matrices in global axes, (12, 12); without mass if None."""
     M = np.zeros((_EACH, _EACH)) if mass is None else mass
     K_rows, M_rows = (tuple(tuple(float(v) for v in row) for row in matrix) for matrix in (stiffness, M))
-    return TwoNodeElement(name, kind, *nodes, K_rows, M_rows)
+    return TwoNodeElement(name, kind, *nodes, K_rows, M_rows, polar_radius_m)
 
 
 def cable_matrices(
