@@ -1,5 +1,7 @@
 """Loads on member ends against closed forms, and against what they leave of a short member."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
 from jackettwin.loads.regular_waves import RegularWave
 from jackettwin.loads.waves import airy_wave, irregular_sea
 from jackettwin.structure import Section, Structure, assemble
-from jackettwin.structure.model import STEEL, Member
+from jackettwin.structure.model import STEEL, Member, Reaction
 
 DEPTH, T, D = 50.0, 10.0, 2.0
 TUBE = Section(D, 0.05)
@@ -139,6 +141,24 @@ def test_waves_on_a_cone_do_work_where_it_stands() -> None:
     wanted += np.trapezoid(p * 2.0 * np.pi * R * np.gradient(R, z), z)
     # rings of half a metre
     assert forces[0, :, 2].sum() == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize("bed", [-30.0, -29.999, -30.001, -29.99, -30.01])
+def test_a_foot_in_the_ground_is_not_pressed_from_below(bed: float) -> None:
+    """The top alone is: −p A, to the centimetre of the stated depth; a free end above the bed stays pressed."""
+    leg = Structure(
+        "leg",
+        {"foot": (0.0, 0.0, -30.0), "top": (0.0, 0.0, -5.0)},
+        (Member("m", "foot", "top", TUBE, TUBE, STEEL),),
+        reactions=(Reaction("foot"),),
+        sea_level_z_m=0.0,
+    )
+    for structure, wanted in ((leg, 1), (replace(leg, reactions=()), 2 if bed <= -30.0 else 1)):
+        ends = member_ends(
+            assemble(structure), EndCoefficients(1.0), Coefficients(), highest_z=0.0, lowest_z=bed
+        )
+        assert ends.points.shape == (wanted, 3)
+        assert ends.points[-1, 2] == -5.0
 
 
 def test_joints_above_the_surface_are_dry() -> None:

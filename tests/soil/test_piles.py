@@ -111,7 +111,8 @@ def test_scour_softens_the_head_and_local_scour_less_than_general() -> None:
         pile_curves(PILE, SoilProfile((Layer(60.0, 10e3, Sand(35.0)),), s)).py[12].force(1.0)
         for s in (Scour(local_m=3.0), Scour(general_m=3.0))
     ]
-    assert capacity[0] < capacity[1]
+    # what lies about a local hole still weighs on the ground below it
+    assert capacity[0] > capacity[1]
 
 
 def test_scour_is_a_shorter_pile_with_a_stick_up() -> None:

@@ -197,6 +197,50 @@ def test_mean_strength_counts_the_clay_above_without_what_is_scoured() -> None:
     assert scoured.mean_strength_pa == pytest.approx(0.5 * (30e3 + 38e3))
 
 
+def test_local_scour_leaves_the_capacity_of_a_linear_recovery() -> None:
+    """σ'_v = γ'(S + 6 D) d/(6 D) below a hole S deep, API's wedge on it; γ'(S + d) from 6 D on.
+
+    A third of a diameter down, S = 1.3 D: the square that was taken here before is 4.5 times less.
+    """
+    D, S, gamma = 2.0, 2.6, 10e3
+    profile = SoilProfile((Layer(50.0, gamma, Sand(35.0)),), Scour(local_m=S))
+    C1, C2, C3 = py_curves.sand_coefficients(35.0)
+    for d in (0.1 * D, D / 3.0, 2.0 * D, 6.0 * D, 9.0 * D):
+        stress = gamma * (S + 6.0 * D) * d / (6.0 * D) if d < 6.0 * D else gamma * (S + d)
+        point = ground_at(profile, S + d, 0, diameter=D)
+        assert point is not None
+        curve = py_curves.sand_py(friction_angle_deg=35.0, stress_pa=point.stress_pa, z=point.depth_m, D=D)
+        wanted = max(3.0 - 0.8 * d / D, 0.9) * min(C1 * d + C2 * D, C3 * D) * stress
+        assert curve.capacity == pytest.approx(wanted)
+
+
+def test_local_scour_recovers_across_layers() -> None:
+    """Straight from the bottom of the hole to what lies over the recovery depth, whatever the layers."""
+    layers = (Layer(4.0, 8e3, Sand(30.0)), Layer(50.0, 11e3, Sand(35.0)))
+    profile = SoilProfile(layers, Scour(general_m=1.0, local_m=2.0))
+    at_recovery = 8e3 * 3.0 + 11e3 * (3.0 + 6.0 - 4.0)
+    for d in (0.0, 0.5, 3.0, 6.0):
+        point = ground_at(profile, 3.0 + d, 0 if d < 1.0 else 1, diameter=1.0)
+        assert point is not None
+        assert point.stress_pa == pytest.approx(at_recovery * d / 6.0)
+
+
+def test_cyclic_clay_is_reduced_over_two_and_a_half_diameters_at_least() -> None:
+    """Soft clay of heavy ground: 6 s_u D/(γ' D + J s_u) is 1.9 D, so z/z_R at 1 D is 1/2.5."""
+    D, z, su, gamma = 2.0, 2.0, 10e3, 13.3e3
+    zone = 6.0 * su * D / (gamma * D + 0.5 * su)
+    assert zone < 2.5 * D
+    clay = {"strength_pa": su, "stress_pa": gamma * z, "z": z, "D": D, "strain_50": 0.01}
+    curve = py_curves.soft_clay_py(**clay, cyclic=True)
+    assert float(curve.force(1.0)) == pytest.approx(0.72 * curve_capacity(clay) * z / (2.5 * D))
+
+
+def curve_capacity(clay: dict[str, float]) -> float:
+    """(3 s_u + σ'_v) D + J s_u z, or 9 s_u D."""
+    su, D, z = clay["strength_pa"], clay["D"], clay["z"]
+    return min((3.0 * su + clay["stress_pa"]) * D + 0.5 * su * z, 9.0 * su * D)
+
+
 def test_linearisation_of_a_curve() -> None:
     curve = Tanh(capacity=1e6, initial_stiffness=1e8)
     assert float(secant_stiffness(curve, 0.0)) == 1e8

@@ -11,6 +11,10 @@ and k points from R_1 to R_2: so the pressure acts on closed bodies. R is with m
 As in OpenFAST's HydroDyn (``AxCp``, ``AxCa``, ``AxCd``; v5, module Morison). Where legs run through, their
 ends cancel; those of braces count as if they stood free in the water: C_p = 1 is an upper bound on a jacket.
 All are 0 by default.
+
+No water reaches a buried end: joints below the bed carry nothing, by HydroDyn's own rule (v5, Morison.f90:
+``Position(3) >= -WtrDpth``). Nor do the feet on the bed, whose legs or piles go on into the ground; HydroDyn's
+files sink them by a millimetre for this.
 """
 
 from __future__ import annotations
@@ -27,12 +31,16 @@ from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.morison import distribution
 from jackettwin.loads.waves import Waves
-from jackettwin.structure import Assembly
+from jackettwin.structure import Assembly, Structure
 
 FloatArray = npt.NDArray[np.float64]
 
 _RING_M = 0.5
 """Length of a ring of a member that widens."""
+_ROUNDING_M = 1e-6
+"""A joint this little below the bed stands on it."""
+_ON_THE_BED_M = 0.011
+"""Depths are stated to the centimetre: a foot this close above the bed stands in it."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,7 @@ def member_ends(
     lowest_z: float,
     exclude_parts: tuple[str, ...] = ("piles",),
 ) -> Ends:
-    """Return the ends of members at joints between two heights [m] from still water."""
+    """Return the ends of members at joints between two heights [m] from still water; the lower is the bed."""
     structure = assembly.structure
     area: dict[str, FloatArray] = {}
     volume: dict[str, FloatArray] = {}
@@ -102,8 +110,7 @@ def member_ends(
             area[node] = area.get(node, np.zeros(3)) + np.pi * R**2 * outward
             volume[node] = volume.get(node, np.zeros(3)) + 2.0 * np.pi / 3.0 * R**3 * outward
     sea = np.array([0.0, 0.0, structure.sea_level_z_m])
-    # 1 cm: a foot on the bed stays in the water whatever the rounding
-    names = [n for n in area if lowest_z - 0.01 <= structure.nodes[n][2] - sea[2] <= highest_z]
+    names = [n for n in area if _is_open(structure, n, lowest_z, highest_z)]
     rows = [assembly.expand[assembly.mesh.node_dofs(name)[:3]] for name in names]
     blank = sp.csr_array((0, assembly.n_dof))
     rings = _rings(assembly, water, exclude_parts)
@@ -118,6 +125,13 @@ def member_ends(
         coefficients=coefficients,
         density_kg_m3=water.density_kg_m3,
     )
+
+
+def _is_open(structure: Structure, node: str, bed_z: float, highest_z: float) -> bool:
+    """Return whether water can reach the ends of members at a node."""
+    z = structure.nodes[node][2] - structure.sea_level_z_m
+    buried = _ON_THE_BED_M if node in structure.reaction_nodes else -_ROUNDING_M
+    return bed_z + buried <= z <= highest_z
 
 
 class _Rings(NamedTuple):

@@ -127,13 +127,19 @@ def ground_at(profile: SoilProfile, z: float, layer: int, *, diameter: float) ->
     depth = z - scour.total_m
     if depth < 0.0:
         return None
-    share = scour.stress_share(depth, diameter)
-    overburden = profile.effective_stress(z) - profile.effective_stress(scour.general_m)
-    stress = float(overburden * share)
+    stress = _stress(profile, depth, scour.recovery_m(diameter))
     soil = profile.layers[layer].soil
     strength = _strength(profile, layer, z)
     mean = _mean_strength(profile, layer, scour.total_m, z) if isinstance(soil, Clay) else 0.0
     return Point(depth, stress, strength, mean, soil)
+
+
+def _stress(profile: SoilProfile, depth: float, recovery: float) -> float:
+    """Return σ'_v [Pa] at ``depth`` below the hole's bottom, linear down to the recovery depth [m]."""
+    scour = profile.scour
+    below = max(depth, recovery)
+    full = profile.effective_stress(scour.total_m + below) - profile.effective_stress(scour.general_m)
+    return float(full) * (depth / below if below > 0.0 else 1.0)
 
 
 def _strength(profile: SoilProfile, layer: int, z: float) -> float:

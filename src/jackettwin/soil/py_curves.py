@@ -22,6 +22,9 @@ MATLOCK_Y = (0.0, 0.1, 0.3, 1.0, 3.0, 8.0)
 MATLOCK_P = (0.0, 0.23, 0.33, 0.50, 0.72, 1.0)
 """y/y50 and p/pu, static: API RP 2GEO (2011) table 2 after Matlock (1970)."""
 
+SHALLOWEST_REDUCED_ZONE = 2.5
+"""Least z_R in pile diameters: API RP 2GEO (2011) section 8.5, RP 2A section 6.8.2."""
+
 
 def subgrade_modulus(friction_angle_deg: float) -> float:
     """Return the initial modulus of subgrade reaction k of submerged sand [N/m³].
@@ -99,7 +102,8 @@ def soft_clay_py(
     """Return Matlock's (1970, OTC 1204) curve with y50 = 2.5 ε50 D.
 
     Cyclic: p stops growing at 0.72 pu (y = 3 y50); above the depth z_R it then falls to 0.72 pu z/z_R at
-    15 y50, where z/z_R = (σ'_v D + J s_u z)/(6 s_u D).
+    15 y50, where z/z_R = (σ'_v D + J s_u z)/(6 s_u D) and z_R is at least 2.5 D (section 8.5: "minimum values
+    of X_R should be about 2.5 pile diameters").
 
     Parameters
     ----------
@@ -122,7 +126,8 @@ def soft_clay_py(
         return CubeRoot(capacity=pu, y50=y50, initial_stiffness=0.23 * pu / (0.1 * y50))
     y, p = np.array(MATLOCK_Y), np.array(MATLOCK_P)
     if cyclic:
-        depth_share = (stress_pa * D + J * strength_pa * z) / (6.0 * strength_pa * D) if strength_pa else 1.0
+        reached = (stress_pa * D + J * strength_pa * z) / (6.0 * strength_pa * D) if strength_pa else 1.0
+        depth_share = min(reached, z / (SHALLOWEST_REDUCED_ZONE * D))
         y = np.array([*MATLOCK_Y[:5], 15.0])
         p = np.array([*MATLOCK_P[:5], 0.72 * min(depth_share, 1.0)])
     return _table(y * y50, p * pu)

@@ -16,8 +16,9 @@ _AT_MOST = 300.0
 class Scour:
     """General scour lowers the whole seabed, local scour is a hole around the pile.
 
-    Under a hole the vertical effective stress grows linearly from zero at its bottom to its value without
-    the hole at ``recovery_diameters`` pile diameters below (API RP 2GEO 2011, section 8.3: 6 D).
+    Under a hole the vertical effective stress σ'_v grows linearly from zero at its bottom to its value without
+    the hole at ``recovery_diameters`` pile diameters below (6 D: API RP 2GEO 2011, section 8.3 and its figure
+    of the overburden reduction depth; DNV-ST-0126).
     """
 
     general_m: float = 0.0
@@ -41,14 +42,13 @@ class Scour:
         """Depth of the hole's bottom below the original mudline [m]."""
         return self.general_m + self.local_m
 
-    def stress_share(self, depth: float, diameter: float) -> float:
-        """Return σ'_v / (σ'_v without the hole) at ``depth`` [m] below the hole's bottom.
+    def recovery_m(self, diameter: float) -> float:
+        """Return how far below the hole's bottom σ'_v has its value without the hole again [m].
 
-        >>> Scour(local_m=2.0).stress_share(3.0, 1.0)
-        0.5
+        >>> Scour(local_m=2.0).recovery_m(1.5)
+        9.0
         """
-        recovery = self.recovery_diameters * diameter
-        return 1.0 if self.local_m == 0.0 or depth >= recovery else depth / recovery
+        return self.recovery_diameters * diameter if self.local_m > 0.0 else 0.0
 
 
 NO_SCOUR = Scour()
