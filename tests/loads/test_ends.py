@@ -145,7 +145,7 @@ def test_waves_on_a_cone_do_work_where_it_stands() -> None:
 
 @pytest.mark.parametrize("bed", [-30.0, -29.999, -30.001, -29.99, -30.01])
 def test_a_foot_in_the_ground_is_not_pressed_from_below(bed: float) -> None:
-    """The top alone is: −p A, to the centimetre of the stated depth; a free end above the bed stays pressed."""
+    """The top alone is, to the centimetre of the stated depth; a free end on the bed is open."""
     leg = Structure(
         "leg",
         {"foot": (0.0, 0.0, -30.0), "top": (0.0, 0.0, -5.0)},
