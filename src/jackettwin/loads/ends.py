@@ -13,8 +13,8 @@ ends cancel; those of braces count as if they stood free in the water: C_p = 1 i
 All are 0 by default.
 
 No water reaches a buried end: joints below the bed carry nothing, by HydroDyn's own rule (v5, Morison.f90:
-``Position(3) >= -WtrDpth``). Nor do the feet on the bed, whose legs or piles go on into the ground; HydroDyn's
-files sink them by a millimetre for this.
+``Position(3) >= -WtrDpth``). Nor do the feet on the bed, whose legs or piles go on into the ground;
+HydroDyn's files sink them by a millimetre for this.
 """
 
 from __future__ import annotations

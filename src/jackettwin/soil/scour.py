@@ -16,9 +16,9 @@ _AT_MOST = 300.0
 class Scour:
     """General scour lowers the whole seabed, local scour is a hole around the pile.
 
-    Under a hole the vertical effective stress σ'_v grows linearly from zero at its bottom to its value without
-    the hole at ``recovery_diameters`` pile diameters below (6 D: API RP 2GEO 2011, section 8.3 and its figure
-    of the overburden reduction depth; DNV-ST-0126).
+    Under a hole the vertical effective stress σ'_v grows linearly from zero at its bottom to its value
+    without the hole at ``recovery_diameters`` pile diameters below (6 D: API RP 2GEO 2011, section 8.3 and
+    its figure of the overburden reduction depth; DNV-ST-0126).
     """
 
     general_m: float = 0.0
