@@ -18,7 +18,7 @@ from jackettwin.files import read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
-from jackettwin.records.readers.table import Unsaid
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import observation_document, observe

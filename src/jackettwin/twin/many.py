@@ -25,7 +25,7 @@ from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.processes import in_processes
 from jackettwin.records.readers import FORMATS, description_file
-from jackettwin.records.readers.table import Unsaid
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.version import __version__
 

@@ -18,7 +18,7 @@ from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.findings import ChannelQuality
 from jackettwin.records.quality import Quality
-from jackettwin.records.readers.table import Unsaid
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor

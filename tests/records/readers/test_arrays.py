@@ -13,7 +13,7 @@ from scipy import io
 from jackettwin.errors import InputError, MissingExtra
 from jackettwin.records import assess, read_record
 from jackettwin.records.readers import hdf5
-from jackettwin.records.readers.table import Unsaid
+from jackettwin.records.readers.channels import Unsaid
 
 ENTRY = '{"quantity": "acceleration", "unit": "g"}'
 BESIDE = f'{{"channels": {{"a": {ENTRY}, "b": {ENTRY}}}}}'

@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record
-from jackettwin.records.readers.table import Unsaid
+from jackettwin.records.readers.channels import Unsaid
 
 
 def read_text(text: str, tmp_path: Path, encoding: str = "utf-8") -> Record:

@@ -3,8 +3,8 @@
 A scalar named like a rate is the rate; a vector named like a time holds the stamps; a text named
 ``description`` is the JSON of a record. A matrix holds one channel along its shorter side, named
 by the list beside it (``channel_names``, ``names``, ``channels``, ``labels``), in the unit or units
-beside it (``units``, ``unit``); further vectors of the common length are channels under their own names,
-others are left out with a remark.
+beside it (``units``, ``unit``); a single vector takes its name from such a list as well. Further vectors
+of the common length are channels under their own names, others are left out with a remark.
 """
 
 from __future__ import annotations
@@ -57,6 +57,8 @@ def table_from_arrays(
     vectors = {key: value for key, value in numbers.items() if value.ndim == 1 and key not in times}
     matrix_key, rows = _matrix_rows(numbers, named)
     vectors, left = _common_length(vectors, len(next(iter(rows.values()))) if rows else None)
+    if not rows:
+        matrix_key, vectors = _one_named(vectors, named)
     rows = rows | vectors
     if not rows:
         raise InputError(
@@ -70,7 +72,8 @@ def table_from_arrays(
     if times:
         _refuse_other_length(times[0], numbers[times[0]], next(iter(rows.values())))
         times_s, start = seconds(numbers[times[0]].astype(np.float64), time_unit(_last(times[0])))
-    found = _units(dict(units or {}), matrix_key, [name for name in rows if name not in vectors], named)
+    listed = [name for name in rows if name not in vectors or matrix_key]
+    found, unit = _units(dict(units or {}), matrix_key, listed, named)
     return Table(
         names=tuple(rows),
         data=np.vstack([np.asarray(row, dtype=np.float64) for row in rows.values()]),
@@ -79,6 +82,7 @@ def table_from_arrays(
         times_s=times_s,
         start_utc=parse_time(named["start_utc"][0]) if named.get("start_utc") else start,
         description=parse_description(named["description"][0]) if named.get("description") else None,
+        unit=unit,
         remarks=left,
     )
 
@@ -135,12 +139,29 @@ def _matrix_rows(numbers: Arrays, named: dict[str, list[str]]) -> tuple[str, Arr
     return key, dict(zip(names, rows, strict=True))
 
 
-def _units(own: dict[str, str], matrix: str, rows: list[str], named: dict[str, list[str]]) -> dict[str, str]:
-    """Return units by channel: of vectors their own, of a matrix one for all or one a row."""
+def _one_named(vectors: Arrays, named: dict[str, list[str]]) -> tuple[str, Arrays]:
+    """Return the array of a single channel, (n, 1) or (n,), under the one name listed beside it."""
+    names = next((named[name] for name in NAME_LISTS if named.get(name)), None)
+    if names is None or len(names) != 1 or len(vectors) != 1:
+        return "", vectors
+    key, vector = next(iter(vectors.items()))
+    return key, {names[0]: vector}
+
+
+def _units(
+    own: dict[str, str], matrix: str, rows: list[str], named: dict[str, list[str]]
+) -> tuple[dict[str, str], str | None]:
+    """Return units by channel, of a matrix one for all or one a row, and that of channels without one.
+
+    One unit beside vectors holds for those that measure a vibration and have none of their own: beside an
+    acceleration may stand a wind speed.
+    """
     listed = next((named[key] for key in UNIT_LISTS if named.get(key)), None)
     listed = listed or ([own[matrix]] if own.get(matrix) else [])
-    if not listed or not rows:
-        return own
+    if not listed:
+        return own, None
+    if not rows:
+        return own, listed[0] if len(listed) == 1 else None
     if len(listed) not in (1, len(rows)):
         raise InputError(
             "units and channels disagree",
@@ -149,7 +170,8 @@ def _units(own: dict[str, str], matrix: str, rows: list[str], named: dict[str, l
             allowed=f"one unit, or {len(rows)}",
             remedy="list one unit a channel",
         )
-    return own | dict(zip(rows, listed * len(rows), strict=False))
+    units = listed if len(listed) == len(rows) else listed * len(rows)
+    return own | dict(zip(rows, units, strict=True)), None
 
 
 def _common_length(vectors: Arrays, length: int | None) -> tuple[Arrays, tuple[str, ...]]:

@@ -36,6 +36,7 @@ class ChannelEntry(Schema):
 
     quantity: str | None = None
     unit: str | None = None
+    gain: float | None = Field(default=None, allow_inf_nan=False)
     height_m: float | None = None
     node: str | int | None = None
     direction: tuple[float, float, float] | None = None

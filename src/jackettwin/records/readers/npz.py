@@ -1,4 +1,4 @@
-"""NumPy archives of named arrays."""
+"""NumPy files: archives of named arrays, and single arrays."""
 
 from __future__ import annotations
 
@@ -20,6 +20,15 @@ def read(path: Path) -> Table:
     # np.load leaves a file open that it opened itself and could not read.
     with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
         return table_from_arrays({key: archive[key] for key in archive.files})
+
+
+def read_single(path: Path) -> Table:
+    """Read a single array: a matrix of channels, a vector, or the named fields of a structured array."""
+    with path.open("rb") as stream:
+        array = np.load(stream, allow_pickle=False)
+    if array.dtype.names:
+        return table_from_arrays({name: array[name] for name in array.dtype.names})
+    return table_from_arrays({"channel": array})
 
 
 def write(record: Record, path: Path) -> None:

@@ -9,8 +9,9 @@ from pathlib import Path
 from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
 from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import description_text, read_description
-from jackettwin.records.readers.table import Table, Unsaid, to_record
+from jackettwin.records.readers.table import Table, to_record
 from jackettwin.records.record import Record
 
 SHARED_DESCRIPTION = "records.json"
@@ -35,6 +36,7 @@ FORMATS = (
     Format("Parquet", (".parquet", ".pq"), parquet.read, parquet.write),
     Format("delimited text", (".csv", ".txt", ".tsv", ".asc"), delimited.read, delimited.write),
     Format("NumPy archive", (".npz",), npz.read, npz.write, json_beside=False),
+    Format("NumPy array", (".npy",), npz.read_single),
     Format("HDF5", (".h5", ".hdf5"), hdf5.read, hdf5.write, json_beside=False),
     Format("MATLAB", (".mat",), matlab.read, matlab.write, json_beside=False),
     Format("universal file", (".uff", ".unv"), uff.read, uff.write),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -12,19 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, did_you_mean
-from jackettwin.quantities import (
-    VIBRATIONS,
-    guess_quantity,
-    names_other,
-    plain_unit,
-    quantity,
-    to_si,
-    vibration_of,
-)
 from jackettwin.records.clock import regularise
+from jackettwin.records.readers.channel_names import told
+from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.sentinels import without_sentinels
-from jackettwin.records.record import LARGEST, Channel, Record
+from jackettwin.records.record import LARGEST, Record
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -34,22 +27,6 @@ FloatArray = npt.NDArray[np.float64]
 
 TIME_NAMES = ("time", "time_s", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit")
 _TIME_UNIT = re.compile(r"^(?P<name>.+?)[_ ]*\(?(?P<unit>ms|us|µs|ns|s)\)?$", re.IGNORECASE)
-_AXIS_SUFFIX = re.compile(r"[_ .\-]([xyz])$", re.IGNORECASE)
-
-
-@dataclass(frozen=True)
-class Unsaid:
-    """What holds for a file that does not say so itself, nor the JSON beside it.
-
-    Attributes
-    ----------
-    sample_rate_hz : float or None
-    unit : str or None
-        Of the channels without a unit: of acceleration, velocity, displacement or another vibration.
-    """
-
-    sample_rate_hz: float | None = None
-    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +44,8 @@ class Table:
         Stamps, if the file has them, from any origin.
     description : Description, optional
         A complete description stored inside the file.
+    unit : str, optional
+        Of the channels without one in ``channels``, as ``Unsaid.unit``.
     remarks : tuple of str
         What the reader did that the user should know; ``metadata["remarks"]`` of the record.
     """
@@ -79,6 +58,7 @@ class Table:
     times_s: FloatArray | None = None
     metadata: Mapping[str, Any] = field(default_factory=dict)
     description: Description | None = None
+    unit: str | None = None
     remarks: tuple[str, ...] = ()
 
 
@@ -218,18 +198,31 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
             allowed="at least 2 samples",
             remedy="export the record again",
         )
-    entries = [_merged(name, table.channels.get(name), (said.channels or {}).get(name)) for name in names]
-    described = [_channel(name, entry, unsaid.unit) for name, entry in zip(names, entries, strict=True)]
+    described = _described(names, table, said, unsaid)
+    from_names = told({one.channel.name: one.from_name for one in described})
+    if from_names:
+        metadata["remarks"] = [*metadata.get("remarks", ()), *from_names]
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
-        data = data * np.array([factor for _, factor in described])[:, None]
+        data = data * np.array([one.factor for one in described])[:, None]
     return Record(
         data=np.where(np.abs(data) <= LARGEST, data, np.nan),
         sample_rate_hz=stated,
-        channels=tuple(channel for channel, _ in described),
+        channels=tuple(one.channel for one in described),
         start_utc=said.start_utc or table.start_utc,
         conditions=dict(said.conditions),
         metadata=metadata,
         name=path.stem,
+    )
+
+
+def _described(
+    names: Sequence[str], table: Table, said: Description, unsaid: Unsaid
+) -> tuple[Described, ...]:
+    if unsaid.unit is None and table.unit is not None:
+        unsaid = replace(unsaid, unit=table.unit)
+    given = said.channels or {}
+    return tuple(
+        described_channel(name, merged(table.channels.get(name), given.get(name)), unsaid) for name in names
     )
 
 
@@ -281,72 +274,3 @@ def _stated_rate(table: Table, said: Description) -> float | None:
             remedy="correct or remove it in the description",
         )
     return given if given is not None else own
-
-
-def _merged(name: str, own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
-    """Return what the file says of a channel, overruled by what the description says: null is "not this"."""
-    own_entry = (own or ChannelEntry()).model_dump(exclude_none=True)
-    return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
-
-
-def _channel(name: str, merged: Mapping[str, Any], unsaid_unit: str | None) -> tuple[Channel, float]:
-    """Return the channel in SI and the factor to it."""
-    unit = plain_unit(merged.get("unit") or "")
-    kind = merged.get("quantity") or guess_quantity(name, unit)
-    if not unit and unsaid_unit is not None and kind in (*VIBRATIONS, "other") and not names_other(name):
-        unit = plain_unit(unsaid_unit)
-        kind = vibration_of(unit) if kind == "other" else kind
-    try:
-        factor, si_unit = _factor(kind, unit)
-        direction = _unit_vector(merged.get("direction") or _direction_in(name, kind))
-    except InputError as error:
-        raise error.at(field=f"channels.{name}") from None
-    node = merged.get("node")
-    channel = Channel(
-        name=name,
-        quantity=kind,
-        unit=si_unit,
-        height_m=merged.get("height_m"),
-        node=None if node is None else str(node),
-        direction=direction,
-        frame=merged.get("frame") or "global",
-    )
-    return channel, factor
-
-
-def _factor(kind: str, unit: str) -> tuple[float, str]:
-    if kind == "other":  # no SI unit to bring it to: numbers and unit stay as they are
-        return 1.0, unit or "-"
-    si_unit = quantity(kind).unit
-    if not unit and si_unit != "-":
-        raise InputError(
-            "unit is missing",
-            field="unit",
-            allowed=f"{si_unit} or another unit of {kind}",
-            remedy="state the unit of the stored numbers in the JSON beside the file (identify: or --unit)",
-        )
-    return to_si(kind, unit or si_unit), si_unit
-
-
-def _direction_in(name: str, kind: str) -> tuple[float, float, float]:
-    """Return the global axis a vibration channel's name ends in (``acc_top_x``), else zeros."""
-    match = _AXIS_SUFFIX.search(name) if kind in VIBRATIONS else None
-    axis = "xyz".index(match[1].lower()) if match else -1
-    return (float(axis == 0), float(axis == 1), float(axis == 2))
-
-
-def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, float]:
-    largest = max(map(abs, direction))
-    if not largest < float("inf"):
-        raise InputError(
-            "is not a direction",
-            field="direction",
-            value=direction,
-            allowed="three finite numbers",
-            remedy="write e.g. [1, 0, 0]",
-        )
-    if largest == 0.0:
-        return (0.0, 0.0, 0.0)
-    length = float(np.linalg.norm(np.array(direction) / largest))
-    x, y, z = (float(part) / largest / length for part in direction)
-    return (x, y, z)

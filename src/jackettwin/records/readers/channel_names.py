@@ -1,0 +1,147 @@
+"""What a channel's name says of its place and direction: ``ACC_088m_E``, ``TT_FA``, ``LAT097_SS``.
+
+Two tables of patterns, read without regard to case. A name that says two different things says
+nothing. Whatever is taken from a name is told to the user (``told``), and a description overrules it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+Vector = tuple[float, float, float]
+
+_ALONE = r"(?<![a-z0-9])(?<![_\s(]-)(?:{})(?![a-z0-9])"
+"""A word of its own. A minus before an axis (``acc_-x``) is not read: nobody knows whether it is a sign."""
+_LETTERS = r"(?<![a-z])(?:{})(?![a-z])"
+
+DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
+    (_ALONE.format("(?:acc|a|vel|v|disp|u)?x"), (1.0, 0.0, 0.0), "x"),
+    (_ALONE.format("(?:acc|a|vel|v|disp|u)?y"), (0.0, 1.0, 0.0), "y"),
+    (_ALONE.format("(?:acc|a|vel|v|disp|u)?z"), (0.0, 0.0, 1.0), "z"),
+    (_LETTERS.format(r"fa|fore[\s_\-]?aft"), (1.0, 0.0, 0.0), "fore-aft"),
+    (_LETTERS.format(r"ss|sts|s2s|side[\s_\-]?(?:to[\s_\-]?)?side"), (0.0, 1.0, 0.0), "side-side"),
+    (_LETTERS.format("vert|vertical|heave"), (0.0, 0.0, 1.0), "vertical"),
+    (r"(?<![a-z])(?:east(?![a-z])|e$)", (1.0, 0.0, 0.0), "east"),
+    (r"(?<![a-z])(?:north(?![a-z])|n$)", (0.0, 1.0, 0.0), "north"),
+    (_LETTERS.format("west"), (-1.0, 0.0, 0.0), "west"),
+    (_LETTERS.format("south"), (0.0, -1.0, 0.0), "south"),
+)
+"""Pattern, unit vector in global axes (x east where a name speaks of compass points), what it is called."""
+
+LAT = "LAT"
+"""Lowest astronomical tide, in names like ``LAT097``: a metre or two below mean sea level."""
+
+HEIGHTS: tuple[tuple[str, str], ...] = (
+    (r"(?<![a-z])lat[\s_]?(?P<m>[+\-]?\d{1,3}(?:[.,]\d+)?)(?!\d)", LAT),
+    (
+        r"(?<![a-z0-9.,])(?:h|z|el|elev|level|height)?(?P<m>[+\-]?\d{1,3}(?:[.,p]\d+)?)\s?m(?:sl)?(?![a-z0-9/^²])",
+        "",
+    ),
+    (r"(?<![a-z0-9])(?:h|el|elev|height)[\s_]?(?P<m>[+\-]?\d{2,3}(?:[.,p]\d+)?)(?![a-z0-9])", ""),
+)
+"""Pattern with the number of metres as ``m``, and the datum if it is not mean sea level."""
+
+LEVELS: tuple[tuple[str, str], ...] = (
+    (_LETTERS.format(r"tt|tower[\s_]?top|top|nac|nacelle|yaw[\s_]?br(?:g|ng|ing)?"), "tower top"),
+    (_LETTERS.format(r"tm|mid|middle|tower[\s_]?mid"), "tower middle"),
+    (_LETTERS.format(r"tp|transition[\s_]?piece"), "transition piece"),
+    (_LETTERS.format(r"tb|tower[\s_]?(?:bottom|base)|bot|bottom|base"), "tower bottom"),
+)
+"""Pattern and the part of the structure that a name without a height speaks of."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a name says; None where it says nothing, or two different things.
+
+    Attributes
+    ----------
+    direction : unit vector in global axes
+    direction_word : str
+        What the direction is called: ``"fore-aft"``, ``"east"``; empty without one.
+    height_m : float
+        Above mean sea level, as ``datum`` says.
+    datum : str
+        ``"LAT"`` if the name counts from lowest astronomical tide.
+    level : str
+        The part of the structure, ``"tower top"``; empty without one.
+    """
+
+    direction: Vector | None = None
+    direction_word: str = ""
+    height_m: float | None = None
+    datum: str = ""
+    level: str = ""
+
+
+def read_name(name: str) -> Reading:
+    """Return what the name of a channel says of its place and direction.
+
+    Examples
+    --------
+    >>> read_name("ACC_088m_E")
+    Reading(direction=(1.0, 0.0, 0.0), direction_word='east', height_m=88.0, datum='', level='')
+    >>> read_name("LAT097_SS").height_m, read_name("acc_x_77m").direction, read_name("TT_FA").level
+    (97.0, (1.0, 0.0, 0.0), 'tower top')
+    >>> read_name("ss_x").direction is None  # two different things
+    True
+    """
+    lower = name.strip().lower()
+    named = [(vector, word) for pattern, vector, word in DIRECTIONS if re.search(pattern, lower)]
+    agreed = len({vector for vector, _ in named}) == 1
+    heights = {
+        (float(match["m"].replace(",", ".").replace("p", ".")), datum)
+        for pattern, datum in HEIGHTS
+        for match in re.finditer(pattern, lower)
+    }
+    if len({value for value, _ in heights}) > 1:
+        heights = set()
+    height, datum = next(iter(heights), (None, ""))
+    levels = [level for pattern, level in LEVELS if re.search(pattern, lower)]
+    return Reading(
+        direction=named[0][0] if agreed else None,
+        direction_word=named[-1][1] if agreed else "",
+        height_m=height,
+        datum=datum,
+        level=levels[0] if len(set(levels)) == 1 else "",
+    )
+
+
+def told(used: Mapping[str, Reading]) -> tuple[str, ...]:
+    """Return the remark that says what was taken from channels' names; none if it goes without saying.
+
+    A name that ends in the letter of its axis says it plainly and is not repeated.
+
+    Parameters
+    ----------
+    used : mapping
+        Channel name → what of its reading was used.
+    """
+    heights: dict[str, list[str]] = {}
+    directions: dict[str, list[str]] = {}
+    for name, reading in used.items():
+        if reading.height_m is not None:
+            above = " above lowest astronomical tide, taken as mean sea level" if reading.datum == LAT else ""
+            heights.setdefault(f"{reading.height_m:g} m{above}", []).append(name)
+        if reading.direction is not None and reading.direction_word not in ("x", "y", "z"):
+            axis = _axis(reading.direction)
+            directions.setdefault(f"{reading.direction_word} is {axis}", []).append(name)
+    parts = [f"{what} ({_list(names)})" for what, names in (*heights.items(), *directions.items())]
+    if not parts:
+        return ()
+    overrule = "height_m and direction in the JSON beside the file overrule this"
+    return (f"read from the channel names: {'; '.join(parts)}; {overrule}",)
+
+
+def _axis(vector: Vector) -> str:
+    axis = max(range(3), key=lambda i: abs(vector[i]))
+    return f"{'-' if vector[axis] < 0 else '+'}{'xyz'[axis]}"
+
+
+def _list(names: list[str]) -> str:
+    return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")

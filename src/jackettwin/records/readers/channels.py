@@ -1,0 +1,165 @@
+"""One channel as its file, its description and its name say: in SI units, with place and direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.quantities import (
+    VIBRATIONS,
+    guess_quantity,
+    names_other,
+    plain_unit,
+    quantity,
+    to_si,
+    vibration_of,
+)
+from jackettwin.records.readers.channel_names import Reading, read_name
+from jackettwin.records.readers.description import ChannelEntry
+from jackettwin.records.record import Channel
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+RAW_UNITS = ("counts", "count", "cts", "digits", "digit", "lsb", "raw", "adc", "v", "mv", "volt", "volts")
+"""What a converter reads before it is scaled: a gain must say what one of them is worth."""
+STANDING_FOR_RAW = "m/s^2"
+"""Unit of numbers times gain where nobody says it."""
+
+
+@dataclass(frozen=True)
+class Unsaid:
+    """What holds for a file that does not say so itself, nor the JSON beside it.
+
+    Attributes
+    ----------
+    sample_rate_hz : float or None
+    unit : str or None
+        Of the channels without a unit: of acceleration, velocity, displacement or another vibration.
+    gain : float or None
+        What one count (or volt) is worth in that unit, for the channels stored unscaled; without a unit
+        anywhere, of the channels without one as well.
+    timezone : str or None
+        Zone of a clock that does not say it: an IANA name (``Europe/Berlin``) or an offset (``+02:00``).
+    """
+
+    sample_rate_hz: float | None = None
+    unit: str | None = None
+    gain: float | None = None
+    timezone: str | None = None
+
+
+@dataclass(frozen=True)
+class Described:
+    """A channel, the factor that brings its stored numbers to SI, and what was taken from its name."""
+
+    channel: Channel
+    factor: float
+    from_name: Reading
+
+
+def merged(own: ChannelEntry | None, given: ChannelEntry | None) -> dict[str, Any]:
+    """Return what the file says of a channel, overruled by what the description says: null is "not this"."""
+    own_entry = (own or ChannelEntry()).model_dump(exclude_none=True)
+    return own_entry | (given or ChannelEntry()).model_dump(exclude_unset=True)
+
+
+def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> Described:
+    """Return the channel in SI units, placed and directed by its entry, else by its name.
+
+    Raises
+    ------
+    InputError
+        If the unit is missing or wrong, a gain is missing, or the direction is none; names the channel.
+    """
+    try:
+        kind, unit, gain = _measures(name, entry, unsaid)
+        factor, si_unit = _factor(kind, unit)
+        read = _from_name(name, entry, kind)
+        direction = _unit_vector(entry.get("direction") or read.direction or (0.0, 0.0, 0.0))
+    except InputError as error:
+        raise error.at(field=f"channels.{name}") from None
+    node = entry.get("node")
+    channel = Channel(
+        name=name,
+        quantity=kind,
+        unit=si_unit,
+        height_m=entry.get("height_m", read.height_m),
+        node=None if node is None else str(node),
+        direction=direction,
+        frame=entry.get("frame") or "global",
+    )
+    return Described(channel, factor * gain, read)
+
+
+def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str, str, float]:
+    """Return quantity, unit, and the gain that brings the stored numbers to this unit."""
+    unit, gain = plain_unit(entry.get("unit") or ""), entry.get("gain")
+    raw = unit.lower() in RAW_UNITS
+    kind = entry.get("quantity") or guess_quantity(name, "" if raw else unit)
+    could_vibrate = kind in (*VIBRATIONS, "other") and not names_other(name)
+    gain = unsaid.gain if gain is None and could_vibrate and (raw or not unit) else gain
+    if raw and gain is None and kind in VIBRATIONS:
+        raise InputError(
+            "is stored unscaled, and nothing says what one unit is worth",
+            field="gain",
+            value=entry["unit"],
+            allowed=f"a number: {STANDING_FOR_RAW} for one of {entry['unit']}",
+            remedy='write "gain" (and the "unit" it leads to) into the JSON beside the file '
+            "(identify: or --gain, with --unit)",
+        )
+    if could_vibrate and (not unit or raw) and (unsaid.unit is not None or gain is not None):
+        if unsaid.unit is not None or raw:
+            unit = plain_unit(unsaid.unit or STANDING_FOR_RAW)
+        if unit:
+            kind = vibration_of(unit) if kind == "other" else kind
+    return kind, unit, 1.0 if gain is None else float(gain)
+
+
+def _from_name(name: str, entry: Mapping[str, Any], kind: str) -> Reading:
+    """Return what is taken from a vibration channel's name: what its entry does not say."""
+    if kind not in VIBRATIONS:
+        return Reading()
+    read = read_name(name)
+    placed = entry.get("node") is not None or "height_m" in entry
+    return Reading(
+        direction=None if entry.get("direction") else read.direction,
+        direction_word=read.direction_word,
+        height_m=None if placed else read.height_m,
+        datum=read.datum,
+        level=read.level,
+    )
+
+
+def _factor(kind: str, unit: str) -> tuple[float, str]:
+    if kind == "other":  # no SI unit to bring it to: numbers and unit stay as they are
+        return 1.0, unit or "-"
+    si_unit = quantity(kind).unit
+    if not unit and si_unit != "-":
+        raise InputError(
+            "unit is missing",
+            field="unit",
+            allowed=f"{si_unit} or another unit of {kind}",
+            remedy="state the unit of the stored numbers in the JSON beside the file (identify: or --unit)",
+        )
+    return to_si(kind, unit or si_unit), si_unit
+
+
+def _unit_vector(direction: tuple[float, float, float]) -> tuple[float, float, float]:
+    largest = max(map(abs, direction))
+    if not largest < float("inf"):
+        raise InputError(
+            "is not a direction",
+            field="direction",
+            value=direction,
+            allowed="three finite numbers",
+            remedy="write e.g. [1, 0, 0]",
+        )
+    if largest == 0.0:
+        return (0.0, 0.0, 0.0)
+    length = float(np.linalg.norm(np.array(direction) / largest))
+    x, y, z = (float(part) / largest / length for part in direction)
+    return (x, y, z)
