@@ -47,9 +47,20 @@ QUANTITIES: dict[str, Quantity] = {
         "-",
         "strain",
         "ε",
-        (("1", 1.0), ("m/m", 1.0), ("ustrain", 1e-6), ("µstrain", 1e-6), ("um/m", 1e-6), ("µm/m", 1e-6)),
+        (
+            *(("1", 1.0), ("m/m", 1.0), ("strain", 1.0), ("mm/m", 1e-3)),
+            *((unit, 1e-6) for unit in ("ustrain", "µstrain", "microstrain", "um/m", "µm/m", "µε", "ue")),
+        ),
     ),
-    "inclination": Quantity("rad", "inclination", "θ", (("deg", DEGREE), ("°", DEGREE), ("mrad", 1e-3))),
+    "inclination": Quantity(
+        "rad",
+        "inclination",
+        "θ",
+        (
+            *(("deg", DEGREE), ("°", DEGREE), ("mdeg", 1e-3 * DEGREE)),
+            *(("mrad", 1e-3), ("urad", 1e-6), ("µrad", 1e-6)),
+        ),
+    ),
     "wind speed": Quantity("m/s", "wind speed", "U", (("m s-1", 1.0),)),
     "yaw": Quantity("rad", "nacelle yaw", "ψ", (("deg", DEGREE), ("°", DEGREE))),
     "rotor speed": Quantity(

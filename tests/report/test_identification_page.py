@@ -14,9 +14,11 @@ from numpy.testing import assert_allclose
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.records import Channel
+from jackettwin.report.figures_components import shape_components
 from jackettwin.report.figures_measured import Places, measured_shapes_3d
-from jackettwin.report.identification_page import build_identification_page, mode_names
+from jackettwin.report.identification_page import _shapes, build_identification_page, mode_names
 from jackettwin.report.numbers import UNKNOWN
+from jackettwin.report.page import Plot
 from jackettwin.report.tables_records import method_table
 from jackettwin.twin import Observation
 
@@ -35,10 +37,29 @@ def test_channels_of_one_height_move_one_place() -> None:
     assert_allclose(motion, [[-0.25, 0, 0], [0.5, 1.0j, 0]])
 
 
-def test_places_without_height_stand_in_the_order_of_the_channels() -> None:
-    places = Places.of([Channel("a", node="top"), Channel("b", node="top"), Channel("c")])
-    assert not places.known
-    assert places.place.tolist() == [1, 1, 0]
+def test_without_heights_no_tower_is_drawn(assert_units: Callable[[go.Figure], None]) -> None:
+    """One bar a channel, whatever phase the shape came with."""
+    mode = ModalEstimate(0.3, 0.01, np.array([1.0, 0.0, -0.4]) * np.exp(0.7j), 1.0, 0.0, 1.0)
+    figure = shape_components([Channel("a", node="top"), Channel("b"), Channel("c")], [("mode_1", mode)])
+    assert_units(figure)
+    assert [trace.type for trace in figure.data] == ["bar"]
+    assert_allclose(figure.data[0].x, [1.0, 0.0, -0.4], atol=1e-12)
+    assert list(figure.data[0].y) == ["a", "b", "c"]
+
+
+def test_the_page_draws_a_tower_only_with_heights(observation: Observation) -> None:
+    found = observation.identification
+    names = mode_names(observation)
+    (tower,) = _shapes(
+        replace(found, channels=tuple(replace(c, height_m=5.0) for c in found.channels)), names
+    )
+    (bars,) = _shapes(
+        replace(found, channels=tuple(replace(c, height_m=None) for c in found.channels)), names
+    )
+    assert isinstance(tower, Plot)
+    assert isinstance(bars, Plot)
+    assert tower.figure.data[0].type == "scatter3d"
+    assert bars.figure.data[0].type == "bar"
 
 
 def test_the_shapes_move_through_a_cycle(assert_units: Callable[[go.Figure], None]) -> None:

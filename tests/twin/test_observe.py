@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.errors import InputError
 from jackettwin.identification import IdentificationSettings, mac
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, observe
-from jackettwin.twin.observe import _unknown, _unplaced
+from jackettwin.twin.observe import _set_aside, _unknown, _unplaced, moving_channels
 
 RECORDS = files("jackettwin") / "data" / "records"
 
@@ -115,3 +116,26 @@ def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
     strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
     (note,) = _unknown(replace(record, channels=strange))
     assert note.endswith("say what they measure: acc_top_x (mm)")
+
+
+def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
+    record = turned("pile_U12_s301", np.array(0.0))
+    data = record.data[:4].copy()
+    data[1] = 0.25
+    found = seen(replace(record, data=data, channels=record.channels[:4]), tmp_path / "a.parquet")
+    dead = record.channel_names[1]
+    assert found.record.channel_names == (record.channel_names[0], *record.channel_names[2:4])
+    assert [f.channel for f in found.quality.findings if f.fault == "dead"] == [dead]
+    nothing = replace(record, data=np.ones((1, 6000)), channels=record.channels[:1])
+    with pytest.raises(InputError, match="no channel carries a signal"):
+        seen(nothing, tmp_path / "b.parquet")
+
+
+def test_strains_are_identified_where_nothing_measures_motion() -> None:
+    record = turned("pile_U12_s301", np.array(0.0))
+    strain = tuple(replace(c, quantity="strain", unit="-") for c in record.channels[:2])
+    mixed = replace(record, channels=(*strain, *record.channels[2:]))
+    assert moving_channels(mixed).channel_names == record.channel_names[2:]
+    (note,) = _set_aside(mixed, moving_channels(mixed))
+    assert note.endswith(", ".join(record.channel_names[:2]))
+    assert moving_channels(mixed.select(record.channel_names[:2])).channels == strain

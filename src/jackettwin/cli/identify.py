@@ -59,12 +59,10 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
     "every record, so that a run that was stopped goes on where it was.",
 )
 @click.option(
-    "--drop-dead", is_flag=True, help="Leave channels that carry nothing out instead of refusing the record."
-)
-@click.option(
     "--sample-rate", type=click.FloatRange(min=0.0, min_open=True), help="Hz, of files that do not say it."
 )
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
+@click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
 @click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def identify_command(
@@ -76,9 +74,9 @@ def identify_command(
     real_poles: bool,
     picks_file: str | None,
     out: Path | None,
-    drop_dead: bool,
     sample_rate: float | None,
     unit: str | None,
+    gain: float | None,
     workers: int | None,
     as_json: bool,
 ) -> None:
@@ -93,7 +91,7 @@ def identify_command(
     if compare and len(files) > 1:
         several = f"{len(files)} records"
         raise InputError("takes one record", field="--compare", value=several, remedy="run it once a record")
-    how: dict[str, Any] = {"drop_dead": drop_dead, "picks": picks, "unsaid": _unsaid(sample_rate, unit)}
+    how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain)}
     if len(files) == 1:
         _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
         return
@@ -176,11 +174,11 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
     return replace(settings, real_poles=True) if real_poles else settings
 
 
-def _unsaid(sample_rate: float | None, unit: str | None) -> Unsaid:
+def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None) -> Unsaid:
     if unit is not None:
         with located(field="--unit"):
             vibration_of(plain_unit(unit))
-    return Unsaid(sample_rate, unit)
+    return Unsaid(sample_rate, unit, gain)
 
 
 def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:

@@ -22,8 +22,8 @@ _FRAMES = 24
 _SWAY = 0.16
 """Largest drawn displacement, as a share of the height of the sensors."""
 _COLUMNS = 3
-_SPREAD = 0.1
-"""Distance between sensors of unknown height, as a share of a drawn height of 1."""
+_LEAST_SIZE = 0.1
+"""Drawn height of sensors that all sit at one."""
 
 
 @dataclass(frozen=True)
@@ -33,27 +33,23 @@ class Places:
     Attributes
     ----------
     height : (n_places,)
-        Above sea level [m]; evenly spread if any is not known.
-    known : bool
+        Above sea level [m].
     place : (n_channels,) int
     direction : (n_channels, 3)
     """
 
     height: FloatArray
-    known: bool
     place: npt.NDArray[np.int64]
     direction: FloatArray
 
     @classmethod
     def of(cls, channels: Sequence[Channel]) -> Places:
-        """Return the places of the channels; without heights in the order of the channels, from the top."""
-        known = all(c.height_m is not None for c in channels)
-        names = [c.height_m if known else c.node or c.name for c in channels]
-        order = sorted(set(names)) if known else list(dict.fromkeys(names))[::-1]  # type: ignore[type-var]
-        height = np.array(order if known else _SPREAD * np.arange(len(order)), dtype=np.float64)
+        """Return the places of the channels, all of which must say their height."""
+        heights = [float(c.height_m) for c in channels if c.height_m is not None]
+        order = sorted(set(heights))
         along_x = (1.0, 0.0, 0.0)
         direction: FloatArray = np.array([c.direction if any(c.direction) else along_x for c in channels])
-        return cls(height, known, np.array([order.index(name) for name in names]), direction)
+        return cls(np.array(order), np.array([order.index(height) for height in heights]), direction)
 
     def motion(self, shape: ComplexArray) -> ComplexArray:
         """Return the displacement of every place, (n_places, 3), largest entry 1."""
@@ -71,7 +67,7 @@ def measured_shapes_3d(channels: Sequence[Channel], modes: Sequence[tuple[str, M
         Labels may be empty.
     """
     places = Places.of(channels)
-    size = max(float(np.ptp(places.height)), _SPREAD)
+    size = max(float(np.ptp(places.height)), _LEAST_SIZE)
     figure = go.Figure()
     for i, (label, mode) in enumerate(modes):
         scene = f"scene{i + 1 if i else ''}"
@@ -124,8 +120,8 @@ def _lay_out(
             "xaxis": {**wide, "title": {"text": "x"}},
             "yaxis": {**wide, "title": {"text": "y"}},
             "zaxis": {
-                "title": {"text": style.title("height", "m") if places.known else "place"},
-                "showticklabels": places.known and column == 0,
+                "title": {"text": style.title("height", "m")},
+                "showticklabels": column == 0,
             },
             "aspectmode": "manual",
             "aspectratio": {"x": 0.5, "y": 0.5, "z": 1.2},

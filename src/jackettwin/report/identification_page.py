@@ -12,6 +12,7 @@ from jackettwin.identification.maximum_likelihood.spectral_fit import modal_fit
 from jackettwin.records.yaw import knows_yaw
 from jackettwin.report import figures_measured, figures_record, section_records
 from jackettwin.report import tables_records as tables
+from jackettwin.report.figures_components import shape_components
 from jackettwin.report.page import Block, Plot, Section, Text, write_page
 from jackettwin.twin import Observation
 from jackettwin.version import __version__
@@ -90,6 +91,12 @@ def _modes(seen: Observation, names: tuple[str, ...]) -> list[Block]:
 def _shapes(found: Identification, names: tuple[str, ...]) -> list[Block]:
     if not found.modes:
         return []
-    caption = "Measured mode shapes: every sensor moves along its own direction, with its own phase."
     modes = list(zip(names, found.modes, strict=True))
+    if any(channel.height_m is None for channel in found.channels):
+        caption = (
+            "Measured mode shapes, channel by channel at the moment of greatest motion: the heights of the "
+            "sensors are not known (height_m in the JSON beside the record), so no structure is drawn."
+        )
+        return [Plot("measured_shapes", caption, shape_components(found.channels, modes))]
+    caption = "Measured mode shapes: every sensor moves along its own direction, with its own phase."
     return [Plot("measured_shapes", caption, figures_measured.measured_shapes_3d(found.channels, modes))]

@@ -98,7 +98,6 @@ class _Work:
     """What is done with every record."""
 
     settings: IdentificationSettings
-    drop_dead: bool
     picks: tuple[Pick, ...]
     unsaid: Unsaid
 
@@ -138,7 +137,6 @@ def observe_many(
     settings: IdentificationSettings,
     *,
     folder: Path,
-    drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
     unsaid: Unsaid | None = None,
     workers: int | None = None,
@@ -159,7 +157,7 @@ def observe_many(
     step : callable
         Told the name of every record that is done.
     """
-    work = _Work(settings, drop_dead, picks, unsaid or Unsaid())
+    work = _Work(settings, picks, unsaid or Unsaid())
     places = [_place(folder, file, work) for file in files]
     left = []
     for i, place in enumerate(places):
@@ -204,7 +202,7 @@ def _computed(
 def _one(work: _Work, file: Path) -> Seen | Failed:
     """Return what a record shows, or why it shows nothing, whatever went wrong."""
     try:
-        seen = observe(file, work.settings, drop_dead=work.drop_dead, picks=work.picks, unsaid=work.unsaid)
+        seen = observe(file, work.settings, picks=work.picks, unsaid=work.unsaid)
         return kept(seen)
     except Exception as error:  # one record must not end a batch; alone it shows the traceback
         return failure(file, error)

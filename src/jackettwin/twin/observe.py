@@ -16,7 +16,6 @@ from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
-from jackettwin.records.findings import ChannelQuality
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, without_orders
@@ -28,6 +27,9 @@ WORTH_SAYING = 1e-3
 FEWEST_TO_COMPARE = 3
 """Sensors without a place of which it is said that they cannot be compared."""
 MOTION = ("acceleration", "velocity", "displacement")
+"""Quantities of which one record may mix several."""
+DEFORMATION = ("inclination", "strain")
+"""Quantities identified where no channel measures motion, the first of them that there is."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,6 @@ def observe(
     settings: IdentificationSettings,
     *,
     sensors: tuple[Sensor, ...] = (),
-    drop_dead: bool = False,
     picks: tuple[Pick, ...] = (),
     unsaid: Unsaid | None = None,
     compare: bool = False,
@@ -66,8 +67,6 @@ def observe(
     ----------
     sensors : tuple of Sensor, optional
         Only these channels, at these places; default: all that measure motion, where the record says.
-    drop_dead : bool
-        Leave channels that carry nothing out instead of refusing the record.
     picks : tuple of Pick
         Poles to take instead of the automatic selection, for the records they name.
     unsaid : Unsaid, optional
@@ -78,14 +77,12 @@ def observe(
     Raises
     ------
     InputError
-        If the record cannot be read, a channel carries nothing, or the record cannot be identified.
+        If the record cannot be read, no channel carries a signal, or the record cannot be identified.
     """
     record = with_conditions(read_record(path, unsaid))
     with located(file=path):
         chosen = _placed(record, sensors) if sensors else moving_channels(record)
         quality = assess(chosen)
-        if not drop_dead:
-            _refuse_dead(quality)
         ready, notes = in_rotor_axes(repair(chosen, quality), record)
         speed = rotor_speed(record)
         orders: tuple[RotorOrder, ...] = ()
@@ -96,7 +93,7 @@ def observe(
             found = along_axes(found)
         found = replace(found, warnings=(*notes, *found.warnings), notes=(*found.notes, *_unplaced(chosen)))
         if not sensors:
-            found = replace(found, notes=(*found.notes, *_unknown(record)))
+            found = replace(found, notes=(*found.notes, *_unknown(record), *_set_aside(record, chosen)))
         compared = compare_methods(ready, found, settings) if compare and found.modes else None
         return Observation(ready, quality, found, compared)
 
@@ -165,24 +162,36 @@ def _unknown(record: Record) -> tuple[str, ...]:
     return (f"left out, neither name and unit nor the JSON say what they measure: {what}",)
 
 
+def _set_aside(record: Record, chosen: Record) -> tuple[str, ...]:
+    """Name the inclinations and strains beside channels that measure motion."""
+    names = [
+        c.name for c in record.channels if c.quantity in DEFORMATION and c.name not in chosen.channel_names
+    ]
+    if not names:
+        return ()
+    what = ", ".join(names[:5]) + (" …" if len(names) > 5 else "")
+    return (f"left out beside accelerations, identify them in a file of their own: {what}",)
+
+
 def moving_channels(record: Record) -> Record:
-    """Return the record with only the channels that measure motion.
+    """Return the record with only the channels that measure motion; without any, its inclinations or strains.
 
     Raises
     ------
     InputError
         If there is none.
     """
-    names = [c.name for c in record.channels if c.quantity in MOTION]
-    if not names:
-        raise InputError(
-            "no channel measures motion",
-            field="channels",
-            value=record.channel_names,
-            allowed=", ".join(MOTION),
-            remedy="state quantity and unit in the JSON beside the record (identify: or --unit)",
-        )
-    return record.select(names)
+    for kinds in (MOTION, *((kind,) for kind in DEFORMATION)):
+        names = [c.name for c in record.channels if c.quantity in kinds]
+        if names:
+            return record.select(names)
+    raise InputError(
+        "no channel measures motion",
+        field="channels",
+        value=record.channel_names,
+        allowed=", ".join((*MOTION, *DEFORMATION)),
+        remedy="state quantity and unit in the JSON beside the record (identify: or --unit)",
+    )
 
 
 def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
@@ -194,25 +203,3 @@ def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
         x, y, z = (float(v) / length for v in s.direction)
         channels.append(replace(channel, node=s.node, height_m=s.height_m, direction=(x, y, z)))
     return replace(chosen, channels=tuple(channels))
-
-
-def _refuse_dead(quality: Quality) -> None:
-    for channel in quality.channels:
-        if channel.dead:
-            problem, value = _why_dead(channel)
-            raise InputError(
-                problem,
-                field=f"channels.{channel.name}",
-                value=value,
-                allowed="a signal that varies",
-                remedy="repair the sensor's data, or leave the channel out (sensors: of a twin; --drop-dead)",
-            )
-
-
-def _why_dead(channel: ChannelQuality) -> tuple[str, str]:
-    """Return what is wrong with a dead channel, and the value that says so."""
-    if channel.gap_share > 0.0:
-        return "channel is empty", f"{100 * channel.gap_share:.0f} % missing"
-    if channel.drift_ratio > 0.0:
-        return "channel holds a slow drift alone", "no vibration"
-    return "channel is constant", "no variation"

@@ -148,8 +148,12 @@ def _rate(key: str, text: str) -> float:
 
 
 def _delimiter(lines: list[str]) -> str:
-    """Return the separator that splits most of the first lines into the same number of cells."""
-    best, most = " ", 0
+    """Return the separator that splits most of the first lines into the same number of cells.
+
+    Blanks separate where nothing else does, but not in a single column with a blank in its name.
+    """
+    in_last = len(lines[-1].split()) if lines else 0
+    best, most = "\t" if in_last == 1 else " ", 0
     for candidate in ";\t|,":
         counts = [line.count(candidate) for line in lines if line.strip()]
         usual = max(set(counts), key=counts.count) if counts else 0

@@ -1,0 +1,71 @@
+"""Names of real loggers say place and direction; what they do not say is not guessed."""
+
+from __future__ import annotations
+
+import pytest
+
+from jackettwin.records.readers.channel_names import read_name, told
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "direction", "height_m", "level"),
+    [
+        ("acc_top_x", X, None, "tower top"),
+        ("acc_x_77m", X, 77.0, ""),
+        ("ACC_088m_E", X, 88.0, ""),
+        ("ACC_088m_N", Y, 88.0, ""),
+        ("TT_FA", X, None, "tower top"),
+        ("TP_SS", Y, None, "transition piece"),
+        ("WTG_TW_ACC_LAT097_FA", X, 97.0, ""),
+        ("SG_LAT-003_DEG000", None, -3.0, ""),
+        ("tower_bottom_side_side", Y, None, "tower bottom"),
+        ("acc-12.5m-y", Y, 12.5, ""),
+        ("az", Z, None, ""),
+        ("Sensor 3 West", (-1.0, 0.0, 0.0), None, ""),
+    ],
+)
+def test_what_names_say(
+    name: str, direction: tuple[float, float, float] | None, height_m: float | None, level: str
+) -> None:
+    found = read_name(name)
+    assert (found.direction, found.height_m, found.level) == (direction, height_m, level)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "ch1",
+        "acc_1",
+        "speed_10min",
+        "acc_leg_a",
+        "YawBrTAxp",
+        "wave",
+        "acc_end",
+        "x_ss",
+        "acc_-x",
+        "a_10m_s2",
+    ],
+)
+def test_names_that_say_no_direction(name: str) -> None:
+    assert read_name(name).direction is None
+
+
+@pytest.mark.parametrize("name", ["x_100mm", "acc_g77_y", "speed_10min", "a_10m/s2", "acc_12m_to_15m"])
+def test_names_that_say_no_height(name: str) -> None:
+    assert read_name(name).height_m is None
+
+
+def test_what_was_taken_is_told_once_a_thing() -> None:
+    names = ("ACC_088m_E", "ACC_088m_N", "LAT021_E", "acc_top_x")
+    (remark,) = told({name: read_name(name) for name in names})
+    assert "88 m (ACC_088m_E, ACC_088m_N)" in remark
+    assert "21 m above lowest astronomical tide, taken as mean sea level (LAT021_E)" in remark
+    assert "east is +x (ACC_088m_E, LAT021_E)" in remark
+    assert "north is +y (ACC_088m_N)" in remark
+    assert "acc_top_x" not in remark
+
+
+def test_what_goes_without_saying_is_not_told() -> None:
+    assert told({"acc_top_x": read_name("acc_top_x")}) == ()
