@@ -7,6 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.response.extptfm import is_extptfm
+from jackettwin.response.extptfm_layouts import LAYOUTS
 from jackettwin.response.superelement import Superelement
 from jackettwin.response.superelement_files import is_superelement, read_superelement, write_superelement
 
@@ -36,7 +37,7 @@ def same(found: Superelement, e: Superelement, at: list[int]) -> None:
         np.testing.assert_allclose(getattr(found, name), getattr(e, name)[np.ix_(at, at)], rtol=1e-14)
 
 
-@pytest.mark.parametrize("layout", ["classic", "connections"])
+@pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize(
     ("active", "kept"),
     [(("-1", "1,"), range(10)), (("2", "4, 1"), [*range(6), 9, 6]), (("0", "1,"), range(6))],
@@ -60,7 +61,7 @@ def test_guyan_s_format(tmp_path: Path, loads: bool) -> None:
     e = element(6)
     path = tmp_path / "guyan.dat"
     path.write_text(guyan_text(e, loads))
-    module = write_superelement(e, tmp_path / "other.dat")[1]
+    module = write_superelement(e, tmp_path / "other.dat", layout="openfast4")[1]
     text = module.read_text().replace('"other.dat"', '"guyan.dat"')
     module.write_text(text.replace("1              FileFormat", "0  FileFormat"))
     for one in (path, module):
@@ -88,7 +89,7 @@ def test_a_subdyn_deck_is_no_superelement(tmp_path: Path) -> None:
     ],
 )
 def test_wrong_input_files_are_refused(tmp_path: Path, old: str, new: str, message: str | None) -> None:
-    module = write_superelement(element(8), tmp_path / "tower.dat")[1]
+    module = write_superelement(element(8), tmp_path / "tower.dat", layout="openfast4")[1]
     text = module.read_text()
     assert old in text
     module.write_text(text.replace(old, new))
@@ -104,3 +105,14 @@ def test_a_short_guyan_file_is_refused(tmp_path: Path) -> None:
     path.write_text("\n".join(guyan_text(element(6)).splitlines()[:20]))
     with pytest.raises(InputError, match="stiffness: matrix has the wrong shape"):
         read_superelement(path)
+
+
+def test_weight_stiffness_is_stiffness(tmp_path: Path) -> None:
+    """OpenFAST 5 takes the block's forces off the weight: what another program left there is added."""
+    e = element(7)
+    path = write_superelement(e, tmp_path / "se.dat")[0]
+    head, tail = path.read_text().split("!Weight stiffness (N,m)\n")
+    extra = np.diag(np.arange(7.0))
+    path.write_text(head + "!Weight stiffness\n" + "\n".join(" ".join(map(str, row)) for row in extra))
+    np.testing.assert_allclose(read_superelement(path).K, e.K + extra, rtol=1e-14)
+    assert tail.split() == ["0.000000000000000e+00"] * 49

@@ -13,6 +13,7 @@ from rich.table import Table
 from jackettwin.cli.console import messages, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
+from jackettwin.response.extptfm_layouts import DEFAULT, LAYOUTS, Layout
 from jackettwin.response.superelement import (
     INTERFACE,
     RUNGE_KUTTA,
@@ -30,14 +31,13 @@ from jackettwin.response.superelement_error import (
     reduced_modes,
 )
 from jackettwin.response.superelement_files import (
-    Layout,
     is_superelement,
     read_superelement,
     require_format,
     write_superelement,
 )
 from jackettwin.response.system import build_system
-from jackettwin.structure import Assembly, assemble, read_structure
+from jackettwin.structure import Assembly, Structure, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector
 from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
@@ -76,6 +76,9 @@ from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
     type=click.FloatRange(min=0.0, min_open=True),
     help="Slow the fastest poles until explicit steps this long are stable.",
 )
+@click.option(
+    "--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of all that stands on the foundation."
+)
 @click.option("--deck-damping", is_flag=True, help="Add a SubDyn deck's JDampings and GuyanDampMod.")
 @click.option(
     "--beam", type=click.Choice(["euler-bernoulli", "timoshenko"]), help="Default: the structure's own."
@@ -90,10 +93,10 @@ from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
 )
 @click.option(
     "--layout",
-    type=click.Choice(["classic", "connections"]),
-    default="classic",
+    type=click.Choice(LAYOUTS),
+    default=DEFAULT,
     show_default=True,
-    help="Of ExtPtfm's module file: before, or since, it knows rigid-body modes and connections.",
+    help="Version of OpenFAST that is to read FILE.dat.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def superelement_command(
@@ -104,6 +107,7 @@ def superelement_command(
     rayleigh: str | None,
     band_hz: float | None,
     step_s: float | None,
+    gravity: bool,
     deck_damping: bool,
     beam: str | None,
     subdivide: int | None,
@@ -124,10 +128,12 @@ def superelement_command(
     foundation, rest = at_interface(whole)
     point = _point(reference)
 
-    def built(part: Any) -> Assembly:
-        return assemble(part, beam_theory=beam, subdivide=subdivide)
+    complete = assemble(whole, beam_theory=beam, subdivide=subdivide, gravity=gravity)
 
-    complete = built(whole)
+    def built(part: Structure) -> Assembly:
+        # a part feels the weight of the whole
+        return assemble(part, beam_theory=beam, subdivide=subdivide, gravity=gravity, weight=complete.weight)
+
     held = support_option(support, complete)
     steel = rayleigh_option(rayleigh)
     full, base = (build_system(part, held, rayleigh=steel) for part in (complete, built(foundation)))

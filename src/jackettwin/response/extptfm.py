@@ -1,7 +1,8 @@
 """Read the superelements of OpenFAST's ExtPtfm, its own or another program's.
 
-The module's input file names the matrices' file and its format: 1 is FlexASCII, where ``!`` keywords lead and
-a matrix starts two lines below its own; 0 is Guyan's, six coordinates read by the place of their lines.
+The module's input file names the matrices' file. There ``!`` keywords lead: of OpenFAST 5 a matrix follows at
+once, with the self-weight as blocks; before (FlexASCII, format 1) it follows a row of dimensions, with the
+self-weight as a table over time. Format 0 is Guyan's, six coordinates read by the place of their lines.
 """
 
 from __future__ import annotations
@@ -18,9 +19,8 @@ from jackettwin.response.superelement import INTERFACE, Superelement
 
 FloatArray = npt.NDArray[np.float64]
 
-MATRICES = {"mass": "Mass Matrix (Units (kg,m))", "stiffness": "Stiffness Matrix (Units (N,m))",
-             "damping": "Damping Matrix (Units (N,m,kg))"}  # fmt: skip
-"""Names of the matrices, and what FlexASCII calls them."""
+MATRICES = ("mass", "stiffness", "damping")
+"""First words of the matrices' headers."""
 _GUYAN_LINES = {"mass": 2, "damping": 9, "stiffness": 16, "loads": 25}
 """Lines before each matrix and before the table of loads in Guyan's format."""
 
@@ -44,7 +44,8 @@ def read_extptfm(path: Path) -> Superelement:
     if kind != "input":
         return _whole(text, path, guyan=kind == "guyan")
     named = path.parent / _value(lines, "Red_FileName", path).strip("\"' ").replace("\\", "/")
-    form = _value(lines, "FileFormat", path).strip()
+    # OpenFAST 5 dropped the switch: its file is the one with keywords
+    form = "1" if _has(lines, "RBMod") else _value(lines, "FileFormat", path).strip()
     if form not in ("0", "1"):
         raise InputError(
             "unknown format",
@@ -59,20 +60,25 @@ def read_extptfm(path: Path) -> Superelement:
 
 
 def _whole(text: str, path: Path, *, guyan: bool) -> Superelement:
-    return _guyan(text.splitlines(), path) if guyan else parse_flex_ascii(text, path)
+    return _guyan(text.splitlines(), path) if guyan else parse_keywords(text, path)
 
 
 def _kind(lines: list[str]) -> str | None:
     first, second, third = [*(line.lower() for line in lines[:3]), "", "", ""][:3]
     if "extptfm" in first and "input" in first:
         return "input"
-    if "flex 5 format" in second:
-        return "flex"
+    words = [line.lower() for line in lines]
+    if "flex 5 format" in second or all(_at(words, key) is not None for key in ("!dimension", "!mass")):
+        return "keywords"
     return "guyan" if "mass" in second and _are_numbers(third.split()[:INTERFACE]) else None
 
 
 def _are_numbers(words: list[str]) -> bool:
     return len(words) == INTERFACE and all(re.fullmatch(r"[-+.\deEdD]+", word) for word in words)
+
+
+def _has(lines: list[str], key: str) -> bool:
+    return any(re.search(rf"\s{key}\b", line) for line in lines)
 
 
 def _value(lines: list[str], key: str, path: Path) -> str:
@@ -115,18 +121,18 @@ def _active(whole: Superelement, lines: list[str], path: Path) -> Superelement:
 def _guyan(lines: list[str], path: Path) -> Superelement:
     """Return the superelement of a Guyan text: six coordinates, read by the place of the lines."""
     M, C, K = (
-        _matrix(lines[(at := _GUYAN_LINES[name]) : at + INTERFACE], INTERFACE, path, name)
+        _matrix(lines[(at := _GUYAN_LINES[name]) : at + INTERFACE], INTERFACE, path, name, rows=INTERFACE)
         for name in ("mass", "damping", "stiffness")
     )
     first = lines[_GUYAN_LINES["loads"] : _GUYAN_LINES["loads"] + 1]
     weight = np.zeros(INTERFACE)
     if first and first[0].strip():
-        weight = _matrix(first, INTERFACE + 1, path, "loads")[0, 1:]
+        weight = _matrix(first, INTERFACE + 1, path, "loads", rows=1)[0, 1:]
     return Superelement(M, C, K, (0.0, 0.0, 0.0), weight, np.empty((0, INTERFACE)))
 
 
-def parse_flex_ascii(text: str, path: Path) -> Superelement:
-    """Return the superelement of a FlexASCII text, read by OpenFAST's rules.
+def parse_keywords(text: str, path: Path) -> Superelement:
+    """Return the superelement of a text with keywords, read by OpenFAST's rules, 5's or those before.
 
     Raises
     ------
@@ -134,12 +140,11 @@ def parse_flex_ascii(text: str, path: Path) -> Superelement:
         If the dimension or a matrix is missing, or a row is too short.
     """
     lines = text.splitlines()
-    dimension = next(
-        (m for line in lines if (m := re.match(r"!dimension:?\s*(\d+)", line, re.IGNORECASE))), None
-    )
-    if dimension is None or len(lines) < 2 or "flex 5 format" not in lines[1].lower():
+    words = [line.lower() for line in lines]
+    dimension = next((m for line in words if (m := re.match(r"!dimension:?\s*(\d+)", line))), None)
+    if dimension is None or _at(words, "!mass") is None:
         raise InputError(
-            "not a superelement in FlexASCII format",
+            "not a superelement of ExtPtfm",
             file=path,
             field="!Dimension",
             remedy="give the matrices' file, or ExtPtfm's input file that names it",
@@ -154,30 +159,48 @@ def parse_flex_ascii(text: str, path: Path) -> Superelement:
             allowed="≥ 6",
             remedy="check the file",
         )
-    at = {name: _find(lines, f"!{name} matrix", path) for name in MATRICES}
-    M, K, C = (_matrix(lines[at[name] + 2 : at[name] + 2 + n], n, path, name) for name in MATRICES)
-    weight = np.zeros(n)
-    loads = [number for number, line in enumerate(lines) if line.lower().startswith("!loading")]
-    if loads and len(lines) > loads[0] + 2:
-        weight = _matrix(lines[loads[0] + 2 : loads[0] + 3], n + 1, path, "loading")[0, 1:]
-    return Superelement(M, C, K, (0.0, 0.0, 0.0), weight, np.empty((0, n)))
+    M, K, C = (_block(lines, words, name, n, path) for name in MATRICES)
+    softened = (
+        0.0 if _at(words, "!weight stiffness") is None else _block(lines, words, "weight stiffness", n, path)
+    )
+    weight = _weight(lines, words, n, path)
+    return Superelement(M, C, K + softened, (0.0, 0.0, 0.0), weight, np.empty((0, n)))
 
 
-def _find(lines: list[str], keyword: str, path: Path) -> int:
-    for number, line in enumerate(lines):
-        if line.lower().startswith(keyword):
-            return number
-    raise InputError("matrix is missing", file=path, field=keyword, remedy="add it, or write the file anew")
+def _at(words: list[str], keyword: str) -> int | None:
+    """Return the line that starts with a keyword."""
+    return next((number for number, line in enumerate(words) if line.startswith(keyword)), None)
 
 
-def _matrix(rows: list[str], n: int, path: Path, name: str) -> FloatArray:
+def _block(lines: list[str], words: list[str], name: str, n: int, path: Path, *, rows: int = 0) -> FloatArray:
+    """Return the rows below a header, and below the row of dimensions if there is one; n × n unless told."""
+    at = _at(words, f"!{name}")
+    if at is None:
+        raise InputError(
+            "matrix is missing", file=path, field=f"!{name}", remedy="add it, or write the file anew"
+        )
+    first = at + 2 if words[at + 1 : at + 2] and words[at + 1].startswith("!") else at + 1
+    return _matrix(lines[first : first + (rows or n)], n, path, name, rows=rows or n)
+
+
+def _weight(lines: list[str], words: list[str], n: int, path: Path) -> FloatArray:
+    """Return the constant load: OpenFAST 5's block, or the first row of the table over time."""
+    if _at(words, "!weight constant") is not None:
+        return np.asarray(_block(lines, words, "weight constant", n, path, rows=1)[0])
+    at = _at(words, "!loading")
+    if at is None or len(lines) <= at + 2:
+        return np.zeros(n)
+    return np.asarray(_matrix(lines[at + 2 : at + 3], n + 1, path, "loading", rows=1)[0, 1:])
+
+
+def _matrix(lines: list[str], n: int, path: Path, name: str, *, rows: int) -> FloatArray:
     try:
-        matrix = np.array([[float(word.replace("D", "E")) for word in row.split()[:n]] for row in rows])
+        matrix = np.array([[float(word.replace("D", "E")) for word in row.split()[:n]] for row in lines])
     except ValueError:
         raise InputError(
             "rows are not numbers, or differ in length", file=path, field=name, remedy="check the file"
         ) from None
-    if matrix.ndim != 2 or matrix.shape[1] != n or (name in MATRICES and matrix.shape[0] != n):
+    if matrix.shape != (rows, n):
         raise InputError(
             "matrix has the wrong shape",
             file=path,
