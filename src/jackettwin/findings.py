@@ -41,6 +41,22 @@ CATALOGUE: dict[str, Kind] = {
         "warning", "a tone passes here, between {low_hz:.4g} and {high_hz:.4g} Hz: distrust the damping"
     ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
+    # updating
+    "unpaired_shape": Kind(
+        "info",
+        "nearest in the model is {label} at {model_frequency_hz:.4g} Hz ({difference:+.1%}), of another "
+        "shape: MAC {mac:.2f}, {least_mac:g} needed",
+    ),
+    "unpaired_frequency": Kind(
+        "info",
+        "of the model's modes {label} at {model_frequency_hz:.4g} Hz has the shape (MAC {mac:.2f}), "
+        "but the frequency is {difference:+.0%} away",
+    ),
+    "unpaired_taken": Kind(
+        "info",
+        "like {label} of the model at {model_frequency_hz:.4g} Hz ({difference:+.1%}, MAC {mac:.2f}), "
+        "which another measured mode is more like",
+    ),
 }
 """Every code there is, by the package that finds it."""
 

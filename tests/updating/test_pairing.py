@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.pairing import pair
+from jackettwin.updating.pairing import held_against, likeness, pair
 
 FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
 SHAPES = np.array(
@@ -66,3 +66,36 @@ def test_a_mode_the_sensors_cannot_see_is_not_paired() -> None:
 
 def test_nothing_measured_pairs_with_nothing() -> None:
     assert pair((), FREQUENCY, SHAPES) == {}
+
+
+def test_every_measured_mode_is_held_against_a_mode_of_the_model() -> None:
+    measured = (
+        estimate(0.178, SHAPES[:, 0]),
+        estimate(1.2, SHAPES[:, 3]),
+        estimate(0.66, np.array([0.0, 1.0, 0.0, -1.0])),
+        estimate(0.60, SHAPES[:, 2]),
+        estimate(0.65, SHAPES[:, 2]),
+    )
+    held = held_against(measured, FREQUENCY, SHAPES)
+    assert [h.verdict for h in held] == ["paired", "frequency", "shape", "taken", "paired"]
+    assert [h.mode for h in held[3:]] == [2, 2]
+    assert held[3].difference == pytest.approx(0.60 / 0.65 - 1.0)
+    assert held[3].mac == pytest.approx(1.0)
+    assert {h.mode: i for i, h in enumerate(held) if h.verdict == "paired"} == {
+        mode: i for mode, (i, _) in pair(measured, FREQUENCY, SHAPES).items()
+    }
+
+
+def test_the_model_in_any_order_with_modes_lost_sight_of() -> None:
+    measured = tuple(estimate(f, SHAPES[:, i]) for i, f in enumerate(FREQUENCY))
+    order = np.array([3, 0, 4, 2, 1])
+    frequency = np.where(order == 2, np.nan, FREQUENCY[order])
+    found = pair(measured, frequency, SHAPES[:, order])
+    assert {mode: index for mode, (index, _) in found.items()} == {0: 3, 1: 0, 2: 4, 4: 1}
+
+
+def test_a_model_nearer_to_the_measured_modes_is_more_like_them() -> None:
+    measured = tuple(estimate(f, SHAPES[:, i]) for i, f in enumerate(FREQUENCY))
+    assert likeness(measured, FREQUENCY, SHAPES) == pytest.approx(5.0)
+    assert likeness(measured, 1.1 * FREQUENCY, SHAPES) < 4.9
+    assert likeness((), FREQUENCY, SHAPES) == 0.0

@@ -51,7 +51,7 @@ def what_was_identified(result: TwinResult) -> list[Block]:
         if first.rejected:
             blocks.append(tables.rejected_table(first))
         blocks += _history(result)
-        blocks.append(tables.pairing_table(result.measured, result.unpaired))
+        blocks.append(tables.pairing_table(result))
     return blocks
 
 

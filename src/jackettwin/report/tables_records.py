@@ -13,7 +13,7 @@ from jackettwin.report.figures_record import plain
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, scientific, words
 from jackettwin.report.page import Table
 from jackettwin.twin import Observation, TwinResult
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.held import unpaired_finding
 
 
 def quality_table(seen: Observation) -> Table:
@@ -148,8 +148,8 @@ def rejected_table(found: Identification) -> Table:
     return Table(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
 
 
-def pairing_table(measured: Sequence[MeasuredMode], unpaired: Sequence[ModalEstimate]) -> Table:
-    """Return which identified mode is which of the model."""
+def pairing_table(result: TwinResult) -> Table:
+    """Return which identified mode is which of the model, and why the others are none of them."""
     rows = [
         (
             words(m.label),
@@ -158,17 +158,29 @@ def pairing_table(measured: Sequence[MeasuredMode], unpaired: Sequence[ModalEsti
             fixed(m.mac, 3),
             "yes" if m.fits_frequency else "no",
             "yes" if m.fits_damping else "no",
+            "",
         )
-        for m in measured
+        for m in result.measured
     ]
-    rows += [
-        ("no counterpart in the model", UNKNOWN, frequency(e.frequency_hz), UNKNOWN, "no", "no")
-        for e in unpaired
-    ]
-    columns = ("mode of the model", "no.", "identified f [Hz]", "subspace MAC [-]", "f fitted", "ζ fitted")
+    for mode, held in result.unpaired:
+        why = unpaired_finding(mode, held, result.labels)
+        text = "" if why is None else why.text
+        rows.append(
+            ("no counterpart in the model", UNKNOWN, frequency(mode.frequency_hz), UNKNOWN, "no", "no", text)
+        )
+    columns = (
+        "mode of the model",
+        "no.",
+        "identified f [Hz]",
+        "subspace MAC [-]",
+        "f fitted",
+        "ζ fitted",
+        "held against",
+    )
     return Table(
-        "Which identified mode is which: the modal assurance criterion at the sensors; for modes closer than "
-        "6 % in frequency, whose measured shapes mix, the share of the shape in the plane of the pair.",
+        "Which identified mode is which: the modal assurance criterion at the sensors, on the feet that make "
+        "the model most like the records; for modes closer than 6 % in frequency, whose measured shapes mix, "
+        "the share of the shape in the plane of the pair.",
         columns,
         tuple(rows),
     )

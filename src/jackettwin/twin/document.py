@@ -10,11 +10,13 @@ import numpy.typing as npt
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
+from jackettwin.twin.held import held_document
 from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
+from jackettwin.updating.pairing import Held
 from jackettwin.updating.scatter import leg_scatter
 from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
@@ -32,16 +34,28 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "updates": [update_document(result, i) for i in range(len(result.updates))],
         "law_probability": law_probability(result.updates),
         "identification": [
-            observation_document(seen, names)
-            for seen, names in zip(result.observations, result.names, strict=True)
+            _held_document(observation_document(seen, names), seen, held, result.labels)
+            for seen, names, held in zip(result.observations, result.names, result.held, strict=True)
         ],
-        "unpaired_modes": [mode_document(e, None) for e in result.unpaired],
+        "unpaired_modes": [
+            mode_document(e, None) | {"held_against": held_document(e, held, result.labels)}
+            for e, held in result.unpaired
+        ],
         "assumptions": list(result.assumptions),
         "warnings": list(result.warnings),
         "truth": truth_document(result),
         "report": report,
         "code_version": __version__,
     }
+
+
+def _held_document(
+    document: dict[str, Any], seen: Observation, held: tuple[Held, ...], labels: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return a record's document with what each mode was held against in the model."""
+    for plain, mode, against in zip(document["modes"], seen.identification.modes, held, strict=True):
+        plain["held_against"] = held_document(mode, against, labels)
+    return document
 
 
 def update_document(result: TwinResult, index: int) -> dict[str, Any]:

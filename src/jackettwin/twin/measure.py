@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import inf
+
+import scipy.sparse as sp
 
 from jackettwin.errors import located
 from jackettwin.identification import Identification, ModalEstimate
@@ -18,7 +21,8 @@ from jackettwin.twin.many import Failed, failure
 from jackettwin.twin.observe import Observation, observe
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating import Target
-from jackettwin.updating.pairing import pair
+from jackettwin.updating.pairing import Held, held_against, likeness, pair
+from jackettwin.updating.softer_feet import Feet, softer_feet
 
 
 @dataclass(frozen=True)
@@ -45,6 +49,8 @@ class Measured:
     relaxations : for each record, the real poles it shows
     turned : what the model's shapes say against the signs of sensors
     failed : records that could not be identified, and why; the others go on without them
+    held : for each record, what each identified mode was held against in the model
+    feet_stiffness_n_m : of the model's feet on which it is most like the measured modes; inf: as numbered
     """
 
     observations: tuple[Observation, ...]
@@ -54,6 +60,8 @@ class Measured:
     relaxations: tuple[tuple[GivenRelaxation, ...], ...] = ()
     turned: tuple[str, ...] = ()
     failed: tuple[Failed, ...] = ()
+    held: tuple[tuple[Held, ...], ...] = ()
+    feet_stiffness_n_m: float = inf
 
     def of_record(self, i: int) -> dict[int, Sighting]:
         """Return the modes seen in one record, {mode number: sighting}."""
@@ -77,24 +85,23 @@ def measure(
         If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
     observations, failed = _observed(config, compare=compare, step=step)
+    seeing = [_seeing(config, assembly, seen) for seen in observations]
+    feet = _likest(observations, seeing, softer_feet(assembly, numbered))
     sightings: dict[int, list[Sighting]] = {}
-    numbers = []
+    numbers, held = [], []
     turned: list[str] = []
-    for seen in observations:
-        found = seen.identification
-        by_channel = {s.channel: s for s in placed_sensors(config, seen.record)}
-        names = tuple(c.name for c in found.channels)
-        places = tuple(by_channel[name] for name in names)
-        with located(file=config.path):
-            shapes = observation_matrix(assembly, places) @ numbered.shapes
-        pairs = pair(found.modes, numbered.frequency_hz, shapes)
+    for seen, at_sensors in zip(observations, seeing, strict=True):
+        found, names = seen.identification, tuple(c.name for c in seen.identification.channels)
+        shapes = at_sensors @ feet.shapes
+        pairs = pair(found.modes, feet.frequency_hz, shapes)
+        held.append(held_against(found.modes, feet.frequency_hz, shapes))
         for mode, (index, subspace_mac) in pairs.items():
             sightings.setdefault(mode + 1, []).append(
                 Sighting(found.modes[index], subspace_mac, found.duration_s, _wind(seen.record), names)
             )
         turned += [
             f"{seen.record.name}: {one.described(names)}"
-            for one in sensor_polarity(found.modes, numbered.frequency_hz, shapes)
+            for one in sensor_polarity(found.modes, feet.frequency_hz, shapes)
         ]
         number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
         numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
@@ -106,6 +113,28 @@ def measure(
         tuple(_relaxations(seen.identification) for seen in observations),
         tuple(turned),
         failed,
+        tuple(held),
+        feet.stiffness_n_m,
+    )
+
+
+def _seeing(config: TwinConfig, assembly: Assembly, seen: Observation) -> sp.csr_array:
+    """Return what the identified channels of a record see of every motion, (n_channels, n_dof)."""
+    by_channel = {s.channel: s for s in placed_sensors(config, seen.record)}
+    with located(file=config.path):
+        return observation_matrix(assembly, tuple(by_channel[c.name] for c in seen.identification.channels))
+
+
+def _likest(
+    observations: Sequence[Observation], seeing: Sequence[sp.csr_array], path: Sequence[Feet]
+) -> Feet:
+    """Return the feet on which the model is most like what all records show; the stiffest of equals."""
+    return max(
+        path,
+        key=lambda feet: sum(
+            likeness(seen.identification.modes, feet.frequency_hz, at_sensors @ feet.shapes)
+            for seen, at_sensors in zip(observations, seeing, strict=True)
+        ),
     )
 
 

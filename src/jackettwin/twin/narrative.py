@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.held import unpaired_finding
 from jackettwin.twin.measure import Measured
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.updating import Update
@@ -77,8 +78,9 @@ def cautions(
     found: Measured | None,
     measured: tuple[MeasuredMode, ...],
     updates: tuple[Update, ...],
+    labels: tuple[str, ...] = (),
 ) -> tuple[str, ...]:
-    """Return what the reader should beware of."""
+    """Return what the reader should beware of; ``labels`` are those of the model's numbered modes."""
     lines = []
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
@@ -86,7 +88,7 @@ def cautions(
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        lines += [*found.turned, *_strangers(found), *_wind_without_rotor(config, found, measured)]
+        lines += [*found.turned, *_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
         if u.best.locked_damper:
@@ -148,14 +150,14 @@ def _dashpots(config: TwinConfig, u: Update) -> list[int]:
     return [i for i, p in enumerate(u.problem.parameters) if p.name in config.update.dashpots]
 
 
-def _strangers(found: Measured) -> list[str]:
-    lost = [
-        f"{mode.frequency_hz:.3f} in {seen.record.name}"
-        for seen, numbers in zip(found.observations, found.numbers, strict=True)
-        for mode, number in zip(seen.identification.modes, numbers, strict=True)
-        if number is None
-    ]
-    return [f"Identified but without a counterpart in the model (Hz): {', '.join(lost)}."] if lost else []
+def _strangers(found: Measured, labels: tuple[str, ...]) -> list[str]:
+    """Return a line for every identified mode without a counterpart in the model, with the reason."""
+    reasons = (
+        (seen.record.name, unpaired_finding(mode, against, labels))
+        for seen, held in zip(found.observations, found.held, strict=False)
+        for mode, against in zip(seen.identification.modes, held, strict=True)
+    )
+    return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
 
 
 def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:

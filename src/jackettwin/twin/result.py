@@ -14,6 +14,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
 from jackettwin.twin.observe import Observation
 from jackettwin.updating import Update
+from jackettwin.updating.pairing import Held
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -135,6 +136,8 @@ class TwinResult:
         Sentences for the report.
     relaxations : tuple of MeasuredRelaxation
         Real poles that the supports were updated to, too, by rate.
+    held : tuple of tuple of Held
+        For each record, what each identified mode was held against in the model.
     """
 
     name: str
@@ -150,6 +153,7 @@ class TwinResult:
     assumptions: tuple[str, ...]
     warnings: tuple[str, ...]
     relaxations: tuple[MeasuredRelaxation, ...] = ()
+    held: tuple[tuple[Held, ...], ...] = ()
 
     @property
     def record(self) -> Record | None:
@@ -162,11 +166,11 @@ class TwinResult:
         return tuple(seen.identification for seen in self.observations)
 
     @property
-    def unpaired(self) -> tuple[ModalEstimate, ...]:
-        """Identified modes the model has no counterpart for."""
+    def unpaired(self) -> tuple[tuple[ModalEstimate, Held], ...]:
+        """Identified modes the model has no counterpart for, and what they were held against."""
         return tuple(
-            mode
-            for found, names in zip(self.identifications, self.names, strict=True)
-            for mode, name in zip(found.modes, names, strict=True)
-            if not name
+            (mode, against)
+            for found, held in zip(self.identifications, self.held, strict=False)
+            for mode, against in zip(found.modes, held, strict=True)
+            if against.verdict != "paired"
         )

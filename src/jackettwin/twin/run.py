@@ -82,8 +82,9 @@ def run_twin(
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
         assumptions=assumptions(config, measured, relaxations, wind),
-        warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates))),
+        warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
+        held=() if found is None else found.held,
     )
 
 

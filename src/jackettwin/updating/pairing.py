@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any, Literal
+
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
@@ -13,8 +16,10 @@ from jackettwin.response.mode_tracking import near_degenerate
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
+Verdict = Literal["paired", "shape", "frequency", "taken"]
+
 FREQUENCY_WIDTH = 0.15
-"""How far (standard deviation of ln f) a measured mode may lie from the pinned model's."""
+"""How far (standard deviation of ln f) a measured mode may lie from the model's."""
 MIXING = 0.06
 """Modes closer than this (relative) mix in a measured shape: half-power bands, 2ζf, of 1 to 3 % overlap."""
 LEAST_MAC = 0.8
@@ -22,6 +27,31 @@ LEAST_MAC = 0.8
 false ones (another direction, a blade mode) 0.73 and less."""
 LEAST_VISIBLE = 0.1
 """A mode that moves the sensors less than this share of the most visible one cannot have been measured."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a measured mode was held against: the mode of the model that is most like it.
+
+    Attributes
+    ----------
+    mode : int
+        Of the model, from 0.
+    frequency_hz : float
+        Of the model's.
+    difference : float
+        Measured frequency over the model's, less one.
+    mac : float
+        Share of the measured shape in the model's (or in the plane of its close pair).
+    verdict : {"paired", "shape", "frequency", "taken"}
+        Paired, or why not: another shape, another frequency, or another measured mode is more like it.
+    """
+
+    mode: int
+    frequency_hz: float
+    difference: float
+    mac: float
+    verdict: Verdict
 
 
 def pair(
@@ -38,19 +68,69 @@ def pair(
     Parameters
     ----------
     estimates : measured modes
-    frequency_hz : (n_modes,) of the model, ascending
+    frequency_hz : (n_modes,) of the model, in any order; NaN for a mode that cannot be compared
     shapes : (n_channels, n_modes) mass-normalised, at the sensors, in the channels' order
     """
-    if not estimates or not frequency_hz.size:
+    return {held.mode: (i, held.mac) for i, held in _paired(estimates, frequency_hz, shapes).items()}
+
+
+def likeness(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> float:
+    """Return how like a model the measured modes are: the score of ``pair`` summed over the pairs."""
+    found = _paired(estimates, frequency_hz, shapes)
+    return float(sum(h.mac * _nearness(np.log1p(h.difference)) for h in found.values()))
+
+
+def held_against(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> tuple[Held, ...]:
+    """Return for each measured mode its counterpart, else the mode most like it and why it is none.
+
+    Parameters
+    ----------
+    estimates, frequency_hz, shapes
+        As those of ``pair``.
+    """
+    if not estimates or not np.isfinite(frequency_hz).any():
+        return ()
+    visible, _, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
+    paired = _paired(estimates, frequency_hz, shapes)
+    # in logarithms: the nearness of what is far off would underflow
+    likely = np.log(np.maximum(subspace_mac, 1e-12)) - 0.5 * (apart / FREQUENCY_WIDTH) ** 2
+    held = []
+    for i, k in enumerate(np.argmax(likely, axis=1)):
+        far, unlike = abs(apart[i, k]) > 2.0 * FREQUENCY_WIDTH, subspace_mac[i, k] < LEAST_MAC
+        verdict: Verdict = "shape" if unlike else "frequency" if far else "taken"
+        mode, share = int(visible[k]), float(subspace_mac[i, k])
+        other = Held(mode, float(frequency_hz[mode]), float(np.expm1(apart[i, k])), share, verdict)
+        held.append(paired.get(i, other))
+    return tuple(held)
+
+
+def _paired(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> dict[int, Held]:
+    """Return the counterpart of each measured mode that has one, by index."""
+    if not estimates or not np.isfinite(frequency_hz).any():
         return {}
     visible, single, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
-    score = (subspace_mac + 0.1 * single) * np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
-    rows, columns = linear_sum_assignment(-score)
+    rows, columns = linear_sum_assignment(-(subspace_mac + 0.1 * single) * _nearness(apart))
     return {
-        int(visible[column]): (int(row), float(subspace_mac[row, column]))
-        for row, column in zip(rows, columns, strict=True)
-        if subspace_mac[row, column] >= LEAST_MAC and abs(apart[row, column]) <= 2.0 * FREQUENCY_WIDTH
+        int(i): Held(
+            int(visible[k]),
+            float(frequency_hz[visible[k]]),
+            float(np.expm1(apart[i, k])),
+            float(subspace_mac[i, k]),
+            "paired",
+        )
+        for i, k in zip(rows, columns, strict=True)
+        if subspace_mac[i, k] >= LEAST_MAC and abs(apart[i, k]) <= 2.0 * FREQUENCY_WIDTH
     }
+
+
+def _nearness(apart: Any) -> Any:
+    return np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
 
 
 def subspace_mac_nearby(
@@ -71,10 +151,11 @@ def subspace_mac_nearby(
 def _compared(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
 ) -> tuple[npt.NDArray[np.intp], FloatArray, FloatArray, FloatArray]:
-    """Return the visible modes of the model and, per estimate and visible mode, MAC, subspace MAC, Δ ln f."""
+    """Return the visible modes by frequency; per estimate and visible mode, MAC, subspace MAC and Δ ln f."""
     measured = np.array([e.mode_shape / np.linalg.norm(e.mode_shape) for e in estimates])
-    size = np.linalg.norm(shapes, axis=0)
+    size = np.where(np.isfinite(frequency_hz), np.linalg.norm(shapes, axis=0), 0.0)
     visible = np.flatnonzero(size >= LEAST_VISIBLE * size.max())
+    visible = visible[np.argsort(frequency_hz[visible], kind="stable")]
     single = np.array([[mac(x, shape) for shape in shapes[:, visible].T] for x in measured])
     subspace_mac = np.empty_like(single)
     for group in near_degenerate(frequency_hz[visible], MIXING):

@@ -1,0 +1,90 @@
+"""The numbered modes on softer and softer feet: what a measured mode may be, besides that of pinned feet.
+
+Modes are numbered on pinned feet. Springs there lower some of them far more than others (the second bending
+pair of a jacket by a third) and change their shapes, so that a measured mode may be near its counterpart
+only once the feet give way. Each mode is followed by shape from one stiffness to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.response.mode_tracking import track_modes
+from jackettwin.response.system import build_system
+from jackettwin.soil.support import on_translations, standing
+from jackettwin.soil.viscoelastic import Prony
+from jackettwin.structure import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+
+STIFFEST_N_M, SOFTEST_N_M = 1e11, 1e7
+"""Stiffness of a foot on each translation [N/m]: beyond the first it is as good as pinned; softer feet than
+the second carry no wind turbine."""
+PER_DECADE = 4
+"""Steps of the stiffness: from one to the next no frequency of the first pairs moves by more than a
+fourteenth, half of what pairing allows."""
+LOWEST_SHARE = 0.5
+"""The path ends where the first mode has lost half of its frequency: no foundation is so soft."""
+EXTRA = 6
+"""Further modes computed at every step, among which the numbered ones are looked for."""
+
+
+@dataclass(frozen=True)
+class Feet:
+    """The numbered modes on feet of one stiffness.
+
+    Attributes
+    ----------
+    stiffness_n_m : float
+        Of each translation of each foot; inf for the feet that modes are numbered on.
+    frequency_hz : (n_modes,)
+        In the order of the numbers, not of frequency; NaN where a mode was lost sight of.
+    shapes : (n_dof, n_modes)
+    """
+
+    stiffness_n_m: float
+    frequency_hz: FloatArray
+    shapes: FloatArray
+
+
+def softer_feet(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]:
+    """Return the numbered modes on pinned feet, then on springs, softer and softer.
+
+    A structure numbered on clamped feet (a monopile) has only these: translations alone do not hold it.
+    """
+    path = [Feet(np.inf, numbered.frequency_hz, numbered.shapes)]
+    on_pins = all(len(dofs) == len("xyz") for _, dofs in standing(assembly.structure).fixed)
+    decades = np.log10(STIFFEST_N_M / SOFTEST_N_M)
+    for stiffness in (
+        np.geomspace(STIFFEST_N_M, SOFTEST_N_M, int(PER_DECADE * decades) + 1) if on_pins else ()
+    ):
+        try:
+            found = _on_springs(assembly, float(stiffness), path[-1])
+        except InputError:  # falls over under its own weight: so soft are no feet
+            break
+        if not found.frequency_hz[0] >= LOWEST_SHARE * numbered.frequency_hz[0]:
+            break
+        path.append(found)
+    return tuple(path)
+
+
+def _on_springs(assembly: Assembly, stiffness: float, before: Feet) -> Feet:
+    """Return the modes of ``before`` on springs; one that is lost keeps its shape and has no frequency."""
+    system = build_system(assembly, on_translations(assembly.structure, Prony(k0=stiffness)))
+    modes = undamped_modes(system, len(before.frequency_hz) + EXTRA)
+    order = np.argsort(before.frequency_hz)  # NaN, of modes lost sight of, goes last
+    successor = np.empty_like(order)
+    successor[order] = track_modes(
+        assembly.mass, before.frequency_hz[order], before.shapes[:, order], modes.shapes
+    )
+    lost = successor < 0
+    return Feet(
+        stiffness,
+        np.where(lost, np.nan, modes.frequency_hz[successor]),
+        np.where(lost, before.shapes, modes.shapes[:, successor]),
+    )
