@@ -20,6 +20,7 @@ from jackettwin.cli.superelement import superelement_command
 from jackettwin.cli.update import update_command
 from jackettwin.cli.verify import verify_command
 from jackettwin.cli.view import view_command
+from jackettwin.cli.watch import watch_command
 from jackettwin.version import __version__
 
 
@@ -40,6 +41,7 @@ for command in (
     identify_command,
     update_command,
     follow_command,
+    watch_command,
     refine_command,
     superelement_command,
     export_command,

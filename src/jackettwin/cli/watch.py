@@ -1,0 +1,107 @@
+"""``jackettwin watch``: a table of modes through time, judged."""
+
+from __future__ import annotations
+
+from datetime import UTC
+from pathlib import Path
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import output, print_json, progress
+from jackettwin.errors import InputError, located
+from jackettwin.files import atomic_folder, write_json
+from jackettwin.records.readers.description import parse_time
+from jackettwin.report.watch_page import build_watch_page
+from jackettwin.twin.modal_table import ModalTable, read_modal_table
+from jackettwin.twin.watched import watch_table
+from jackettwin.twin.watched_document import statement, watched_document
+
+_SHOWN = 4
+"""Causes printed at most."""
+
+
+@click.command("watch")
+@click.argument("table", type=click.Path(path_type=Path, dir_okay=False))
+@click.option("--columns", help="Frequency columns of a table with one column a mode: f1,f2,…")
+@click.option("--conditions", help="Columns that are conditions, or none; default: all other numbers.")
+@click.option(
+    "--baseline-days",
+    default=365.0,
+    show_default=True,
+    type=click.FloatRange(min=1.0),
+    help="The healthy time.",
+)
+@click.option(
+    "--arl-years", default=10.0, show_default=True, type=click.FloatRange(min=0.1, max=1e4),
+    help="Mean time between false alarms, at least.",
+)  # fmt: skip
+@click.option("--relearn", help="Learn anew from this time on: after a repair or a confirmed change.")
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print what watched.json holds.")
+def watch_command(
+    table: Path,
+    columns: str | None,
+    conditions: str | None,
+    baseline_days: float,
+    arl_years: float,
+    relearn: str | None,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Say whether the modes in TABLE have changed, since when, by how much, and why.
+
+    TABLE is CSV or Parquet, sorted by time: one row a mode and time (time_utc, label, frequency_hz, and,
+    if they are known, frequency_std_hz, damping_ratio, damping_ratio_std), or one column a mode with
+    --columns. Further columns are conditions. The first days are taken as healthy.
+    """
+    read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
+    from_day = _day(read, relearn)
+    with progress(2 + len(read.history.by_day()), read.name) as step, located(file=table):
+        watched = watch_table(
+            read, baseline_days=baseline_days, arl_years=arl_years, from_day=from_day, progress=step
+        )
+    document = watched_document(watched)
+    if out is not None:
+        with atomic_folder(out) as temporary:
+            write_json(document, temporary / "watched.json")
+            build_watch_page(watched, temporary / "report.html")
+    if as_json:
+        print_json(document)
+        return
+    output.print(statement(watched))
+    for alarm in document["alarms"]:
+        output.print(_causes(alarm))
+    for limit in watched.limits:
+        output.print(f"limit: {limit}")
+    if out is not None:
+        output.print(f"report: {out / 'report.html'}")
+
+
+def _names(text: str | None) -> tuple[str, ...] | None:
+    return None if text is None else tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def _chosen(conditions: str | None) -> tuple[str, ...] | None:
+    names = _names(conditions)
+    return () if names == ("none",) else names
+
+
+def _day(table: ModalTable, relearn: str | None) -> float:
+    if relearn is None:
+        return 0.0
+    with located(field="--relearn"):
+        try:
+            time = parse_time(relearn)
+        except InputError as error:
+            raise InputError(error.problem, value=relearn, allowed="2025-01-01T13:00:00Z") from None
+    return (time.astimezone(UTC) - table.origin).total_seconds() / 86400.0
+
+
+def _causes(alarm: dict[str, object]) -> Table:
+    table = Table("cause", "probability [%]", title=f"alarm of {alarm['time_utc']}", title_justify="left")
+    for cause in alarm["causes"][:_SHOWN]:  # type: ignore[index]
+        table.add_row(cause["cause"], f"{100.0 * cause['probability']:.1f}")
+    return table

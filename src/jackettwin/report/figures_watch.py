@@ -1,0 +1,112 @@
+"""Modes watched: what is unexplained, the evidence, and the pattern of a change against causes."""
+
+from __future__ import annotations
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from jackettwin.report import style
+from jackettwin.report.numbers import words
+from jackettwin.twin.watched import Alarm, Watched
+
+_BAND = 1.645
+
+
+def unexplained_through_time(watched: Watched) -> go.Figure:
+    """Draw the day's mean of each frequency less what conditions explain, with band and alarms."""
+    chosen = [i for i, (kind, _) in enumerate(watched.watch.quantities) if kind == "frequency"]
+    chosen = chosen or list(range(len(watched.watch.quantities)))
+    figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
+    for row, i in enumerate(chosen, start=1):
+        _line(figure, watched, i, row)
+        for number, alarm in enumerate(watched.alarms):
+            _mark(figure, watched, alarm, i, row, named=row == 1 and number == 0)
+        label = words(watched.watch.labels[watched.watch.quantities[i][1]])
+        figure.update_yaxes(title=style.title(label, "%"), row=row, col=1)
+    figure.update_xaxes(title="time (UTC)", row=len(chosen), col=1)
+    return style.finish(figure, height=max(380, 150 * len(chosen) + 80))
+
+
+def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
+    times = [watched.table.time(look.day) for look in watched.looks]
+    rest = 100.0 * np.array([look.rest[i] for look in watched.looks])
+    half = 100.0 * _BAND * np.array([look.rest_std[i] for look in watched.looks])
+    seen = np.isfinite(rest) & np.isfinite(half)
+    kept = [t for t, good in zip(times, seen, strict=True) if good]
+    place = {"row": row, "col": 1, "showlegend": row == 1}
+    figure.add_scatter(
+        x=[*kept, *kept[::-1]], y=[*half[seen], *-half[seen][::-1]], fill="toself",
+        fillcolor=style.rgba(style.GREY, 0.2), line={"width": 0}, hoverinfo="skip",
+        name="90 % if unchanged", legendgroup="band", **place,
+    )  # fmt: skip
+    figure.add_scatter(
+        x=kept, y=rest[seen], mode="markers", marker={"size": 4, "color": style.BLUE},
+        name="day's mean, unexplained", legendgroup="days", **place,
+    )  # fmt: skip
+
+
+def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *, named: bool) -> None:
+    change, table = alarm.change, watched.table
+    low, high = (table.time(day) for day in change.began_interval_90)
+    at = table.time(change.day)
+    figure.add_vrect(x0=low, x1=high, fillcolor=style.ORANGE, opacity=0.25, line_width=0, row=row, col=1)
+    figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
+    if change.kind == "scatter" or not change.members[i]:
+        return
+    end = table.time(watched.looks[-1].day)
+    figure.add_scatter(
+        x=[table.time(change.began), end], y=[100.0 * change.size[i]] * 2, mode="lines",
+        line={"color": style.VERMILLION, "width": 2}, name="change found", legendgroup="change",
+        showlegend=named, row=row, col=1,
+    )  # fmt: skip
+
+
+def evidence_through_time(watched: Watched) -> go.Figure:
+    """Draw ln R over time and the threshold."""
+    times = [watched.table.time(look.day) for look in watched.looks]
+    figure = go.Figure()
+    figure.add_scatter(x=times, y=[look.log_r for look in watched.looks], mode="lines",
+                       line={"color": style.BLUE}, name="ln R")  # fmt: skip
+    figure.add_scatter(x=[times[0], times[-1]], y=[watched.watch.log_threshold] * 2, mode="lines",
+                       line={"color": style.VERMILLION, "dash": "dash"}, name="alarm")  # fmt: skip
+    figure.update_yaxes(title="evidence for a change, ln R [-]")
+    figure.update_xaxes(title="time (UTC)")
+    return style.finish(figure, height=320)
+
+
+def explained_shares(watched: Watched) -> go.Figure:
+    """Draw what explains how much of each quantity over the baseline."""
+    keys = watched.watch.quantities
+    labels = [
+        f"{words(watched.watch.labels[q])}{'' if kind == 'frequency' else ', damping'}" for kind, q in keys
+    ]
+    names = list(dict.fromkeys(name for key in keys for name in watched.explained[key]))
+    figure = go.Figure()
+    for name in names:
+        share = [100.0 * max(watched.explained[key].get(name, 0.0), 0.0) for key in keys]
+        figure.add_bar(y=labels, x=share, name=name, orientation="h")
+    figure.update_xaxes(title=style.title("share of the variance over the baseline", "%"))
+    figure.update_layout(barmode="stack")
+    return style.finish(figure, height=max(300, 34 * len(keys) + 130))
+
+
+def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
+    """Draw the change of each quantity with its 90 % interval."""
+    keys = watched.watch.quantities
+    change = alarm.change
+    figure = make_subplots(rows=1, cols=2, horizontal_spacing=0.16)
+    for column, kind in enumerate(("frequency", "damping"), start=1):
+        chosen = [i for i, key in enumerate(keys) if key[0] == kind]
+        if not chosen:
+            continue
+        figure.add_scatter(
+            x=[100.0 * change.size[i] for i in chosen],
+            y=[words(watched.watch.labels[keys[i][1]]) for i in chosen],
+            error_x={"type": "data", "array": [100.0 * _BAND * change.size_std[i] for i in chosen]},
+            mode="markers", marker={"size": 9, "color": style.VERMILLION}, showlegend=False, row=1,
+            col=column,
+        )  # fmt: skip
+        what = "noise" if change.kind == "scatter" else kind
+        figure.update_xaxes(title=style.title(f"change of {what}", "%"), row=1, col=column)
+    return style.finish(figure, height=max(300, 40 * len(keys) // 2 + 160))

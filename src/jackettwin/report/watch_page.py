@@ -1,0 +1,90 @@
+"""The page on modes watched through time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jackettwin.report.figures_watch import (
+    change_pattern,
+    evidence_through_time,
+    explained_shares,
+    unexplained_through_time,
+)
+from jackettwin.report.numbers import count
+from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
+from jackettwin.twin.watched import Alarm, Watched
+from jackettwin.twin.watched_document import alarm_document, statement
+from jackettwin.version import __version__
+
+
+def build_watch_page(watched: Watched, path: Path) -> Path:
+    """Write one self-contained HTML file on modes watched through time; return its path.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    outcome: list[Block] = [Text((statement(watched),))]
+    sections = []
+    if watched.looks:
+        caption = (
+            "What conditions do not explain of each frequency, day by day. Grey: where nine days of ten "
+            "lie if nothing has changed. Orange: when the change began, 90 %; red: the alarm, and its size."
+        )
+        outcome.append(Plot("unexplained_through_time", caption, unexplained_through_time(watched)))
+    sections.append(Section("Has it changed?", tuple(outcome)))
+    sections += [
+        Section(f"Change {i}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, alarm, i)))
+        for i, alarm in enumerate(watched.alarms, start=1)
+    ]
+    if watched.looks:
+        caption = (
+            f"Evidence of all changes that are looked for, summed over when they began. While nothing "
+            f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
+        )
+        sections.append(
+            Section("Evidence", (Plot("evidence_through_time", caption, evidence_through_time(watched)),))
+        )
+    caption = "What explains how much of the variance of each quantity over the baseline."
+    sections.append(
+        Section("What moves the modes", (Plot("explained_shares", caption, explained_shares(watched)),))
+    )
+    if watched.limits:
+        sections.append(Section("Limits", (Text(watched.limits, "list"),)))
+    return write_page(
+        sections,
+        path,
+        title=f"{watched.table.name} watched",
+        subtitle=f"{count(len(watched.looks), 'day')} after the baseline · jackettwin {__version__}",
+    )
+
+
+def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
+    document = alarm_document(watched, alarm)
+    rows = []
+    for cause in document["causes"]:
+        size = "–" if np.isnan(cause["size"]) else _size(cause)
+        rows.append((cause["cause"], f"{100.0 * cause['probability']:.1f}", size))
+    caption = "Causes, after the data of the change; sizes with 90 % intervals."
+    blocks: list[Block] = [
+        Table(caption, ("cause", "probability [%]", "size"), tuple(rows)),
+        Plot(f"change_pattern_{number}", "Change of each quantity, 90 %.", change_pattern(watched, alarm)),
+    ]
+    if document["inseparable"]:
+        said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
+        blocks.append(Text(said, "list"))
+    if document["next_measurements"]:
+        said = tuple(f"{m['what']}: {m['gain_nats']:.2f} nats" for m in document["next_measurements"])
+        blocks.append(Text(("What would tell the causes apart, the most telling first:", *said), "list"))
+    return blocks
+
+
+def _size(cause: dict[str, Any]) -> str:
+    low, high = cause["interval_90"]
+    if cause["unit"] == "-":
+        return f"{100.0 * cause['size']:+.2f} % ({100.0 * low:+.2f} to {100.0 * high:+.2f})"
+    return f"{cause['size']:.3g} {cause['unit']} ({low:.3g} to {high:.3g})"

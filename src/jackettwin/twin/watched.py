@@ -1,0 +1,164 @@
+"""A table of modes watched: baseline, then day by day, what changed, and what it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.twin.modal_table import ModalTable
+from jackettwin.watching import (
+    Cause,
+    Change,
+    Diagnosis,
+    History,
+    Look,
+    Watch,
+    diagnose,
+    general_causes,
+    start,
+    step,
+)
+from jackettwin.watching.design import fresh, regressors
+from jackettwin.watching.explained import shares, unexplained_std
+
+FloatArray = npt.NDArray[np.float64]
+Causes = Callable[[Watch, History], tuple[Cause, ...]]
+
+RARE_DAYS = 3
+"""Days after the baseline below which there is nothing to watch yet."""
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """A change and what it was."""
+
+    change: Change
+    diagnosis: Diagnosis
+    next_measurements: tuple[tuple[str, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A table of modes, judged.
+
+    Attributes
+    ----------
+    baseline_days : (first, last) day of the baseline
+    watch : the state after the last day
+    looks : of each day with records after the baseline
+    explained : {(kind, mode): {condition: share of variance over the baseline}}
+    unexplained_std : {(kind, mode): of the logarithm}
+    limits : what could not be done, as sentences
+    """
+
+    table: ModalTable
+    baseline_days: tuple[float, float]
+    watch: Watch
+    looks: tuple[Look, ...]
+    alarms: tuple[Alarm, ...]
+    explained: Mapping[tuple[str, int], Mapping[str, float]]
+    unexplained_std: Mapping[tuple[str, int], float]
+    limits: tuple[str, ...]
+
+
+def watch_table(
+    table: ModalTable,
+    *,
+    baseline_days: float = 365.0,
+    arl_years: float = 10.0,
+    from_day: float = 0.0,
+    causes: Causes | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Watched:
+    """Return what a table says: nothing of it is looked at before its day.
+
+    Parameters
+    ----------
+    baseline_days : from the first row on, or from ``from_day``
+    from_day : earlier rows are left out: after a repair or a confirmed change the baseline is learnt anew
+    causes : what may have happened, from a model; None for what patterns over modes tell by themselves
+    progress : told what is being done
+
+    Raises
+    ------
+    InputError
+        If there is too little to learn from.
+    """
+    history = table.history.between(from_day, np.inf)
+    if not history.days.size:
+        raise InputError("no rows after the time to learn anew from", field="--relearn", value=from_day)
+    first = float(np.floor(history.days[0]))
+    end = first + baseline_days
+    baseline = history.between(first, end)
+    rest = history.between(end, np.inf)
+    limits = list(table.remarks)
+    if not rest.days.size:
+        limits.append(
+            f"all {history.days[-1] - first:.0f} days lie in the baseline of {baseline_days:g}: "
+            "nothing is watched yet"
+        )
+    progress("baseline")
+    watch = start(baseline, arl_years=arl_years)
+    limits += _limits(watch, baseline)
+    explained, unexplained = _explained(watch, baseline)
+    known = causes(watch, baseline) if causes is not None else _general(watch, baseline)
+    looks, alarms = [], []
+    kinds = [kind for kind, _ in watch.quantities]
+    for day in rest.by_day():
+        progress(f"{table.time(float(day.days[0])):%Y-%m}")
+        watch, look = step(watch, day)
+        looks.append(look)
+        if look.change is not None:
+            alarms.append(Alarm(look.change, diagnose(look.change, known, kinds)))
+    return Watched(
+        table, (first, end), watch, tuple(looks), tuple(alarms), explained, unexplained, tuple(limits)
+    )
+
+
+def _general(watch: Watch, baseline: History) -> tuple[Cause, ...]:
+    return general_causes(watch.quantities, watch.labels, _typical_hz(baseline))
+
+
+def _typical_hz(baseline: History) -> FloatArray:
+    seen = [f[np.isfinite(f) & (f > 0.0)] for f in baseline.frequency.T]
+    return np.array([np.median(f) if f.size else np.nan for f in seen])
+
+
+def _limits(watch: Watch, baseline: History) -> list[str]:
+    said = []
+    kept = {mode for kind, mode in watch.quantities if kind == "frequency"}
+    left = [label for q, label in enumerate(watch.labels) if q not in kept]
+    if left:
+        said.append(f"too few values in the baseline to be watched: {', '.join(left)}")
+    if len(kept) == 1:
+        said.append("one mode only: what it shares with others cannot be told from a change of its own")
+    used = {column.source for column in watch.design.columns}
+    constant = [name for k, name in enumerate(baseline.condition_names) if k not in used]
+    if constant:
+        said.append(f"constant over the baseline or nearly empty, left out: {', '.join(constant)}")
+    span = float(np.ptp(baseline.days))
+    if span < 330.0:
+        said.append(
+            f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
+            "counts as a change"
+        )
+    return said
+
+
+def _explained(
+    watch: Watch, baseline: History
+) -> tuple[dict[tuple[str, int], dict[str, float]], dict[tuple[str, int], float]]:
+    rows, _ = regressors(watch.design, baseline, fresh(watch.design))
+    explained: dict[tuple[str, int], dict[str, float]] = {}
+    unexplained: dict[tuple[str, int], float] = {}
+    for block in watch.blocks:
+        value = getattr(baseline, block.kind)[:, block.kept]
+        values = np.log(np.where(value > 0.0, value, np.nan) / block.typical)
+        keys = [(block.kind, int(q)) for q in block.kept]
+        explained |= dict(zip(keys, shares(block, watch.design, rows, values), strict=True))
+        unexplained |= dict(zip(keys, map(float, unexplained_std(block)), strict=True))
+    return explained, unexplained

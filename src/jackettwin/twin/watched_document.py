@@ -1,0 +1,116 @@
+"""What ``jackettwin watch`` prints as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from jackettwin.twin.watched import Alarm, Watched
+from jackettwin.watching.diagnosis import Verdict
+
+_Z90 = 1.645
+_LIKELY = 0.001
+"""Causes below this probability are not listed."""
+
+
+def watched_document(watched: Watched) -> dict[str, Any]:
+    """Return a judged table as plain data; sizes are relative changes, times UTC."""
+    table = watched.table
+    first, end = watched.baseline_days
+    alarms = [alarm_document(watched, alarm) for alarm in watched.alarms]
+    return {
+        "name": table.name,
+        "statement": statement(watched),
+        "alarms": alarms,
+        "quantities": {
+            _name(watched, key): {
+                "explained_by": dict(watched.explained[key]),
+                "unexplained_std": watched.unexplained_std[key],
+            }
+            for key in watched.watch.quantities
+        },
+        "windows": int(table.history.days.size),
+        "days_watched": len(watched.looks),
+        "arl_years": watched.watch.arl_years,
+        "baseline_utc": [table.time(first).isoformat(), table.time(end).isoformat()],
+        "threshold_ln": watched.watch.log_threshold,
+        "evidence": [
+            {"time_utc": table.time(look.day).isoformat(), "ln_evidence": look.log_r}
+            for look in watched.looks
+        ],
+        "limits": list(watched.limits),
+    }
+
+
+def alarm_document(watched: Watched, alarm: Alarm) -> dict[str, Any]:
+    """Return an alarm as plain data."""
+    change, table = alarm.change, watched.table
+    low, high = change.began_interval_90
+    names = [_name(watched, key) for key in watched.watch.quantities]
+    members = np.flatnonzero(change.members)
+    moved = {names[i]: _sized(change.size[i], change.size_std[i]) for i in range(len(names))}
+    lead = members[np.argmax(change.by_mode[members])]
+    return {
+        "time_utc": table.time(change.day).isoformat(),
+        "began_utc": table.time(change.began).isoformat(),
+        "began_interval_90": [table.time(low).isoformat(), table.time(high).isoformat()],
+        "kind": change.kind,
+        "quantities": [names[i] for i in members],
+        "size": moved[names[lead]]["size"],
+        "size_interval_90": moved[names[lead]]["interval_90"],
+        "by_quantity": moved,
+        "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
+        "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
+        "next_measurements": [{"what": what, "gain_nats": gain} for what, gain in alarm.next_measurements],
+        "ln_evidence": change.log_r,
+    }
+
+
+def _sized(size: float, std: float) -> dict[str, Any]:
+    low, mid, high = np.expm1([size - _Z90 * std, size, size + _Z90 * std])
+    return {"size": float(mid), "interval_90": [float(low), float(high)]}
+
+
+def _cause(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "cause": verdict.cause,
+        "probability": verdict.probability,
+        "size": verdict.size,
+        "interval_90": None if np.isnan(verdict.size) else list(verdict.interval_90),
+        "unit": verdict.unit,
+    }
+
+
+def _name(watched: Watched, key: tuple[str, int]) -> str:
+    kind, mode = key
+    label = watched.watch.labels[mode]
+    return label if kind == "frequency" else f"{label} damping"
+
+
+def statement(watched: Watched) -> str:
+    """Return the outcome in a sentence."""
+    table = watched.table
+    if not watched.looks:
+        return "Nothing is watched yet: the table ends with its baseline."
+    if not watched.alarms:
+        last = table.time(watched.looks[-1].day)
+        return (
+            f"No change found in {len(watched.looks)} days with records up to {last:%Y-%m-%d}; a false alarm "
+            f"is expected once in {watched.watch.arl_years:g} years or more rarely."
+        )
+    parts = []
+    for alarm in watched.alarms:
+        change, best = alarm.change, alarm.diagnosis.verdicts[0]
+        doc = alarm_document(watched, alarm)
+        low, high = (100.0 * x for x in doc["size_interval_90"])
+        what = "scatter of" if change.kind == "scatter" else "change of"
+        names = ", ".join(doc["quantities"])
+        parts.append(
+            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by "
+            f"{100.0 * doc['size']:+.2f} % ({low:+.2f} to {high:+.2f} %), began {table.time(change.began):%Y-%m-%d} "
+            f"({table.time(change.began_interval_90[0]):%Y-%m-%d} to "
+            f"{table.time(change.began_interval_90[1]):%Y-%m-%d}); "
+            f"most likely {best.cause} ({100.0 * best.probability:.0f} %)."
+        )
+    return " ".join(parts)

@@ -1,0 +1,314 @@
+"""One kind of quantity of all modes, ln f or ln ζ: from a day's records to what the day says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.watching.design import Design
+from jackettwin.watching.directions import Directions, log_bayes_factors
+from jackettwin.watching.history import History, Kind, logarithms
+from jackettwin.watching.hours import NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
+from jackettwin.watching.memory import Bank, Belief, Learnt, Memory, empty_bank, filtered, learn
+from jackettwin.watching.scatter import log_ratios, steadiness
+
+FloatArray = npt.NDArray[np.float64]
+
+WINDOW_DAYS = 1.0 / 24.0
+"""Records are averaged over an hour of the clock."""
+_LEAST_STD, _MOST_STD = 0.3, 5.0
+"""Stated standard deviations are believed within these factors of their median."""
+_BROAD = {"frequency": 0.03, "damping": 0.5}
+"""Prior standard deviation of a change once it is certain that there is one."""
+_MAD = 1.4826
+_FEWEST = 30
+"""Values of a quantity in the baseline from which it is watched."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """What is known of one kind of quantity.
+
+    Attributes
+    ----------
+    kind : of the quantities
+    kept : (m,) columns of the history that are watched
+    typical : (m,) values of the baseline
+    usual_std : (m,) relative standard deviation where none is stated
+    spread : (m,) standard deviation over the baseline, by which priors of coefficients are scaled
+    memories, beliefs, banks, log_weights : models, and what each knows
+    louder : (m,) factors on the noise, above 1 while a sensor is known to fail
+    tail : (NEIGHBOURS, m) last values less what conditions explain
+    steadiness : (m,) of the scatter from day to day
+    reference : coefficients (m, p) at the end of the baseline, by which remainders are drawn
+    directions : steps that are bet on
+    """
+
+    kind: Kind
+    kept: npt.NDArray[np.intp]
+    typical: FloatArray
+    usual_std: FloatArray
+    spread: FloatArray
+    memories: tuple[Memory, ...]
+    beliefs: tuple[Belief, ...]
+    banks: tuple[Bank, ...]
+    log_weights: FloatArray
+    louder: FloatArray
+    tail: FloatArray
+    steadiness: FloatArray
+    reference: FloatArray
+    directions: Directions
+
+
+@dataclass(frozen=True)
+class Spoken:
+    """What a day says of one kind of quantity.
+
+    Attributes
+    ----------
+    rest : (m,) the day's mean less what conditions explain by the baseline's coefficients
+    rest_std : (m,) its standard deviation if nothing has changed
+    chi2, freedom : (m,) scatter in units of the noise's variance, and its degrees of freedom
+    z : (n_hours, m) innovations over their standard deviations, of the likeliest model
+    """
+
+    rest: FloatArray
+    rest_std: FloatArray
+    chi2: FloatArray
+    freedom: FloatArray
+    z: FloatArray
+
+
+def watched(baseline: History, kind: Kind) -> npt.NDArray[np.intp]:
+    """Return which columns have enough values to be watched."""
+    value = getattr(baseline, kind)
+    return np.flatnonzero((np.isfinite(value) & (value > 0.0)).sum(axis=0) >= _FEWEST)
+
+
+def begin(
+    baseline: History,
+    design: Design,
+    rows: FloatArray,
+    kind: Kind,
+    directions: Directions,
+    kept: npt.NDArray[np.intp],
+) -> tuple[Block, Hours]:
+    """Return what a baseline teaches of one kind of quantity, and its hours."""
+    value = getattr(baseline, kind)[:, kept]
+    typical = np.asarray(np.nanmedian(np.where(value > 0.0, value, np.nan), axis=0))
+    y, relative = logarithms(baseline, kind, np.ones(getattr(baseline, kind).shape[1]))
+    y = y[:, kept] - np.log(typical)
+    y[~np.isfinite(rows).all(axis=1)] = np.nan
+    relative = _relative(baseline, kind, kept, typical)
+    x = np.nan_to_num(rows)
+    usual, rest = _usual_std(baseline.days, x, y, relative, design)
+    variance = _variance(relative, usual)
+    apart, tail = _set_apart(baseline, rest, variance)
+    y[apart] = np.nan
+    hours = by_hour(baseline.days, baseline.states, x, y, variance, WINDOW_DAYS)
+    many = np.floor(baseline.days)
+    beside = np.stack([apart[many == d].sum(axis=0) for d in np.unique(many)])
+    spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
+    learnt = learn(hours, np.outer(spread, design.priors))
+    return _block(learnt, hours, kind, kept, typical, usual, spread, tail, directions, beside), hours
+
+
+def _block(
+    learnt: Learnt, hours: Hours, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray,
+    usual: FloatArray, spread: FloatArray, tail: FloatArray, directions: Directions, beside: FloatArray,
+) -> Block:  # fmt: skip
+    m, p = len(kept), hours.rows.shape[1]
+    chi2, freedom = _by_day(hours, learnt.memories[0])
+    chi2, freedom = _with_outliers(chi2, freedom, beside)
+    nu = np.array([steadiness(chi2[:, q], freedom[:, q]) for q in range(m)])
+    bank = empty_bank(m, learnt.beliefs[0].mean.size)
+    return Block(
+        kind, kept, typical, usual, spread, learnt.memories, learnt.beliefs,
+        tuple(bank for _ in learnt.memories), learnt.log_weights, np.ones(m), tail, nu,
+        learnt.beliefs[0].mean[: m * p].reshape(m, p), directions,
+    )  # fmt: skip
+
+
+def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
+    day = np.unique(np.floor(hours.days), return_inverse=True)[1]
+    out = np.zeros((2, day.max(initial=-1) + 1, hours.values.shape[1]))
+    np.add.at(out[0], day, hours.chi2 / memory.scale**2)
+    np.add.at(out[1], day, hours.freedom)
+    return out[0], out[1]
+
+
+def _with_outliers(chi2: FloatArray, freedom: FloatArray, apart: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return scatter with what was set aside, each as far out as is just tolerated."""
+    return chi2 + OUTLIER**2 * apart, freedom + apart
+
+
+def _relative(history: History, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray) -> FloatArray:
+    at = np.ones(getattr(history, kind).shape[1])
+    at[kept] = typical
+    return logarithms(history, kind, at)[1][:, kept]
+
+
+def _usual_std(
+    days: FloatArray, x: FloatArray, y: FloatArray, relative: FloatArray, design: Design
+) -> tuple[FloatArray, FloatArray]:
+    """Return (m,) the usual standard deviation, stated or from neighbours' differences, and remainders."""
+    m = y.shape[1]
+    usual, rest = np.empty(m), np.full(y.shape, np.nan)
+    for q in range(m):
+        seen = np.flatnonzero(np.isfinite(y[:, q]))
+        weight = np.ones(seen.size)
+        for _ in range(4):  # weights of Huber: outliers do not bend the line
+            prior = np.diag((design.priors * max(float(np.std(y[seen, q])), 1e-12)) ** -2.0)
+            left = (x[seen].T * weight) @ x[seen] / _robust(y[seen, q]) ** 2
+            right = (x[seen].T * weight) @ y[seen, q] / _robust(y[seen, q]) ** 2
+            rest[seen, q] = y[seen, q] - x[seen] @ np.linalg.solve(left + prior, right)
+            weight = np.minimum(1.0, 1.5 * _robust(rest[seen, q]) / np.maximum(np.abs(rest[seen, q]), 1e-12))
+        near = np.diff(days[seen]) < 0.25
+        pairs = np.diff(rest[seen, q])[near] if near.sum() > _FEWEST // 2 else np.diff(rest[seen, q])
+        stated = relative[np.isfinite(relative[:, q]), q]
+        usual[q] = (
+            np.median(stated) if stated.size > _FEWEST // 2 else max(_robust(pairs) / np.sqrt(2.0), 1e-6)
+        )
+    return usual, rest
+
+
+def _robust(x: FloatArray) -> float:
+    return max(float(_MAD * np.median(np.abs(x - np.median(x)))), 1e-9)
+
+
+def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:
+    filled = np.where(np.isfinite(relative), relative, usual)
+    return np.asarray(np.clip(filled, _LEAST_STD * usual, _MOST_STD * usual) ** 2)
+
+
+def _set_apart(
+    baseline: History, rest: FloatArray, variance: FloatArray
+) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+    """Return the outliers of a baseline, day by day, and the last values."""
+    m = rest.shape[1]
+    scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
+                      for r, v in zip(rest.T, variance.T, strict=True)])  # fmt: skip
+    apart, tail = np.zeros(rest.shape, dtype=np.bool_), np.full((NEIGHBOURS, m), np.nan)
+    day = np.floor(baseline.days)
+    for d in np.unique(day):
+        today = day == d
+        apart[today], tail = outliers(rest[today], variance[today] * np.maximum(scale, 1.0) ** 2, tail)
+    return apart, tail
+
+
+def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
+    """Return the hours of a day, how many values were set aside (m,), and the block with its last values."""
+    y, _ = logarithms(history, block.kind, np.ones(getattr(history, block.kind).shape[1]))
+    y = y[:, block.kept] - np.log(block.typical)
+    y[~np.isfinite(rows).all(axis=1)] = np.nan
+    x = np.nan_to_num(rows)
+    variance = _variance(_relative(history, block.kind, block.kept, block.typical), block.usual_std)
+    variance = variance * block.louder**2
+    memory = block.memories[0]
+    moving = variance * memory.scale**2 + memory.short_std**2
+    apart, tail = outliers(y - x @ block.reference.T, moving, block.tail)
+    y[apart] = np.nan
+    hours = by_hour(history.days, history.states, x, y, variance, WINDOW_DAYS)
+    return hours, apart.sum(axis=0), replace(block, tail=tail)
+
+
+def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
+    """Return the block after some hours and what they say; its banks have grown by one begin."""
+    beliefs, banks, likelihoods, spoken = [], [], [], None
+    for memory, belief, bank in zip(block.memories, block.beliefs, block.banks, strict=True):
+        done = filtered(memory, belief, _with_begin(bank), hours, last_day)
+        beliefs.append(done.belief)
+        banks.append(done.bank)
+        likelihoods.append(done.log_likelihood)
+        if spoken is None:
+            spoken = _spoken(block, hours, apart, done.innovation / np.sqrt(done.spread))
+    weights = block.log_weights + np.array(likelihoods)
+    weights = weights - np.logaddexp.reduce(weights)
+    if spoken is None:
+        raise ValueError("a block without models")
+    return replace(block, beliefs=tuple(beliefs), banks=tuple(banks), log_weights=weights), spoken
+
+
+def _with_begin(bank: Bank) -> Bank:
+    def grown(x: FloatArray) -> FloatArray:
+        return np.concatenate([x, np.zeros((1, *x.shape[1:]))])
+
+    return Bank(grown(bank.response), grown(bank.info), grown(bank.score))
+
+
+def _spoken(block: Block, hours: Hours, apart: FloatArray, z: FloatArray) -> Spoken:
+    memory = block.memories[0]
+    rest = hours.values - hours.rows @ block.reference.T
+    noise = hours.noise * memory.scale**2
+    weight = np.where(np.isfinite(rest), 1.0 / noise, 0.0)
+    total = weight.sum(axis=0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
+        std = np.sqrt(1.0 / total + memory.short_std**2 + memory.long_std**2)
+    chi2 = hours.chi2.sum(axis=0) / memory.scale**2
+    return Spoken(mean, std, *_with_outliers(chi2, hours.freedom.sum(axis=0), apart), z)
+
+
+def log_evidence(block: Block) -> FloatArray:
+    """Return ln of the Bayes factors of begins and directions over all models, (n_begins, n_directions)."""
+    each = [
+        weight + log_bayes_factors(block.directions, bank.info, bank.score)
+        for weight, bank in zip(block.log_weights, block.banks, strict=True)
+        if weight > -20.0
+    ]
+    return np.asarray(np.logaddexp.reduce(np.stack(each), axis=0))
+
+
+def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
+    """Return ln of the likelihood ratios of a louder noise, (m, n_factors)."""
+    return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
+
+
+def thinned(block: Block, keep: npt.NDArray[np.bool_]) -> Block:
+    """Return the block with some of the begins only."""
+    banks = tuple(Bank(b.response[keep], b.info[keep], b.score[keep]) for b in block.banks)
+    return replace(block, banks=banks)
+
+
+def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
+    """Return the block with a change taken over, its size as uncertain as it is, and no begins left.
+
+    The filter believed that nothing happened. If y jumped by δ, its state is off by response·δ, and the
+    intercepts of all operating states have moved by δ. What other changes have to be measured against is the
+    changed structure.
+
+    Parameters
+    ----------
+    begun : number of the begin
+    size : (m,) which quantities move at all
+    states : number of intercepts
+    """
+    m, p = block.reference.shape
+    beliefs, weights = [], []
+    prior = np.where(size, _BROAD[block.kind] ** -2.0, 1e12)
+    for belief, bank in zip(block.beliefs, block.banks, strict=True):
+        covariance = np.linalg.inv(bank.info[begun] + np.diag(prior))
+        delta = covariance @ bank.score[begun]
+        moves = -bank.response[begun].T.copy()
+        for q in range(m):
+            moves[q * p : q * p + states, q] += 1.0
+        beliefs.append(Belief(belief.mean + moves @ delta, belief.cov + moves @ covariance @ moves.T))
+        fit = bank.score[begun] @ delta
+        weights.append(0.5 * (fit + np.linalg.slogdet(covariance)[1] + np.log(prior).sum()))
+    log_weights = block.log_weights + np.array(weights)
+    n = block.beliefs[0].mean.size
+    return replace(
+        block,
+        beliefs=tuple(beliefs),
+        banks=tuple(empty_bank(m, n) for _ in block.banks),
+        log_weights=log_weights - np.logaddexp.reduce(log_weights),
+        tail=np.full(block.tail.shape, np.nan),
+    )
+
+
+def cleared(block: Block) -> Block:
+    """Return the block without begins."""
+    m, n = len(block.kept), block.beliefs[0].mean.size
+    return replace(block, banks=tuple(empty_bank(m, n) for _ in block.banks))

@@ -1,0 +1,176 @@
+"""Regressors: what conditions do to a mode, with the steel's lag behind the air, for each operating state."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.watching.history import History
+
+FloatArray = npt.NDArray[np.float64]
+
+LAGS_DAYS = (0.25, 1.5)
+"""Time constants with which steel and ground follow the air: between none, a quarter day and some days the
+weights of three regressors make any lag; the weights are estimated."""
+_TEMPERATURE = re.compile(r"temp|^t_?air|^t_?steel|°c|_c$|deg_?c", re.IGNORECASE)
+_FEWEST_COLD = 0.02
+"""Share of the baseline below freezing from which ice in soil or asphalt gets a slope of its own."""
+_FEWEST_OF_STATE = 50
+"""Rows of an operating state from which it has slopes of its own, and an intercept at all."""
+_CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
+"""Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline: a
+line may
+explain all of it, a curve half; where the level lies is not known."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One regressor: a condition, perhaps late or bent, in standard units.
+
+    Attributes
+    ----------
+    name : of the condition
+    source : its column
+    lag_days : 0 for none
+    shape : "line", "square" (of the standardised condition, less one) or "frost" (what it is below zero),
+        "sine" and "cosine" (of the time of day)
+    centre, scale : of the baseline
+    prior : standard deviation of the coefficient in those of the quantity
+    """
+
+    name: str
+    source: int
+    lag_days: float
+    shape: str
+    centre: float
+    scale: float
+    prior: float
+
+
+@dataclass(frozen=True)
+class Design:
+    """The regressors of every operating state.
+
+    Attributes
+    ----------
+    columns : of one state
+    states : numbers of the states that are known, each with intercept
+    sloped : how many of them, from the first on, have slopes of their own; the others use the first's
+    """
+
+    columns: tuple[Column, ...]
+    states: tuple[int, ...]
+    sloped: int
+
+    @property
+    def width(self) -> int:
+        """Number of regressors p."""
+        return len(self.states) + self.sloped * len(self.columns)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of the condition of each regressor; intercepts are ``level``."""
+        return ("level",) * len(self.states) + tuple(c.name for _ in range(self.sloped) for c in self.columns)
+
+    @property
+    def priors(self) -> FloatArray:
+        """Prior standard deviations of the coefficients in those of the quantity, (p,)."""
+        slopes = [c.prior for _ in range(self.sloped) for c in self.columns]
+        return np.array([_LEVEL] * len(self.states) + slopes)
+
+
+@dataclass(frozen=True)
+class Lagged:
+    """What the late regressors remember: ``values`` by column of a design, at ``day``."""
+
+    day: float
+    values: FloatArray
+
+
+def design_of(baseline: History) -> Design:
+    """Return the regressors that a baseline can carry; constant conditions are left out."""
+    columns: list[Column] = []
+    warm = False
+    for k, name in enumerate(baseline.condition_names):
+        x = baseline.conditions[:, k]
+        x = x[np.isfinite(x)]
+        if x.size < _FEWEST_OF_STATE // 2 or np.std(x) <= 1e-9 * max(1.0, float(np.max(np.abs(x)))):
+            continue
+        centre, scale = float(np.mean(x)), float(np.std(x))
+        columns.append(Column(name, k, 0.0, "line", centre, scale, _LINEAR))
+        if _TEMPERATURE.search(name):
+            warm = True
+            columns += [Column(name, k, lag, "line", centre, scale, _LINEAR) for lag in LAGS_DAYS]
+            if np.mean(x < 0.0) > _FEWEST_COLD:
+                lags = (0.0, *LAGS_DAYS)
+                columns += [Column(name, k, lag, "frost", 0.0, scale, _LINEAR) for lag in lags]
+        else:
+            columns.append(Column(name, k, 0.0, "square", centre, scale, _CURVED))
+    if not warm and _whole_days(baseline):
+        columns += [Column("time of day", -1, 0.0, shape, 0.0, 1.0, _CURVED) for shape in ("sine", "cosine")]
+    numbers, counts = np.unique(baseline.states, return_counts=True)
+    by_size = [int(s) for s in numbers[np.argsort(-counts)] if counts[numbers == s] >= _FEWEST_OF_STATE]
+    known = tuple(by_size) or (int(numbers[np.argmax(counts)]),)
+    return Design(tuple(columns), known, min(2, len(known)))
+
+
+def _whole_days(baseline: History) -> bool:
+    """Return whether the rows cover the hours of the day."""
+    return bool(np.ptp(np.histogram(baseline.days % 1.0, 8, (0.0, 1.0))[0]) < 0.5 * baseline.days.size)
+
+
+def fresh(design: Design) -> Lagged:
+    """Return the memory before the first row."""
+    return Lagged(-np.inf, np.zeros(len(design.columns)))
+
+
+def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatArray, Lagged]:
+    """Return the regressors (n, p) of some rows and what late ones remember after them.
+
+    A missing condition counts as its mean over the baseline, and leaves the memory as it is. A row in an
+    operating state without a baseline is NaN.
+    """
+    standard = [_standard(column, history) for column in design.columns]
+    values, day = lagged.values.copy(), lagged.day
+    slopes = np.zeros((history.days.size, len(design.columns)))
+    for j, column in enumerate(design.columns):
+        if column.lag_days == 0.0:
+            slopes[:, j] = np.nan_to_num(standard[j])
+            continue
+        at, before = values[j], day
+        for i, (now, x) in enumerate(zip(history.days, standard[j], strict=True)):
+            if np.isfinite(x):
+                at += (1.0 - np.exp(-(now - before) / column.lag_days)) * (x - at)
+                before = now
+            slopes[i, j] = at
+        values[j] = at
+    last = float(history.days[-1]) if history.days.size else day
+    return _by_state(design, history.states, slopes), Lagged(last, values)
+
+
+def _standard(column: Column, history: History) -> FloatArray:
+    """Return a condition in standard units, bent but not yet late."""
+    if column.shape in ("sine", "cosine"):
+        turn = 2.0 * np.pi * history.days
+        return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))
+    x = history.conditions[:, column.source]
+    if column.shape == "frost":
+        return np.asarray(np.minimum(x, 0.0) / column.scale)
+    x = (x - column.centre) / column.scale
+    return np.asarray(x * x - 1.0 if column.shape == "square" else x)
+
+
+def _by_state(design: Design, states: npt.NDArray[np.intp], slopes: FloatArray) -> FloatArray:
+    """Return intercepts and slopes, each in the columns of its state."""
+    n, k = slopes.shape
+    rows = np.full((n, design.width), np.nan)
+    for place, state in enumerate(design.states):
+        chosen = states == state
+        rows[chosen] = 0.0
+        rows[chosen, place] = 1.0
+        first = len(design.states) + k * (place if place < design.sloped else 0)
+        rows[chosen, first : first + k] = slopes[chosen]
+    return rows

@@ -1,0 +1,199 @@
+r"""What a change was: probability and size of each cause, and what it cannot be told from.
+
+The innovations since a begin hold all that the data say of a step δ of all quantities: A = Σ hhᵀ/s and
+b = Σ hν/s. A cause with direction J and size θ has the likelihood ratio
+
+.. math:: Λ = \exp(θ J^T b - \tfrac12 θ^2 J^T A J)
+
+against no change, and its evidence is the mean over its sizes, over the draws of J and over when it began.
+"Something else" is a step in no particular direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.watching.causes import SOMETHING_ELSE, Cause
+from jackettwin.watching.directions import SIZES
+from jackettwin.watching.scatter import STRONGER
+from jackettwin.watching.watch import Change
+
+FloatArray = npt.NDArray[np.float64]
+
+INSEPARABLE = 2.0
+"""Causes whose directions differ by fewer than so many standard deviations of the data are not told apart."""
+_OTHER_PRIOR = 1.0
+MISFIT = 0.1
+"""A model's direction is not the structure's: it may miss by so much of its length, in any quantity."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One cause and what is to be thought of it.
+
+    Attributes
+    ----------
+    size, interval_90 : in ``unit`` if it is the cause; NaN for what has no size
+    """
+
+    cause: str
+    probability: float
+    size: float
+    interval_90: tuple[float, float]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What a change was.
+
+    Attributes
+    ----------
+    verdicts : the likeliest first; something else among them
+    inseparable : groups of causes, likely ones, that these quantities do not tell apart
+    """
+
+    verdicts: tuple[Verdict, ...]
+    inseparable: tuple[tuple[str, ...], ...]
+
+
+def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> Diagnosis:
+    """Return the probabilities of causes after a change.
+
+    Parameters
+    ----------
+    kinds : (m,) "frequency" or "damping" of each quantity
+    """
+    judged = [_judge(change, cause, kinds) for cause in causes]
+    priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
+    evidence = np.array([found[0] for found in judged] + [_something(change, kinds)]) + priors
+    probability = np.exp(evidence - np.logaddexp.reduce(evidence))
+    verdicts = [
+        Verdict(cause.name, float(p), *found[1:], cause.unit)
+        for cause, p, found in zip(causes, probability, judged, strict=False)
+    ]
+    verdicts.append(Verdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
+    ordered = tuple(sorted(verdicts, key=lambda v: -v.probability))
+    likely = [c for c, p in zip(causes, probability, strict=False) if p > 0.02]
+    return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}))
+
+
+def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, float, tuple[float, float]]:
+    """Return ln of the evidence, and median and 90 % interval of the size."""
+    begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
+    if cause.louder.size:
+        return _noisy(change, cause, begins), np.nan, (np.nan, np.nan)
+    logs = _likelihood(change.info, change.score, cause, kinds) + begins[:, None, None]
+    by_size = np.logaddexp.reduce(np.logaddexp.reduce(logs, axis=0), axis=0) - np.log(len(cause.draws))
+    by_size = by_size + cause.log_size_weights
+    total = float(np.logaddexp.reduce(by_size))
+    order = np.argsort(cause.sizes)
+    share = np.cumsum(np.exp(by_size[order] - total))
+    low, mid, high = (
+        cause.sizes[order][np.searchsorted(share, p).clip(0, share.size - 1)] for p in (0.05, 0.5, 0.95)
+    )
+    return total, float(mid), (float(low), float(high))
+
+
+def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str]) -> FloatArray:
+    r"""Return ln Λ by begin, draw and size, (n_begins, n_draws, n_sizes); the direction may miss a little.
+
+    With δ = θ(J + ε), ε ~ N(0, D²) and A' = DAD = QΛQᵀ, c = QᵀD(b − θAJ):
+
+    .. math:: \ln Λ = θ J^T b - \tfrac12 θ^2 J^T A J + \tfrac12 Σ \frac{θ^2 c_i^2}{1 + θ^2 Λ_i}
+              - \tfrac12 Σ \ln (1 + θ^2 Λ_i)
+    """
+    J, size = cause.draws, cause.sizes
+    moved = np.einsum("tij,dj->tdi", info, J)
+    a = np.einsum("di,tdi->td", J, moved)[..., None]
+    plain = (score @ J.T)[..., None] * size - 0.5 * a * size**2
+    misfit = _misfit(J, kinds)
+    values, vectors = np.linalg.eigh(misfit[:, None] * info * misfit)
+    turned = np.swapaxes(vectors, 1, 2) * misfit  # QᵀD
+    first = np.einsum("tij,tj->ti", turned, score)[:, None, None, :]
+    second = np.einsum("tij,tdj->tdi", turned, moved)[:, :, None, :]
+    square = (size[:, None] * (first - size[:, None] * second)) ** 2
+    wide = 1.0 + size[:, None] ** 2 * values[:, None, None, :]
+    return np.asarray(plain + 0.5 * np.sum(square / wide - np.log(wide), axis=-1))
+
+
+def _misfit(J: FloatArray, kinds: Sequence[str]) -> FloatArray:
+    """Return the standard deviation by which a unit of a cause may miss each quantity, (m,)."""
+    kind = np.array(kinds)
+    out = np.zeros(len(kind))
+    for one in np.unique(kind):
+        out[kind == one] = MISFIT * np.sqrt(np.mean(J[:, kind == one] ** 2))
+    return out
+
+
+def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
+    """Return ln of the evidence of louder noise: each mode is louder or not, by any of the factors.
+
+    What moves besides is judged by the scatter that each begin makes likely.
+    """
+    total = np.zeros(len(begins))
+    louder = np.ones((len(begins), change.info.shape[-1]))
+    ln_g = np.log(np.concatenate([[1.0], STRONGER]))
+    for mode in np.unique(cause.louder):
+        of_mode = cause.louder == mode
+        by_factor = change.log_scatter[:, of_mode].sum(axis=1)  # all quantities of a mode by one factor
+        logs = np.concatenate([np.zeros((len(begins), 1)), by_factor - np.log(by_factor.shape[1])], axis=1)
+        mass = np.logaddexp.reduce(logs, axis=1)
+        total += mass - np.log(2.0)
+        louder[:, of_mode] = np.exp(np.exp(logs - mass[:, None]) @ ln_g)[:, None]
+    moved = cause.draws
+    info = change.info / (louder[:, :, None] * louder[:, None, :])
+    wide = np.eye(len(moved)) + moved.T @ info @ moved
+    turned = (change.score / louder**2) @ moved
+    solved = np.linalg.solve(wide, turned[..., None])[..., 0]
+    shift = 0.5 * np.einsum("ti,ti->t", turned, solved) - 0.5 * np.linalg.slogdet(wide)[1]
+    return float(np.logaddexp.reduce(begins + total + shift))
+
+
+def _something(change: Change, kinds: Sequence[str]) -> float:
+    """Return ln of the evidence of a step of any size in any direction, of frequencies, damping or both."""
+    begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
+    spans = []
+    for chosen in (("frequency",), ("damping",), ("frequency", "damping")):
+        for k in range(max(len(s) for s in SIZES.values())):
+            std = np.array([SIZES[q][min(k, len(SIZES[q]) - 1)] if q in chosen else 0.0 for q in kinds])
+            if not std.any():
+                continue
+            wide = np.eye(len(kinds)) + std[:, None] * change.info * std
+            turned = std * change.score
+            solved = np.linalg.solve(wide, turned[..., None])[..., 0]
+            one = 0.5 * np.einsum("ti,ti->t", turned, solved) - 0.5 * np.linalg.slogdet(wide)[1]
+            spans.append(float(np.logaddexp.reduce(begins + one)))
+    return float(np.logaddexp.reduce(spans) - np.log(len(spans)))
+
+
+def _groups(
+    change: Change, causes: Sequence[Cause], verdicts: dict[str, Verdict]
+) -> tuple[tuple[str, ...], ...]:
+    """Return groups of causes that the data cannot tell apart, each at the size it would have."""
+    with_size = [c for c in causes if not c.louder.size]
+    best = change.info[_best(change)]
+    steps = {c.name: verdicts[c.name].size * c.draws.mean(axis=0) for c in with_size}
+    groups: list[set[str]] = []
+    for i, one in enumerate(with_size):
+        for other in with_size[:i]:
+            difference = steps[one.name] - steps[other.name]
+            if np.sqrt(difference @ best @ difference) < INSEPARABLE:
+                joined = {one.name, other.name}
+                for group in [g for g in groups if g & joined]:
+                    joined |= group
+                    groups.remove(group)
+                groups.append(joined)
+    return tuple(tuple(sorted(g, key=lambda n: -verdicts[n].probability)) for g in groups)
+
+
+def _best(change: Change) -> int:
+    """Return the begin that fits a free step best."""
+    m = change.info.shape[-1]
+    scale = 1e-6 * np.trace(change.info, axis1=1, axis2=2).max() * np.eye(m)
+    solved = np.linalg.solve(change.info + scale, change.score[..., None])[..., 0]
+    return int(np.argmax(np.einsum("ti,ti->t", change.score, solved)))

@@ -1,0 +1,51 @@
+"""How much of what a mode did over the baseline each condition explains, and what is left."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.watching.block import Block
+from jackettwin.watching.design import Design
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def shares(
+    block: Block, design: Design, rows: FloatArray, values: FloatArray
+) -> tuple[dict[str, float], ...]:
+    """Return for each quantity the share of its variance over the baseline by condition.
+
+    The share of a condition is the covariance of its part with the whole (its parts add up to what all
+    explain together); "slow" is that of the processes no condition explains, "noise" that of identification.
+
+    Parameters
+    ----------
+    rows : (n, p) regressors of the baseline
+    values : (n, m) logarithms, NaN where missing
+    """
+    names = np.array(design.names)
+    out = []
+    for q in range(len(block.kept)):
+        seen = np.isfinite(values[:, q]) & np.isfinite(rows).all(axis=1)
+        y = values[seen, q] - values[seen, q].mean()
+        total = float(np.mean(y**2))
+        parts = rows[seen] * block.reference[q]
+        share = {
+            str(name): float(np.mean((parts[:, names == name].sum(axis=1)) * y) / total)
+            for name in dict.fromkeys(names)
+            if name != "level"
+        }
+        memory = block.memories[0]
+        slow = float(memory.short_std[q] ** 2 + memory.long_std[q] ** 2) / total
+        share["slow, unexplained"] = min(slow, max(0.0, 1.0 - sum(share.values())))
+        share["noise"] = max(0.0, 1.0 - sum(share.values()))
+        out.append(share)
+    return tuple(out)
+
+
+def unexplained_std(block: Block) -> FloatArray:
+    """Return the standard deviation of the slow processes, averaged over models, (m,)."""
+    weight = np.exp(block.log_weights)
+    each = np.array([memory.short_std**2 + memory.long_std**2 for memory in block.memories])
+    return np.asarray(np.sqrt(weight @ each))

@@ -1,0 +1,117 @@
+"""Rows by the hour: outliers set aside, the rest averaged, and how they scatter inside the hour.
+
+Nothing that is modelled moves within an hour, so that mean and scatter of its records are independent: the
+means tell of level, the scatter of the noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+OUTLIER = 4.5
+"""Standard deviations from its neighbours beyond which a value is set aside: one in 150,000 of a normal
+noise."""
+NEIGHBOURS = 9
+"""Values around whose median one is judged."""
+_ENOUGH = 5
+"""Values of a day that suffice to judge each other."""
+
+
+@dataclass(frozen=True)
+class Hours:
+    """Averages of the records of an hour and one operating state.
+
+    Attributes
+    ----------
+    days : (n,) mean times
+    rows : (n, p) regressors
+    values : (n, m) NaN where nothing was seen
+    noise : (n, m) variances as stated
+    chi2, freedom : (n, m) scatter inside the hour over stated variances, and its degrees of freedom
+    """
+
+    days: FloatArray
+    rows: FloatArray
+    values: FloatArray
+    noise: FloatArray
+    chi2: FloatArray
+    freedom: FloatArray
+
+
+def outliers(rest: FloatArray, variance: FloatArray, tail: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Return which values of a day lie apart from their neighbours, and the neighbours of tomorrow's.
+
+    A step of all neighbours alike leaves the choice as it is, so that setting aside cannot hide a change.
+
+    Parameters
+    ----------
+    rest : (n, m) values less what conditions explain, NaN where missing
+    variance : (n, m) of their noise and of what moves within a day
+    tail : (NEIGHBOURS, m) the last values before
+    """
+    apart = np.zeros(rest.shape, dtype=np.bool_)
+    after = tail.copy()
+    for q in range(rest.shape[1]):
+        seen = np.flatnonzero(np.isfinite(rest[:, q]))
+        today = rest[seen, q]
+        if seen.size:
+            before = tail[np.isfinite(tail[:, q]), q]
+            few = seen.size < _ENOUGH
+            around = np.concatenate([before[-(NEIGHBOURS - seen.size) :], today]) if few else today
+            if around.size >= _ENOUGH:
+                distance = np.abs(today - np.median(around))
+                apart[seen, q] = distance > OUTLIER * np.sqrt(variance[seen, q])
+            after[:, q] = np.concatenate([tail[:, q], today])[-NEIGHBOURS:]
+    return apart, after
+
+
+def by_hour(
+    days: FloatArray,
+    states: npt.NDArray[np.intp],
+    rows: FloatArray,
+    values: FloatArray,
+    noise: FloatArray,
+    window_days: float,
+) -> Hours:
+    """Return weighted means over windows on the clock.
+
+    Parameters
+    ----------
+    days : (n,) ascending
+    states : (n,) operating states, averaged apart
+    rows : (n, p); values, noise : (n, m), NaN where missing
+    window_days : 1/24 for an hour
+    """
+    key = np.floor(days / window_days + 1e-9) * (states.max(initial=0) + 1) + states
+    _, first, group = np.unique(key, return_index=True, return_inverse=True)
+    number = first.size
+    weight = np.where(np.isfinite(values), 1.0 / noise, 0.0)
+    filled = np.where(np.isfinite(values), values, 0.0)
+
+    def total(x: FloatArray) -> FloatArray:
+        out = np.zeros((number, x.shape[1]))
+        np.add.at(out, group, x)
+        return out
+
+    count = total(np.ones((days.size, 1)))
+    precision = total(weight)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = total(weight * filled) / precision
+        variance = 1.0 / precision
+    off = np.where(weight > 0.0, filled - mean[group], 0.0)
+    freedom = np.maximum(total((weight > 0.0).astype(np.float64)) - 1.0, 0.0)
+    order = np.argsort(days[first], kind="stable")
+    return Hours(
+        (total(days[:, None]) / count)[order, 0],
+        (total(rows) / count)[order],
+        mean[order],
+        np.where(precision > 0.0, variance, np.nan)[order],
+        total(weight * off**2)[order],
+        freedom[order],
+    )

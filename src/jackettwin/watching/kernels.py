@@ -1,0 +1,130 @@
+"""The filter that removes what conditions and slow processes explain, compiled.
+
+The state of m quantities with p regressors each is
+
+    coefficients (m·p), quantity after quantity · short process (m) · long process (m)
+
+and a row of a table observes quantity q as X·β_q + short_q + long_q + noise. Rows are taken one after
+the other and quantities one after the other: the innovations over their standard deviations are z = L⁻¹r of
+the Cholesky factor of the whole series' covariance, without ever making it.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+
+
+@compiled
+def _age(mean, cov, response, first, keep, drive):
+    """Let one process of all quantities, from state ``first`` on, grow older: x ← keep·x + noise."""
+    m, n = drive.shape[0], mean.size
+    for i in range(first, first + m):
+        mean[i] *= keep
+        for j in range(n):
+            cov[i, j] *= keep
+        for j in range(n):
+            cov[j, i] *= keep
+    grown = 1.0 - keep * keep
+    for i in range(m):
+        for j in range(m):
+            cov[first + i, first + j] += grown * drive[i, j]
+    for t in range(response.shape[0]):
+        for d in range(m):
+            for i in range(first, first + m):
+                response[t, d, i] *= keep
+
+
+@compiled
+def _through(vector, x, q, m):
+    """Return H·vector for quantity q."""
+    p = x.size
+    total = vector[m * p + q] + vector[m * p + m + q]
+    for k in range(p):
+        total += vector[q * p + k] * x[k]
+    return total
+
+
+@compiled
+def _covariance_with(cov, x, q, m, g):
+    """Fill g with the covariance of the state with quantity q."""
+    p = x.size
+    for i in range(g.size):
+        row = cov[i]
+        total = row[m * p + q] + row[m * p + m + q]
+        for k in range(p):
+            total += row[q * p + k] * x[k]
+        g[i] = total
+
+
+@compiled
+def _follow(response, info, score, x, q, m, g, nu, s, h):
+    """Let every step that may have begun see one value: add what it says, and how the state follows it."""
+    for t in range(response.shape[0]):
+        for d in range(m):
+            h[d] = (1.0 if d == q else 0.0) - _through(response[t, d], x, q, m)
+        for d in range(m):
+            gain = h[d] / s
+            score[t, d] += gain * nu
+            row = response[t, d]
+            for i in range(g.size):
+                row[i] += gain * g[i]
+            for e in range(m):
+                info[t, d, e] += gain * h[e]
+
+
+@compiled
+def _learn(mean, cov, g, nu, s):
+    """Let the state learn from one value."""
+    for i in range(g.size):
+        mean[i] += g[i] * nu / s
+        part = g[i] / s
+        row = cov[i]
+        for j in range(g.size):
+            row[j] -= part * g[j]
+
+
+@compiled
+def filter_rows(
+    mean, cov, response, info, score, rows, values, noise, gaps, rates, short, long, innovation, spread
+):
+    """Take some rows; change the state in place and return the log likelihood of the rows.
+
+    Parameters
+    ----------
+    mean, cov : (n,), (n, n) state
+    response : (n_begins, m, n) how the state has followed a unit step of each quantity since each begin
+    info, score : (n_begins, m, m), (n_begins, m) Σ hhᵀ/s and Σ hν/s of these steps, added to
+    rows : (n_rows, p) regressors
+    values, noise : (n_rows, m) observations, NaN where missing, and the variances of their noise
+    gaps : (n_rows,) days since the row before
+    rates : (2,) inverse time constants of both processes [1/day]
+    short, long : (m, m) stationary covariances of both processes
+    innovation, spread : (n_rows, m) filled with ν and its variance s, NaN where missing
+    """
+    m, p = short.shape[0], rows.shape[1]
+    g, h = np.empty(mean.size), np.empty(m)
+    log_likelihood = 0.0
+    for r in range(rows.shape[0]):
+        x = rows[r]
+        if gaps[r] > 0.0:
+            _age(mean, cov, response, m * p, np.exp(-gaps[r] * rates[0]), short)
+            _age(mean, cov, response, m * p + m, np.exp(-gaps[r] * rates[1]), long)
+        for q in range(m):
+            innovation[r, q] = np.nan
+            spread[r, q] = np.nan
+            if not np.isfinite(values[r, q]):
+                continue
+            _covariance_with(cov, x, q, m, g)
+            s = _through(g, x, q, m) + noise[r, q]
+            nu = values[r, q] - _through(mean, x, q, m)
+            _follow(response, info, score, x, q, m, g, nu, s, h)
+            _learn(mean, cov, g, nu, s)
+            innovation[r, q] = nu
+            spread[r, q] = s
+            log_likelihood -= 0.5 * (np.log(2.0 * np.pi * s) + nu * nu / s)
+    return log_likelihood

@@ -1,0 +1,53 @@
+r"""Scatter alone: a sensor that fails makes its modes scatter before it moves them.
+
+The scatter inside hours is χ² of the noise's variance. From day to day that variance moves a little, as the
+baseline shows: with a factor distributed as the inverse of χ²_ν/ν, a day's χ²/n over n degrees of freedom is
+Fisher's F(n, ν), and noise g times as strong has the likelihood ratio
+
+.. math:: \ln L = -\tfrac{n}{2} \ln g^2 - \tfrac{n + ν}{2} \ln \frac{1 + χ^2/(ν g^2)}{1 + χ^2/ν}
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import gammaln
+
+FloatArray = npt.NDArray[np.float64]
+
+STRONGER = (1.6, 2.5, 4.0)
+"""Factors on the noise's standard deviation that are bet on."""
+_STEADINESS = np.array([4.0, 6.0, 10.0, 16.0, 30.0, 60.0, 200.0])
+"""Degrees of freedom ν that are tried."""
+_DOUBT = 1.0
+"""Steadiness is taken as low as costs this much log likelihood over the baseline."""
+
+
+def steadiness(chi2: FloatArray, freedom: FloatArray) -> float:
+    """Return ν from the days of a baseline; as low as the days allow.
+
+    Parameters
+    ----------
+    chi2, freedom : (n_days,) of one quantity, in units of the noise's mean variance
+    """
+    kept = freedom > 0.0
+    x, n = chi2[kept], freedom[kept]
+    if x.size < 5:
+        return float(_STEADINESS[0])
+    likelihood = np.array([
+        np.sum(gammaln((n + v) / 2) - gammaln(v / 2) - n / 2 * np.log(v) - (n + v) / 2 * np.log1p(x / v))
+        for v in _STEADINESS
+    ])  # fmt: skip
+    return float(_STEADINESS[np.flatnonzero(likelihood >= likelihood.max() - _DOUBT)[0]])
+
+
+def log_ratios(chi2: FloatArray, freedom: FloatArray, nu: FloatArray) -> FloatArray:
+    """Return ln L of one day for each quantity and factor, (m, n_factors); 0 where nothing was seen.
+
+    Parameters
+    ----------
+    chi2, freedom, nu : (m,)
+    """
+    g2 = np.array(STRONGER) ** 2
+    x, n, v = chi2[:, None], freedom[:, None], nu[:, None]
+    return np.asarray(-0.5 * n * np.log(g2) - 0.5 * (n + v) * (np.log1p(x / (v * g2)) - np.log1p(x / v)))

@@ -1,0 +1,147 @@
+"""``jackettwin watch``: tables as people write them, and what is wrong with them."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pacsv
+import pyarrow.parquet as pq
+import pytest
+from click.testing import CliRunner, Result
+
+from jackettwin.cli import main
+
+Columns = dict[str, np.ndarray]
+
+
+def invoke(path: Path, *options: str) -> Result:
+    return CliRunner().invoke(main, ["watch", str(path), *options])
+
+
+@pytest.fixture
+def wide() -> Columns:
+    """Return two modes twice a day for 160 days; both lose 1 % on day 120."""
+    rng = np.random.default_rng(3)
+    days = np.arange(0.0, 160.0, 0.5)
+    f = np.array([0.3, 1.1]) * np.exp(0.002 * rng.standard_normal((days.size, 2)))
+    f *= np.where(days >= 120.0, 0.99, 1.0)[:, None]
+    time = np.datetime64("2024-03-01", "ms") + (days * 86400e3).astype("timedelta64[ms]")
+    return {"time": time, "f1": f[:, 0], "f2": f[:, 1], "temperature": 10 + rng.standard_normal(days.size)}
+
+
+def written(columns: Columns, path: Path) -> Path:
+    table = pa.table(columns)
+    if path.suffix == ".csv":
+        pacsv.write_csv(table, path)
+    else:
+        pq.write_table(table, path)
+    return path
+
+
+def long(wide: Columns) -> Columns:
+    n = len(wide["time"])
+    return {
+        "time_utc": np.repeat(wide["time"], 2),
+        "label": np.tile(["fore_aft_1", "fore_aft_2"], n),
+        "frequency_hz": np.column_stack([wide["f1"], wide["f2"]]).ravel(),
+        "temperature": np.repeat(wide["temperature"], 2),
+    }
+
+
+def test_a_table_of_one_column_a_mode(wide: Columns, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    options = ("--columns", "f1,f2", "--baseline-days", "90", "--out", str(out), "--json")
+    done = invoke(written(wide, tmp_path / "bridge.csv"), *options)
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    (alarm,) = document["alarms"]
+    assert "2024-06-29" <= alarm["time_utc"][:10] <= "2024-07-06"  # day 120 is 2024-06-29
+    assert alarm["began_interval_90"][0] <= "2024-06-29" <= alarm["began_interval_90"][1]
+    assert alarm["quantities"] == ["f1", "f2"]
+    assert alarm["size_interval_90"][0] < -0.01 < alarm["size_interval_90"][1] < 0.0
+    assert alarm["causes"][0]["cause"] == "all modes alike"
+    assert set(document["quantities"]["f1"]["explained_by"]) == {"temperature", "slow, unexplained", "noise"}
+    assert any("no standard deviations" in limit for limit in document["limits"])
+    assert sorted(p.name for p in out.iterdir()) == ["report.html", "watched.json"]
+    assert json.loads((out / "watched.json").read_text()) == document
+
+
+def test_one_row_a_mode_says_the_same(wide: Columns, tmp_path: Path) -> None:
+    options = ("--baseline-days", "90", "--json")
+    one = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1,f2", *options)
+    other = invoke(written(long(wide), tmp_path / "b.parquet"), *options)
+    assert other.exit_code == 0, other.stderr
+    a, b = (json.loads(done.stdout)["alarms"] for done in (one, other))
+    assert [x["time_utc"] for x in a] == [x["time_utc"] for x in b]
+    assert b[0]["quantities"] == ["fore_aft_1", "fore_aft_2"]
+
+
+def test_learnt_anew_after_the_change_there_is_none(wide: Columns, tmp_path: Path) -> None:
+    path = written(wide, tmp_path / "a.csv")
+    done = invoke(
+        path, "--columns", "f1,f2", "--baseline-days", "25", "--relearn", "2024-07-01T00:00:00Z", "--json"
+    )
+    assert done.exit_code == 0, done.stderr
+    assert json.loads(done.stdout)["alarms"] == []
+
+
+def unsorted_times(c: Columns) -> None:
+    c["time"][[3, 9]] = c["time"][[9, 3]]
+
+
+def doubled_time(c: Columns) -> None:
+    c["time"][4] = c["time"][3]
+
+
+def no_times(c: Columns) -> None:
+    c["mode"] = c.pop("time").astype(str)
+    c["mode"][:] = "x"
+
+
+def words_for_numbers(c: Columns) -> None:
+    c["f1"] = np.array(["good"] * len(c["f1"]))
+
+
+def three_days(c: Columns) -> None:
+    for name in c:
+        c[name] = c[name][:6]
+
+
+def mixed_zones(c: Columns) -> None:
+    stamps = np.char.add(c["time"].astype("datetime64[s]").astype(str), "Z")
+    stamps[7] = stamps[7][:-1]
+    c["time"] = stamps
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (unsorted_times, "times are not sorted"),
+        (doubled_time, "a time stands twice"),
+        (no_times, "no column of times"),
+        (words_for_numbers, "is not a number"),
+        (three_days, "too short to learn from"),
+        (mixed_zones, "some times have a zone"),
+    ],
+    ids=lambda x: getattr(x, "__name__", "said"),
+)
+def test_what_is_wrong_is_refused(wide: Columns, tmp_path: Path, spoil, said: str) -> None:  # type: ignore[no-untyped-def]
+    spoil(wide)
+    out = tmp_path / "out"
+    done = invoke(written(wide, tmp_path / "bad.csv"), "--columns", "f1,f2", "--out", str(out))
+    assert done.exit_code == 2, (done.stdout, done.stderr, done.exception)
+    assert said in done.stderr and "bad.csv" in done.stderr
+    assert not out.exists()
+
+
+def test_an_unknown_column_is_refused_with_the_nearest(wide: Columns, tmp_path: Path) -> None:
+    done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1,temprature")
+    assert done.exit_code == 2 and "did you mean 'temperature'?" in done.stderr
+
+
+def test_limits_are_said(wide: Columns, tmp_path: Path) -> None:
+    wide["humidity"] = np.full(len(wide["time"]), 0.5)
+    done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1", "--baseline-days", "90")
+    assert done.exit_code == 0, done.stderr
+    assert "one mode only" in done.stdout and "left out: humidity" in done.stdout

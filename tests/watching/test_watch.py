@@ -1,0 +1,68 @@
+"""The watch on small series: quiet ones stay quiet, a step is found, dated, measured and named."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.watching import Change, History, Look, Watch, diagnose, general_causes, start, step
+
+from .conftest import made
+
+
+def watched(history: History, baseline: float = 100.0) -> tuple[Watch, list[Look], list[Change]]:
+    watch = start(history.between(0.0, baseline))
+    looks = []
+    for day in history.between(baseline, np.inf).by_day():
+        watch, look = step(watch, day)
+        looks.append(look)
+    return watch, looks, [look.change for look in looks if look.change is not None]
+
+
+def test_quiet_seasons_raise_no_alarm(quiet: History) -> None:
+    _, looks, changes = watched(quiet)
+    assert len(looks) == 60 and not changes
+
+
+def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
+    watch, _, changes = watched(stepped)
+    (change,) = changes
+    assert 120.0 <= change.day < 135.0
+    assert change.began_interval_90[0] <= 120.0 <= change.began_interval_90[1]
+    frequencies = change.size[:2]
+    assert np.all(np.abs(frequencies + 0.006) < 4.0 * change.size_std[:2]) and np.all(frequencies < 0.0)
+    causes = general_causes(watch.quantities, watch.labels, np.array([0.3, 0.31]))
+    found = diagnose(change, causes, [kind for kind, _ in watch.quantities])
+    assert found.verdicts[0].cause in ("first and second alike", "all modes alike")
+    assert abs(sum(v.probability for v in found.verdicts) - 1.0) < 1e-9
+
+
+def test_the_same_days_give_the_same_answer(stepped: History) -> None:
+    first, second = watched(stepped), watched(stepped)
+    assert [look.log_r for look in first[1]] == [look.log_r for look in second[1]]
+
+
+def test_a_change_does_not_look_ahead(stepped: History, quiet: History) -> None:
+    """Until the step both series are the same, and so is what is said of them."""
+    until = [look.log_r for look in watched(stepped)[1] if look.day < 120.0]
+    assert until == [look.log_r for look in watched(quiet)[1] if look.day < 120.0]
+
+
+def test_the_state_does_not_grow() -> None:
+    history = made(days=220)
+    watch = start(history.between(0.0, 100.0), arl_years=1e4)
+    sizes = []
+    for day in history.between(100.0, np.inf).by_day():
+        watch, _ = step(watch, day)
+        sizes.append(sum(b.response.nbytes for block in watch.blocks for b in block.banks))
+    assert sizes[-1] == sizes[-30]
+
+
+def test_a_short_baseline_is_refused(quiet: History) -> None:
+    with pytest.raises(InputError, match="too short"):
+        start(quiet.between(0.0, 3.0))
+
+
+def test_a_day_that_is_over_is_refused(quiet: History) -> None:
+    watch = start(quiet.between(0.0, 100.0))
+    with pytest.raises(InputError, match="over already"):
+        step(watch, quiet.between(50.0, 51.0))
