@@ -106,11 +106,10 @@ def statement(watched: Watched) -> str:
         low, high = (100.0 * x for x in doc["size_interval_90"])
         what = "scatter of" if change.kind == "scatter" else "change of"
         names = ", ".join(doc["quantities"])
+        began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(
-            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by "
-            f"{100.0 * doc['size']:+.2f} % ({low:+.2f} to {high:+.2f} %), began {table.time(change.began):%Y-%m-%d} "
-            f"({table.time(change.began_interval_90[0]):%Y-%m-%d} to "
-            f"{table.time(change.began_interval_90[1]):%Y-%m-%d}); "
-            f"most likely {best.cause} ({100.0 * best.probability:.0f} %)."
+            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {100.0 * doc['size']:+.2f} % "
+            f"({low:+.2f} to {high:+.2f} %), began {began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to "
+            f"{began[2]:%Y-%m-%d}); most likely {best.cause} ({100.0 * best.probability:.0f} %)."
         )
     return " ".join(parts)
