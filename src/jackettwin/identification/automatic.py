@@ -18,6 +18,7 @@ from jackettwin.identification.preparation.components import at_all_channels, co
 from jackettwin.identification.preparation.prepared import Prepared, prepare
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.selection.candidates import candidates, find_tones
 from jackettwin.identification.selection.choice import chosen_modes
 from jackettwin.identification.selection.clustering import clusters
@@ -141,7 +142,7 @@ def identify(
         modes=tuple(_named(mode, settings) for mode in chosen.modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
-        spectrum=welch(y * scale[:, None], resolved.sample_rate_hz),
+        spectrum=as_measured(welch(y * scale[:, None], resolved.sample_rate_hz), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *chosen.warnings),

@@ -32,7 +32,8 @@ class ModalEstimate:
     damping_ratio : float
         −Re λ/|λ|.
     mode_shape : (n_channels,) complex
-        In the units of the channels, 1 at the largest entry.
+        1 at the largest entry. In the units of the channels; of channels of different kinds, as velocities
+        beside accelerations, the accelerations they imply.
     frequency_std_hz, damping_ratio_std : float or None
     frequency_interval_95, damping_ratio_interval_95 : (low, high) or None
         On the logarithms of frequency and damping.

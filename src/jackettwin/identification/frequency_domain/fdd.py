@@ -20,6 +20,7 @@ from jackettwin.identification.estimate import Identification, ModalEstimate, St
 from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, spectral_matrix, welch
+from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def fdd(record: Record, settings: IdentificationSettings | None = None) -> Ident
         modes=tuple(mode for mode in modes if mode is not None),
         rejected=(),
         stabilisation=_no_poles(len(scale)),
-        spectrum=welch(y * scale[:, None], rate),
+        spectrum=as_measured(welch(y * scale[:, None], rate), ready.differentiated),
         settings=resolved,
         duration_s=record.duration_s,
         warnings=ready.warnings,

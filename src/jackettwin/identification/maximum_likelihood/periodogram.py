@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
-"""How often a quantity is differentiated in time to follow the acceleration of a mode."""
-
 LINES_IN_HALF_BANDWIDTH = 5
 """Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
 FAR_LINES = 12.0

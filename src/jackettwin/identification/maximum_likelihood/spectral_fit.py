@@ -18,9 +18,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.identification.estimate import Spectrum
-from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import SEGMENTS, spectral_matrix
+from jackettwin.identification.preparation.whitening import as_measured, left_to_differentiate
 from jackettwin.identification.settings import IdentificationSettings
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ def modal_fit(record: Record, found: Identification) -> Spectrum | None:
     length = max(ready.y.shape[1] // SEGMENTS, 16)
     f, measured = spectral_matrix(ready.y, s.sample_rate_hz, length)
     band = (f > s.lowest_frequency_hz) & (f < s.highest_frequency_hz)
-    derivatives = np.array([DERIVATIVES[c.quantity] for c in ready.channels])
+    derivatives = np.array(left_to_differentiate(ready.channels, ready.differentiated))
     motion = _motion(found.modes, f[band], f[1], derivatives, ready.scale)
     near = _near(found.modes, f[band], f[1])
     fitted = _fitted(measured[band], motion, near)
     density = np.einsum("faa->af", fitted).real * ready.scale[:, None] ** 2
     singular = np.linalg.svd(fitted, compute_uv=False).T.astype(np.float64)
-    return Spectrum(f[band], np.asarray(density), singular)
+    return as_measured(Spectrum(f[band], np.asarray(density), singular), ready.differentiated)
 
 
 def _motion(

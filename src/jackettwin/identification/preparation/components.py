@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from jackettwin.identification.mac import mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.records import Channel
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepa
         y=np.where(whole, U.T @ np.where(whole, ready.y, 0.0), np.nan),
         scale=np.ones(COMPONENTS),
         references=list(range(COMPONENTS)),
+        differentiated=np.repeat(ready.differentiated[:1], COMPONENTS),
         warnings=(*ready.warnings, said),
     )
     return fewer, ready.scale[:, None] * U
@@ -62,12 +64,13 @@ def components(ready: Prepared, settings: IdentificationSettings) -> tuple[Prepa
 
 def at_all_channels(found: Identification, ready: Prepared, basis: FloatArray) -> Identification:
     """Return what was identified from components with the shapes and spectra of all channels."""
+    rate = found.settings.sample_rate_hz
     return replace(
         found,
         channels=ready.channels,
         modes=tuple(_mode(mode, basis) for mode in found.modes),
         stabilisation=_poles(found.stabilisation, basis),
-        spectrum=welch(ready.y * ready.scale[:, None], found.settings.sample_rate_hz),
+        spectrum=as_measured(welch(ready.y * ready.scale[:, None], rate), ready.differentiated),
         real_poles=tuple(
             replace(pole, mode_shape=normalised(basis @ pole.mode_shape)) for pole in found.real_poles
         ),

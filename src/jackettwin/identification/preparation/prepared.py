@@ -21,6 +21,7 @@ from jackettwin.identification.preparation.resolve import (
     usable_channels,
 )
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
+from jackettwin.identification.preparation.whitening import accelerated
 from jackettwin.identification.tones.drifting_tones import drifting_tones
 from jackettwin.identification.tones.steady_tones import steady_tones
 from jackettwin.records import decimate, detrend
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from jackettwin.records import Channel, Record
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 SPARE = 4.0
 """Tones are sought at so many times the rate that a band from the lowest peak on needs: that may be one."""
@@ -63,6 +65,8 @@ class Prepared:
     drifting : tuple of PhaseTrack
         Tones that drift, taken out as well.
     warnings : tuple of str
+    differentiated : (n_channels,) int
+        How often each channel was differentiated with respect to time.
     """
 
     channels: tuple[Channel, ...]
@@ -74,10 +78,11 @@ class Prepared:
     tones_hz: tuple[float, ...]
     drifting: tuple[PhaseTrack, ...]
     warnings: tuple[str, ...]
+    differentiated: IntArray
 
 
 def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
-    """Keep the live vibration channels, detrend, take out tones, decimate, fill gaps, scale.
+    """Keep the live vibration channels, detrend, whiten, take out tones, decimate, fill gaps, scale.
 
     Channels are scaled to unit variance, else the loudest direction hides the other.
 
@@ -88,7 +93,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         its lag window needs.
     """
     usable, warnings = usable_channels(record)
-    level = detrend(usable)
+    level, differentiated = accelerated(detrend(usable))
     top = _band_top_hz(level, settings) or np.inf
     level = _thinned(level, top, settings)
     tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
@@ -118,6 +123,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         tones,
         drifting,
         warnings,
+        differentiated,
     )
 
 

@@ -12,8 +12,8 @@ from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
 from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
-from jackettwin.identification.maximum_likelihood.periodogram import DERIVATIVES
 from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.preparation.whitening import left_to_differentiate
 from jackettwin.identification.selection.candidates import beside_tones, with_covariance
 from jackettwin.identification.status import ModeStatus
 
@@ -94,7 +94,7 @@ def _start(
         log_damping_std=np.array([_log_damping_std(m) for m in modes]),
         shapes=np.array([m.mode_shape.real for m in modes]) / ready.scale,
         sure=sure,
-        derivatives=[DERIVATIVES[c.quantity] for c in ready.channels],
+        derivatives=left_to_differentiate(ready.channels, ready.differentiated),
         avoid_hz=(
             *(tone.disturbed_hz for tone in tones.drifting),
             *(_taken_hz(f, ready.duration_s) for f in ready.tones_hz),

@@ -1,0 +1,153 @@
+r"""Signals of one colour: velocities and displacements are differentiated before anything is judged.
+
+The spectrum of a displacement falls as :math:`f^{-4}` above the first mode where that of the acceleration is
+level. What stands out of such a slope, what a model order spends on it and what leaks down it depends on the
+quantity a sensor happens to measure; the modes do not. All channels are brought to the acceleration by
+
+.. math:: \frac{d^n y}{dt^n} \;\leftrightarrow\; (i\omega)^n\, Y(\omega), \qquad
+          n = 0, 1, 2 \text{ for acceleration, velocity, displacement}.
+
+A derivative is a linear filter: it multiplies a mode by :math:`\lambda^n` and leaves its pole and, where all
+channels get the same, its shape as they are. Where the noise of the sensors, which a derivative lifts, would
+then decide the colour, one fewer is taken; where a record still falls steeply, as one that was integrated and
+does not say so, one more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+from scipy.interpolate import CubicSpline
+
+from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from jackettwin.identification.estimate import Spectrum
+    from jackettwin.records import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
+"""How often a quantity is differentiated in time to follow the acceleration of a mode."""
+MOST_DERIVATIVES = 2
+STEEPEST_RISE = 1.5
+"""Exponent of the spectrum over frequency above which there is a derivative too many: accelerations under
+white forces have 0 to 0.7, white noise of a sensor has 2 for each derivative."""
+STEEPEST_FALL = -3.0
+"""Exponent below which there is a derivative too few: accelerations under turbulence have −1 to −2,
+displacements under white forces −4."""
+OCTAVES = 4.0
+"""Above the lowest peak, over which the exponent is taken …"""
+HIGHEST = 0.4
+"""… and up to this share of the sample rate at most."""
+FEWEST_LINES = 16
+"""Of a spectrum, from which an exponent is taken."""
+HALF_LENGTH = 32
+"""Of the differentiator in samples …"""
+KAISER = 8.0
+"""… and the parameter of its window: right to 5e-4 up to 0.8 of Nyquist, which is what decimation passes."""
+
+
+def accelerated(record: Record) -> tuple[Record, IntArray]:
+    """Return the record differentiated towards accelerations, and how often each channel was, (n_channels,).
+
+    Parameters
+    ----------
+    record : Record
+        Vibration channels without trend; NaN marks a missing sample.
+
+    Examples
+    --------
+    >>> from jackettwin.records import Channel, Record
+    >>> t = np.arange(4000) / 20.0
+    >>> y = np.array([np.sin(2 * np.pi * t)]) + 1e-3 * np.random.default_rng(1).standard_normal(4000)
+    >>> fast, times = accelerated(Record(y, 20.0, (Channel("v", "velocity", "m/s"),)))
+    >>> bool(abs(fast.data[0].std() / (2 * np.pi * y.std()) - 1.0) < 1e-2), int(times[0])
+    (True, 1)
+    """
+    declared = np.array([DERIVATIVES[c.quantity] for c in record.channels], dtype=np.int64)
+    times = np.clip(declared + _more(record, declared), 0, MOST_DERIVATIVES)
+    if not times.any():
+        return record, times
+    rate = record.sample_rate_hz
+    data = np.stack([differentiated(y, rate, int(n)) for y, n in zip(record.data, times, strict=True)])
+    return replace(record, data=data), times
+
+
+def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArray:
+    """Return the derivative of samples (n_samples,) with respect to time; gaps stay gaps.
+
+    The filter needs samples on either side: gaps are bridged for it by a cubic spline, the ends extended by
+    point reflection, which keeps the slope.
+    """
+    there = np.isfinite(y)
+    if not times or there.sum() < 2 * HALF_LENGTH:
+        return y
+    out = y
+    if not there.all():
+        t = np.arange(len(y))
+        out = np.where(there, y, CubicSpline(t[there], y[there], bc_type="natural")(t))
+        first, last = np.flatnonzero(there)[[0, -1]]
+        out[:first], out[last + 1 :] = y[first], y[last]
+    for _ in range(times):
+        padded = np.pad(out, HALF_LENGTH, mode="reflect", reflect_type="odd")
+        out = signal.oaconvolve(padded, _taps(), mode="valid") * sample_rate_hz
+    return np.where(there, out, np.nan)
+
+
+def left_to_differentiate(channels: Iterable[Channel], times: IntArray) -> list[int]:
+    """Return how often more samples must be differentiated for accelerations; integrated, if less than 0."""
+    return [DERIVATIVES[c.quantity] - int(n) for c, n in zip(channels, times, strict=True)]
+
+
+def as_measured(spectrum: Spectrum, times: IntArray) -> Spectrum:
+    """Return a spectrum with the densities of the channels as they were before they were differentiated."""
+    if not times.any():
+        return spectrum
+    omega = 2.0 * np.pi * spectrum.frequencies_hz
+    if omega[0] == 0.0:
+        omega[0] = omega[1]
+    return replace(spectrum, density=spectrum.density / omega ** (2 * times[:, None]))
+
+
+def _taps() -> FloatArray:
+    """Return the ideal differentiator (−1)ᵐ/m under a Kaiser window, per sample."""
+    m = np.arange(-HALF_LENGTH, HALF_LENGTH + 1)
+    ideal = np.where(m == 0, 0.0, (-1.0) ** m / np.where(m == 0, 1, m))
+    return np.asarray(ideal * np.kaiser(len(m), KAISER))
+
+
+def _more(record: Record, declared: IntArray) -> int:
+    """Return how many derivatives more than the quantities say make the spectrum nearest to level."""
+    spectrum = welch(record.data, record.sample_rate_hz)
+    for more in range(MOST_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
+        if more <= 0 and _exponent(spectrum, declared + more) <= STEEPEST_RISE:
+            break
+    while _exponent(spectrum, declared + more) < STEEPEST_FALL and (declared + more).min() < MOST_DERIVATIVES:
+        more += 1
+    return more
+
+
+def _exponent(spectrum: Spectrum, times: IntArray) -> float:
+    """Return the power of frequency that the channels' mean spectrum follows above its lowest peak.
+
+    Without one, over the highest octaves.
+    """
+    f = spectrum.frequencies_hz[1:]
+    density = spectrum.density[:, 1:] * f ** (2 * times[:, None])
+    level = np.mean(density / np.maximum(density.mean(axis=1, keepdims=True), 1e-300), axis=0)
+    highest = HIGHEST * 2.0 * f[-1]
+    peak = lowest_peak_hz(replace(spectrum, singular_values=np.append(0.0, level)[None, :]))
+    lowest = highest / 2.0**OCTAVES if peak is None else peak
+    inside = (f >= lowest) & (f <= min(lowest * 2.0**OCTAVES, highest)) & (level > 0.0)
+    if inside.sum() < FEWEST_LINES:
+        return 0.0
+    log_f, log_s = np.log(f[inside]), np.log(level[inside])
+    return float(np.polyfit(log_f, log_s, 1, w=1.0 / np.sqrt(f[inside]))[0])
