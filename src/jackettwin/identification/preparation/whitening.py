@@ -130,9 +130,28 @@ def _more(record: Record, declared: IntArray) -> int:
     for more in range(MOST_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
         if more <= 0 and _exponent(spectrum, declared + more) <= STEEPEST_RISE:
             break
-    while _exponent(spectrum, declared + more) < STEEPEST_FALL and (declared + more).min() < MOST_DERIVATIVES:
+    while (declared + more).min() < MOST_DERIVATIVES and (
+        _exponent(spectrum, declared + more) < STEEPEST_FALL or _hides_a_peak(spectrum, declared + more)
+    ):
         more += 1
     return more
+
+
+def _hides_a_peak(spectrum: Spectrum, times: IntArray) -> bool:
+    """Return whether a peak stands out of the channels' mean spectrum only after one derivative more."""
+    return _peak_hz(spectrum, times) is None and _peak_hz(spectrum, times + 1) is not None
+
+
+def _peak_hz(spectrum: Spectrum, times: IntArray) -> float | None:
+    level = _level(spectrum, times)
+    return lowest_peak_hz(replace(spectrum, singular_values=np.append(0.0, level)[None, :]))
+
+
+def _level(spectrum: Spectrum, times: IntArray) -> FloatArray:
+    """Return the mean of the channels' spectra, each of unit power, from the first line on."""
+    density = spectrum.density[:, 1:] * spectrum.frequencies_hz[1:] ** (2 * times[:, None])
+    power = np.maximum(density.mean(axis=1, keepdims=True), 1e-300)
+    return np.asarray(np.mean(density / power, axis=0))
 
 
 def _exponent(spectrum: Spectrum, times: IntArray) -> float:
@@ -140,11 +159,9 @@ def _exponent(spectrum: Spectrum, times: IntArray) -> float:
 
     Without one, over the highest octaves.
     """
-    f = spectrum.frequencies_hz[1:]
-    density = spectrum.density[:, 1:] * f ** (2 * times[:, None])
-    level = np.mean(density / np.maximum(density.mean(axis=1, keepdims=True), 1e-300), axis=0)
+    f, level = spectrum.frequencies_hz[1:], _level(spectrum, times)
     highest = HIGHEST * 2.0 * f[-1]
-    peak = lowest_peak_hz(replace(spectrum, singular_values=np.append(0.0, level)[None, :]))
+    peak = _peak_hz(spectrum, times)
     lowest = highest / 2.0**OCTAVES if peak is None else peak
     inside = (f >= lowest) & (f <= min(lowest * 2.0**OCTAVES, highest)) & (level > 0.0)
     if inside.sum() < FEWEST_LINES:
