@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from math import pi
+from dataclasses import replace
+from math import pi, radians
 from typing import Any
 
 import click
@@ -12,14 +13,17 @@ from rich.markup import escape
 from rich.table import Table
 
 from jackettwin.cli.console import fixed, output, print_json
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
+from jackettwin.response.own_damping import own_damping
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
-from jackettwin.structure import Assembly, Rayleigh, assemble, check, read_structure
+from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check, read_structure
+from jackettwin.structure.blade_files import read_flexible_rotor
+from jackettwin.structure.rotor_modes import with_rotor, without_rotor
 from jackettwin.updating import numbered_modes
 
 _OVERDAMPED = 0.3
@@ -43,6 +47,11 @@ _OVERDAMPED = 0.3
 @click.option(
     "--rayleigh", metavar="ZETA,F_HZ", help="Rayleigh damping of the steel: least ratio and its frequency."
 )
+@click.option(
+    "--blades",
+    metavar="ROTOR[,PITCH]",
+    help="Let the blades bend: iea15, a windIO or an ElastoDyn file; pitch in degrees, default 90.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def modes_command(
     structure: str,
@@ -53,15 +62,17 @@ def modes_command(
     rotary_inertia: bool | None,
     subdivide: int | None,
     rayleigh: str | None,
+    blades: str | None,
     as_json: bool,
 ) -> None:
     """Undamped and damped modes of STRUCTURE: a shipped name, a YAML file, or a SubDyn .dat file."""
-    chosen = read_structure(structure)
+    chosen = blades_option(blades, read_structure(structure))
     assembly = assemble(
         chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
     )
     held = support_option(support, assembly)
-    system = build_system(assembly, held, rayleigh=rayleigh_option(rayleigh))
+    steel = rayleigh_option(rayleigh)
+    system = build_system(assembly, held, rayleigh=steel, spread=own_damping(assembly, steel))
     own = f"the structure's own: {described(held)}"
     document = {**_document(assembly, system, number), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
@@ -69,6 +80,28 @@ def modes_command(
         print_json(document)
     else:
         _print(document)
+
+
+def blades_option(text: str | None, structure: Structure) -> Structure:
+    """Return the structure with the bending blades that ``--blades ROTOR[,PITCH]`` names.
+
+    Raises
+    ------
+    InputError
+        If there is no such rotor, or its blades are not within the mass on the top.
+    """
+    if text is None:
+        return structure
+    source, _, pitch = text.partition(",")
+    try:
+        angle = float(pitch or 90.0)
+    except ValueError:
+        raise InputError(
+            "not ROTOR,PITCH", field="--blades", value=text, remedy="write e.g. iea15,90"
+        ) from None
+    with located(field="--blades"):
+        rotor = replace(read_flexible_rotor(source), pitch=radians(angle))
+        return with_rotor(without_rotor(structure), rotor, structure.top_node)
 
 
 def support_option(text: str | None, assembly: Assembly) -> Support:

@@ -12,10 +12,10 @@ from scipy.interpolate import PchipInterpolator
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import find_file, read_yaml
+from jackettwin.files.windio import Part, WindIO, windio
 from jackettwin.loads.bem import Control
 from jackettwin.loads.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.rotor import Rotor
-from jackettwin.loads.windio import Part, WindIO, windio
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -145,10 +145,12 @@ def build_system(
     M = sp.csc_array((assembly.mass + _ground_mass(assembly, support))[free][:, free])
     K = sp.csc_array(assembly.stiffness[free][:, free])
     groups = _groups(assembly, (*support.springs, *dashpots), number, free.size)
-    everywhere = tuple(
-        Group(law, sp.csc_array(sp.csc_array(S)[free][:, free]), np.arange(free.size)) for S, law in spread
-    )
+    everywhere = tuple(_spread(sp.csc_array(sp.csc_array(S)[free][:, free]), law) for S, law in spread)
     return System(assembly, support, Pencil(M, K, rayleigh or Rayleigh(), groups + everywhere), free)
+
+
+def _spread(S: sp.csc_array, law: Law) -> Group:
+    return Group(law, S, np.unique(S.nonzero()[0]))
 
 
 def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:

@@ -53,11 +53,7 @@ def _structure(schema: ScenarioSchema, folder: Path) -> Structure:
     choice = schema.structure
     structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
     rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
-    if rna is None:
-        return structure
-    top = structure.top_node
-    others = tuple(mass for mass in structure.masses if mass.node != top)
-    return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
+    return structure if rna is None else rna.stand_on(structure, folder=folder)
 
 
 def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:

@@ -13,6 +13,7 @@ from jackettwin.loads.morison import morison_points
 from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
 from jackettwin.loads.water import water_mass
 from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.own_damping import own_damping
 from jackettwin.response.reduced import Reduced, reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, build_system
@@ -20,7 +21,7 @@ from jackettwin.simulate.scenario import Air, Asset, Scenario, Sea, Turbine
 from jackettwin.simulate.tuning import tuned_tower
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, assemble
-from jackettwin.structure.masses import turned_body
+from jackettwin.structure.rotor_modes import turned_nacelle
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -79,9 +80,7 @@ def build_model(scenario: Scenario) -> Model:
 def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Model:
     """Return an asset in still air, its nacelle turned by ``yaw`` [rad], its tower tuned if that is asked."""
     top_node = asset.structure.top_node
-    structure = asset.structure.with_masses(
-        tuple(turned_body(m, yaw) if m.node == top_node else m for m in asset.structure.masses)
-    )
+    structure = turned_nacelle(asset.structure, yaw)
     assembly = assemble(
         structure,
         beam_theory=asset.beam,
@@ -92,10 +91,12 @@ def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Mo
     if sea is not None and sea.water is not None:
         grid = morison_points(assembly, highest_z=0.0, coefficients=sea.coefficients)
         assembly = replace(assembly, mass=assembly.mass + water_mass(assembly, grid, sea.water).tocsc())
-    system = build_system(assembly, asset.support, rayleigh=asset.rayleigh)
+    own = own_damping(assembly, asset.rayleigh)
+    system = build_system(assembly, asset.support, rayleigh=asset.rayleigh, spread=own)
     small = reduced(system, below_hz=BAND_HZ, keep=tuple(assembly.dofs(top_node)))
     rows = assembly.expand[assembly.mesh.node_dofs(top_node)]
-    model = Model(assembly, small, np.asarray(rows @ small.basis), ("soil",) * len(small.pencil.groups))
+    sources = (*("soil",) * (len(small.pencil.groups) - len(own)), *("structure",) * len(own))
+    model = Model(assembly, small, np.asarray(rows @ small.basis), sources)
     if asset.coupled_damping is None:
         return model
     damping = tuned_tower(assembly, small, asset.coupled_damping)

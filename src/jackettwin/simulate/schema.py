@@ -20,7 +20,7 @@ from jackettwin.soil.foundation import (
     ScourSchema,
 )
 from jackettwin.soil.law_files import LawSchema
-from jackettwin.structure.files import BodySchema
+from jackettwin.structure.files import RnaSchema
 
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Period = Annotated[float, Field(ge=0.5, le=100.0)]
@@ -39,7 +39,7 @@ class StructureChoice(Schema):
     """A structure with overrides."""
 
     source: str
-    rna: BodySchema | None = None
+    rna: RnaSchema | None = None
 
 
 class RayleighSchema(Schema):
@@ -151,7 +151,7 @@ class ScenarioSchema(Schema):
     """
 
     structure: str | StructureChoice
-    rna: BodySchema | None = None
+    rna: RnaSchema | None = None
     beam: Literal["euler-bernoulli", "timoshenko"] | None = None
     rotary_inertia: bool | None = None
     subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import radians
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,6 +12,7 @@ from pydantic import Field
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.plausible import refuse_tiny
+from jackettwin.structure.blade_files import read_flexible_rotor
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
 from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.model import (
@@ -24,6 +27,7 @@ from jackettwin.structure.model import (
     Structure,
     Vector,
 )
+from jackettwin.structure.rotor_modes import FlexibleRotor, with_rotor, without_rotor
 from jackettwin.structure.subdyn import read_subdyn
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -101,6 +105,35 @@ class BodySchema(Schema):
             )
 
 
+class BladesSchema(Schema):
+    """Bending blades of a rotor–nacelle assembly: a turbine's file, and how they are pitched."""
+
+    rotor: str
+    pitch_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
+    damping_ratio: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
+
+    def build(self, folder: Path | None) -> FlexibleRotor:
+        """Return the rotor."""
+        with located(field="rna.blades"):
+            rotor = read_flexible_rotor(self.rotor, folder=folder)
+        if self.damping_ratio is not None:
+            rotor = replace(rotor, blade=replace(rotor.blade, damping_ratio=self.damping_ratio))
+        return rotor if self.pitch_deg is None else replace(rotor, pitch=radians(self.pitch_deg))
+
+
+class RnaSchema(BodySchema):
+    """A rotor–nacelle assembly: a rigid body, blades included, and how these bend."""
+
+    blades: BladesSchema | None = None
+
+    def stand_on(self, structure: Structure, *, folder: Path | None) -> Structure:
+        """Return the structure with this in the place of what stood on its top."""
+        top = structure.top_node
+        others = tuple(mass for mass in structure.masses if mass.node != top)
+        bare = without_rotor(structure).with_masses((*others, self.build(top, part="rna", field="rna")))
+        return bare if self.blades is None else with_rotor(bare, self.blades.build(folder), top)
+
+
 class MassSchema(BodySchema):
     """A rigid body on a named node."""
 
@@ -166,7 +199,7 @@ class JacketSchema(Schema):
     lattice: LatticeSchema
     transition_piece: TransitionPieceSchema
     tower: TowerSchema
-    rna: BodySchema | None = None
+    rna: RnaSchema | None = None
 
 
 class StructureSchema(Schema):
@@ -180,6 +213,7 @@ class StructureSchema(Schema):
     nodes: dict[str, Vector] = {}
     members: list[MemberSchema] = []
     masses: list[MassSchema] = []
+    rna: RnaSchema | None = None
     rigid_links: list[LinkSchema] = []
     reaction_nodes: list[str] = []
     interface_nodes: list[str] = []
@@ -216,10 +250,10 @@ def read_structure(source: str | Path, *, folder: Path | None = None) -> Structu
 def _read_yaml_structure(path: Path) -> Structure:
     schema = validate(StructureSchema, read_yaml(path, what="structure file"), file=path)
     with located(file=path):
-        return build_structure(schema, default_name=path.stem)
+        return build_structure(schema, default_name=path.stem, folder=path.parent)
 
 
-def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
+def build_structure(schema: StructureSchema, *, default_name: str, folder: Path | None = None) -> Structure:
     """Return the structure a checked file describes."""
     name = schema.name or default_name
     if schema.jacket is not None:
@@ -229,6 +263,7 @@ def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
             "sections",
             "materials",
             "masses",
+            "rna",
             "rigid_links",
         } & schema.model_fields_set
         if given:
@@ -237,14 +272,14 @@ def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
                 field=sorted(given)[0],
                 remedy="keep jacket: or the explicit form",
             )
-        return _build_jacket(schema.jacket, name=name, sea_level_z_m=schema.sea_level_z_m)
+        return _build_jacket(schema.jacket, name=name, sea_level_z_m=schema.sea_level_z_m, folder=folder)
     if not schema.members:
         raise InputError(
             "required key is missing", field="members", remedy="add members:, or a parametric jacket:"
         )
     materials = {"steel": STEEL} | {key: m.build(f"materials.{key}") for key, m in schema.materials.items()}
     sections = {key: s.build(f"sections.{key}") for key, s in schema.sections.items()}
-    return Structure(
+    structure = Structure(
         name=name,
         nodes=schema.nodes,
         members=tuple(_build_member(m, i, sections, materials) for i, m in enumerate(schema.members)),
@@ -257,6 +292,7 @@ def build_structure(schema: StructureSchema, *, default_name: str) -> Structure:
         beam=schema.beam,
         rotary_inertia=schema.rotary_inertia,
     )
+    return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
 
 
 def _build_member(
@@ -287,10 +323,10 @@ def _build_member(
     return Member(name, *m.nodes, sections[first], sections[last], materials[m.material], m.part)
 
 
-def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float) -> Structure:
+def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float, folder: Path | None) -> Structure:
     lattice, tp, tower = schema.lattice, schema.transition_piece, schema.tower
     with located(field="jacket"):
-        return jacket(
+        structure = jacket(
             name=name,
             lattice=Lattice(
                 legs=lattice.legs,
@@ -318,6 +354,7 @@ def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float) -> S
                 tower.top.build("tower.top"),
                 tower.material.build("tower.material"),
             ),
-            rna=None if schema.rna is None else schema.rna.build("tower_top", "rna", field="rna"),
+            rna=None,
             sea_level_z_m=sea_level_z_m,
         )
+        return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)

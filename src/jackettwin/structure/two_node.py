@@ -23,7 +23,8 @@ _EACH = 12
 class TwoNodeElement:
     """Stiffness and mass between two nodes, on [u, v, w, θx, θy, θz] of each in global axes, (12, 12).
 
-    ``polar_radius_m`` is a beam's √(I_p/A): what an axial force does to its torsion.
+    ``polar_radius_m`` is a beam's √(I_p/A): what an axial force does to its torsion. ``damping`` is the
+    element's own, which takes the place of the steel's.
     """
 
     name: str
@@ -33,6 +34,7 @@ class TwoNodeElement:
     stiffness: Matrix
     mass: Matrix
     polar_radius_m: float = 0.0
+    damping: Matrix | None = None
 
 
 @dataclass(frozen=True)
@@ -60,11 +62,16 @@ def two_node_element(
     mass: FloatArray | None = None,
     *,
     polar_radius_m: float = 0.0,
+    damping: FloatArray | None = None,
 ) -> TwoNodeElement:
     """Return an element from its matrices in global axes, (12, 12); without mass if None."""
+
+    def rows(matrix: FloatArray) -> Matrix:
+        return tuple(tuple(float(v) for v in row) for row in matrix)
+
     M = np.zeros((_EACH, _EACH)) if mass is None else mass
-    K_rows, M_rows = (tuple(tuple(float(v) for v in row) for row in matrix) for matrix in (stiffness, M))
-    return TwoNodeElement(name, kind, *nodes, K_rows, M_rows, polar_radius_m)
+    own = None if damping is None else rows(damping)
+    return TwoNodeElement(name, kind, *nodes, rows(stiffness), rows(M), polar_radius_m, own)
 
 
 def cable_matrices(

@@ -242,11 +242,7 @@ def _structure(schema: TwinSchema, folder: Path) -> Structure:
     )
     structure = choice.build(folder)
     rna = schema.rna or choice.rna
-    if rna is None:
-        return structure
-    top = structure.top_node
-    others = tuple(mass for mass in structure.masses if mass.node != top)
-    return structure.with_masses((*others, rna.build(top, part="rna", field="rna")))
+    return structure if rna is None else rna.stand_on(structure, folder=folder)
 
 
 def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfig | None:

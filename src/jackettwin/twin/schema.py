@@ -11,7 +11,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import Schema
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
-from jackettwin.structure.files import BodySchema
+from jackettwin.structure.files import RnaSchema
 from jackettwin.twin.config import GivenRelaxation
 from jackettwin.updating import DEFAULT_LAWS, Target
 from jackettwin.updating.solutions import MOST_EVALUATIONS
@@ -36,7 +36,7 @@ class StructureChoice(Schema):
     """A structure with overrides; ``steel`` is what ``jackettwin refine`` prints."""
 
     source: str
-    rna: BodySchema | None = None
+    rna: RnaSchema | None = None
     steel: dict[str, SteelSchema] = {}
 
     def build(self, folder: Path) -> Structure:
@@ -205,7 +205,7 @@ class TwinSchema(Schema):
     """A twin file."""
 
     structure: StructureOrName
-    rna: BodySchema | None = None
+    rna: RnaSchema | None = None
     beam: Literal["euler-bernoulli", "timoshenko"] | None = None
     rotary_inertia: bool | None = None
     subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
