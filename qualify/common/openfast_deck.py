@@ -112,16 +112,40 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     rows += ["FEATURE SWITCHES", (1, "NRotors"), (1, "CompElast"), (0, "CompInflow"), (0, "CompAero")]
     rows += [(0, "CompServo"), (0, "CompSeaSt"), (0, "CompHydro"), (run.sub, "CompSub"), (0, "CompMooring")]
     rows += [(0, "CompIce"), (0, "CompSoil"), (0, "MHK"), ("F", "MirrorRotor")]
-    rows += ["ENVIRONMENT", (9.80665, "Gravity"), (1.225, "AirDens"), (1025.0, "WtrDens"), (1.5e-5, "KinVisc")]
-    rows += [(335.0, "SpdSound"), (103500.0, "Patm"), (1700.0, "Pvap"), (depth_m, "WtrDpth"), (0.0, "MSL2SWL")]
+    rows += [
+        "ENVIRONMENT",
+        (9.80665, "Gravity"),
+        (1.225, "AirDens"),
+        (1025.0, "WtrDens"),
+        (1.5e-5, "KinVisc"),
+    ]
+    rows += [
+        (335.0, "SpdSound"),
+        (103500.0, "Patm"),
+        (1700.0, "Pvap"),
+        (depth_m, "WtrDpth"),
+        (0.0, "MSL2SWL"),
+    ]
     rows += ["INPUT FILES", ('"elastodyn.dat"', "EDFile")]
     rows += [(unused, f"BDBldFile({k})") for k in (1, 2, 3)]
     rows += [(unused, key) for key in ("InflowFile", "AeroFile", "ServoFile", "SeaStFile", "HydroFile")]
     rows += [(f'"{foundation}"', "SubFile")]
     rows += [(unused, key) for key in ("MooringFile", "IceFile", "SoilFile")]
-    rows += ["OUTPUT", ("False", "SumPrint"), (10.0, "SttsTime"), (99999, "ChkptTime"), (run.step_s, "DT_Out")]
+    rows += [
+        "OUTPUT",
+        ("False", "SumPrint"),
+        (10.0, "SttsTime"),
+        (99999, "ChkptTime"),
+        (run.step_s, "DT_Out"),
+    ]
     rows += [(0.0, "TStart"), (1, "OutFileFmt"), ("True", "TabDelim"), ('"ES18.9E3"', "OutFmt")]
-    rows += ["LINEARIZATION", (linear, "Linearize"), ("False", "CalcSteady"), (3, "TrimCase"), (1e-3, "TrimTol")]
+    rows += [
+        "LINEARIZATION",
+        (linear, "Linearize"),
+        ("False", "CalcSteady"),
+        (3, "TrimCase"),
+        (1e-3, "TrimTol"),
+    ]
     rows += [(0.01, "TrimGain"), (0, "Twr_Kdmp"), (0, "Bld_Kdmp"), (1, "NLinTimes"), (run.step_s, "LinTimes")]
     rows += [(0, "LinInputs"), (0, "LinOutputs"), ("False", "LinOutJac"), ("False", "LinOutMod")]
     rows += ["VISUALIZATION", (0, "WrVTK"), (1, "VTK_type"), ("False", "VTK_fields"), (15, "VTK_fps")]
@@ -264,7 +288,13 @@ def _blade(rotor: FlexibleRotor) -> str:
     rows += [(1.0, "AdjBlMs"), (1.0, "AdjFlSt"), (1.0, "AdjEdSt")]
     lines = [_rows("ELASTODYN BLADE", rows).rstrip(), "-- DISTRIBUTED"]
     lines += ["BlFract StrcTwst BMassDen FlpStff EdgStff", "(-) (deg) (kg/m) (Nm^2) (Nm^2)"]
-    columns = (blade.z / blade.z[-1], np.degrees(blade.twist), blade.mass_kg_m, blade.flap_n_m2, blade.edge_n_m2)
+    columns = (
+        blade.z / blade.z[-1],
+        np.degrees(blade.twist),
+        blade.mass_kg_m,
+        blade.flap_n_m2,
+        blade.edge_n_m2,
+    )
     lines += [" ".join(f"{v:.9e}" for v in row) for row in np.array(columns).T]
     lines.append("-- BLADE MODE SHAPES")
     for name, shape in _blade_shapes(blade):
@@ -290,4 +320,8 @@ def _blade_shapes(blade: BladeStructure) -> list[tuple[str, FloatArray]]:
 
     first, second = np.flatnonzero(flap)[:2]
     edge = np.flatnonzero(~flap)[0]
-    return [("BldFl1", fitted(int(first), 0)), ("BldFl2", fitted(int(second), 0)), ("BldEdg", fitted(int(edge), 1))]
+    return [
+        ("BldFl1", fitted(int(first), 0)),
+        ("BldFl2", fitted(int(second), 0)),
+        ("BldEdg", fitted(int(edge), 1)),
+    ]
