@@ -66,7 +66,8 @@ class Turbine:
 class Run:
     """What OpenFAST is asked: bending blades or rigid ones, and linearisation or a free decay.
 
-    ``offset_m`` moves the tower top fore-aft and to the side at the start.
+    ``offset_m`` moves the tower top fore-aft and to the side at the start, from ``rest``: surge, sway and
+    heave [m], roll, pitch and yaw [rad] of the interface, then of the tower top.
     """
 
     flexible: bool = False
@@ -74,6 +75,7 @@ class Run:
     duration_s: float = 120.0
     step_s: float = 0.01
     offset_m: float = 0.0
+    rest: tuple[float, ...] = (0.0,) * 12
     sub: int = 2
     """2 is ExtPtfm, 1 is SubDyn."""
 
@@ -107,7 +109,7 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     linear = run.linearise
     duration = 2.0 * run.step_s if linear else run.duration_s
     rows: list[Row | str] = ["SIMULATION CONTROL", ("False", "Echo"), ('"FATAL"', "AbortLevel")]
-    rows += [(duration, "TMax"), (run.step_s, "DT"), (1, "ModCoupling"), (2, "InterpOrder"), (2, "NumCrctn")]
+    rows += [(duration, "TMax"), (run.step_s, "DT"), (3, "ModCoupling"), (2, "InterpOrder"), (2, "NumCrctn")]
     rows += [(1.0, "RhoInf"), (1e-4, "ConvTol"), (6, "MaxConvIter"), (99999, "DT_UJac"), (1e6, "UJacSclFact")]
     rows += ["FEATURE SWITCHES", (1, "NRotors"), (1, "CompElast"), (0, "CompInflow"), (0, "CompAero")]
     rows += [(0, "CompServo"), (0, "CompSeaSt"), (0, "CompHydro"), (run.sub, "CompSub"), (0, "CompMooring")]
@@ -166,8 +168,10 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     rows += ["INITIAL CONDITIONS", (0.0, "OoPDefl"), (0.0, "IPDefl")]
     rows += [(np.degrees(r.pitch), f"BlPitch({k})") for k in (1, 2, 3)]
     rows += [(0.0, key) for key in ("TeetDefl", "Azimuth", "RotSpeed", "NacYaw")]
-    rows += [(run.offset_m, "TTDspFA"), (run.offset_m, "TTDspSS")]
-    rows += [(0.0, f"Ptfm{key}") for key in ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")]
+    bend = np.subtract(run.rest[6:8], run.rest[:2]) - (top - base) * np.array([run.rest[4], -run.rest[3]])
+    rows += [(run.offset_m + bend[0], "TTDspFA"), (run.offset_m + bend[1], "TTDspSS")]
+    rows += [(run.rest[k], f"Ptfm{key}") for k, key in enumerate(("Surge", "Sway", "Heave"))]
+    rows += [(np.degrees(run.rest[3 + k]), f"Ptfm{key}") for k, key in enumerate(("Roll", "Pitch", "Yaw"))]
     rows += ["TURBINE CONFIGURATION", (3, "NumBl"), (tip, "TipRad"), (r.hub_radius, "HubRad")]
     rows += [(-np.degrees(r.cone), f"PreCone({k})") for k in (1, 2, 3)]
     rows += [(0.0, key) for key in ("HubCM", "UndSling", "Delta3", "AzimB1Up")]
