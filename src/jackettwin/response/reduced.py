@@ -2,8 +2,8 @@
 
 The support DOFs stay unknowns of their own, so that any law acts on them exactly, however strong; inside, the
 modes with these DOFs held are kept up to a frequency. Alone they miss the free system's modes near that
-frequency by several per cent (they are (f/f_max)⁴ off, and a small asset has few): what the undamped modes have
-beyond the basis is added until none is further off than a given error.
+frequency by several per cent (they are (f/f_max)⁴ off, and a small asset has few): what the undamped modes
+have beyond the basis is added until none is further off than a given error.
 """
 
 from __future__ import annotations
