@@ -57,6 +57,45 @@ CATALOGUE: dict[str, Kind] = {
         "like {label} of the model at {model_frequency_hz:.4g} Hz ({difference:+.1%}, MAC {mac:.2f}), "
         "which another measured mode is more like",
     ),
+    # twin: a record on its way to an observation
+    "yaw_unknown": Kind(
+        "warning", "the yaw is not known: sensors on the nacelle are taken to stand as the fixed ones do"
+    ),
+    "not_in_rotor_axes": Kind(
+        "warning", "not turned to the rotor's axes: no two horizontal channels sit at one place"
+    ),
+    "channels_without_partner": Kind("warning", "left out, no second horizontal channel at the same place"),
+    "rotor_order_removed": Kind(
+        "warning",
+        "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out, {share:.1%} of a "
+        "channel's power at most",
+    ),
+    "rotor_order_weak": Kind(
+        "info", "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out"
+    ),
+    "places_unknown": Kind(
+        "info",
+        "the place is not known (height_m or node in the JSON beside the record): swapped signs and wrong "
+        "units are not looked for",
+    ),
+    "channels_unclear": Kind("info", "left out, neither name and unit nor the JSON say what they measure"),
+    "deformation_set_aside": Kind(
+        "info", "left out beside accelerations, identify them in a file of their own"
+    ),
+    "sensor_against_model": Kind(
+        "warning",
+        "points the other way than the twin says: turned, the shapes it moves in would be {after:.0%} like "
+        "the model's instead of {before:.0%}. Kept; turn its direction.",
+    ),
+    "identification": Kind("warning", "{text}"),
+    "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
+    # twin: an observation on its way into the state
+    "record_doubled": Kind("info", "these samples are known already; they count once"),
+    "record_overlaps": Kind(
+        "warning",
+        "other samples of the same minutes are known; if they are of the same sensors, they count twice",
+    ),
+    "record_late": Kind("info", "older than {days} days that are known; these are reckoned anew"),
 }
 """Every code there is, by the package that finds it."""
 

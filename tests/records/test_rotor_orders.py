@@ -12,7 +12,7 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, write_record
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
-from jackettwin.twin import observe
+from jackettwin.twin import examine_file
 
 F = np.array([0.3, 0.7, 1.3])
 SHAPES = np.array([[1.0, 0.4, 0.2], [-0.4, 1.0, 0.6], [0.3, -0.7, 1.0]])
@@ -50,9 +50,9 @@ def test_what_is_left_is_the_record_without_the_tone(drift: float) -> None:
 def test_a_drifting_tone_is_no_mode_and_what_it_passes_is_flagged(tmp_path: Path) -> None:
     record, _ = operating(0.1)
     write_record(record, tmp_path / "r.parquet")
-    found = observe(tmp_path / "r.parquet", IdentificationSettings(refine=False)).identification
+    found = examine_file(tmp_path / "r.parquet", IdentificationSettings(refine=False)).identification
     assert [round(m.frequency_hz, 1) for m in found.modes] == [0.3, 0.7, 1.3]
-    assert "3P, 0.45 to 0.75 Hz by the measured rotor speed: taken out" in found.warnings[0]
+    assert "3P: 0.45 to 0.75 Hz by the measured rotor speed: taken out" in found.warnings[0]
     # 3P passes 0.7 Hz, 6P goes from 0.9 to 1.5 Hz
     assert ["P of the rotor passes here" in m.status for m in found.modes] == [False, True, True]
 

@@ -15,7 +15,7 @@ from jackettwin.records import Channel, Record, assess
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.twin import Observation, TwinResult
+from jackettwin.twin import Examination, TwinResult
 from jackettwin.twin.result import DampingExcess, MeasuredMode
 from jackettwin.updating import Residuals, Target, family, numbered_modes, single, support_model, update
 
@@ -78,9 +78,9 @@ def record() -> Record:
 
 
 @pytest.fixture(scope="session")
-def observation(record: Record) -> Observation:
+def observation(record: Record) -> Examination:
     found = identify(record)
-    return Observation(record, assess(record), found, compare_methods(record, found))
+    return Examination(record, assess(record), found, (), compare_methods(record, found))
 
 
 def _certain(mode: ModalEstimate) -> ModalEstimate:
@@ -88,7 +88,7 @@ def _certain(mode: ModalEstimate) -> ModalEstimate:
 
 
 @pytest.fixture(scope="session")
-def complete(targets_only: TwinResult, record: Record, observation: Observation) -> TwinResult:
+def complete(targets_only: TwinResult, record: Record, observation: Examination) -> TwinResult:
     """A record with uncertainty on every mode, an unpaired mode, unexplained damping."""
     modes = tuple(map(_certain, observation.identification.modes))
     found = replace(observation.identification, modes=modes)

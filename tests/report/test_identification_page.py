@@ -20,7 +20,7 @@ from jackettwin.report.identification_page import _shapes, build_identification_
 from jackettwin.report.numbers import UNKNOWN
 from jackettwin.report.page import Plot
 from jackettwin.report.tables_records import method_table
-from jackettwin.twin import Observation
+from jackettwin.twin import Examination
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 CHANNELS = (
@@ -47,7 +47,7 @@ def test_without_heights_no_tower_is_drawn(assert_units: Callable[[go.Figure], N
     assert list(figure.data[0].y) == ["a", "b", "c"]
 
 
-def test_the_page_draws_a_tower_only_with_heights(observation: Observation) -> None:
+def test_the_page_draws_a_tower_only_with_heights(observation: Examination) -> None:
     found = observation.identification
     names = mode_names(observation)
     (tower,) = _shapes(
@@ -72,14 +72,14 @@ def test_the_shapes_move_through_a_cycle(assert_units: Callable[[go.Figure], Non
     assert figure.frames[0].traces == (1, 3)
 
 
-def test_names_need_the_yaw(observation: Observation) -> None:
+def test_names_need_the_yaw(observation: Examination) -> None:
     assert [name.rpartition("_")[0] for name in mode_names(observation)] == ["mode", "mode"]
     straight = replace(observation, record=replace(observation.record, conditions={"yaw_deg": 0.0}))
     assert sorted(mode_names(straight)) == ["fore_aft_1", "side_side_1"]
 
 
 @pytest.fixture(scope="module")
-def page(observation: Observation, tmp_path_factory: pytest.TempPathFactory) -> str:
+def page(observation: Examination, tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("page") / "page.html"
     return build_identification_page(observation, path).read_text(encoding="utf-8")
 
@@ -91,14 +91,14 @@ def test_the_page_is_whole(page: str) -> None:
     assert "noise &lt;&amp;&gt; modes" in page
 
 
-def test_a_record_without_modes_has_a_page(observation: Observation, tmp_path: Path) -> None:
+def test_a_record_without_modes_has_a_page(observation: Examination, tmp_path: Path) -> None:
     found = replace(observation.identification, modes=())
     none = replace(observation, identification=found, comparison=None)
     text = build_identification_page(none, tmp_path / "page.html").read_text(encoding="utf-8")
     assert "measured_shapes" not in text
 
 
-def test_methods_stand_side_by_side_with_what_is_known_of_them(observation: Observation) -> None:
+def test_methods_stand_side_by_side_with_what_is_known_of_them(observation: Examination) -> None:
     found = observation.identification
     uncertain = replace(found.modes[0], damping_ratio=0.01, damping_ratio_std=0.002)
     silent = replace(found.modes[0], damping_ratio=0.012, damping_ratio_std=None)

@@ -21,7 +21,7 @@ from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
-from jackettwin.twin import observation_document, observe
+from jackettwin.twin import examine_file, observation_document
 from jackettwin.twin.export import WRITERS, export_modes
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -131,7 +131,7 @@ def _one(
 ) -> dict[str, Any]:
     with progress(1 + (report is not None), "identify") as step:
         step(f"identify {file.name}")
-        seen = observe(file, settings, compare=compare or report is not None, **how)
+        seen = examine_file(file, settings, compare=compare or report is not None, **how)
         document = observation_document(seen)
         if report is not None:
             step("write the report")

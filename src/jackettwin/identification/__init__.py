@@ -4,6 +4,7 @@ from jackettwin.identification.automatic import identify
 from jackettwin.identification.estimate import (
     Identification,
     ModalEstimate,
+    RealPole,
     Rejected,
     Spectrum,
     Stabilisation,
@@ -20,6 +21,7 @@ __all__ = [
     "Identification",
     "IdentificationSettings",
     "ModalEstimate",
+    "RealPole",
     "Rejected",
     "Spectrum",
     "Stabilisation",

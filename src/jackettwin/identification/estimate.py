@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.findings import Finding
+from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus, sentence, worse
-
-if TYPE_CHECKING:
-    from jackettwin.findings import Finding
-    from jackettwin.identification.picks import Pick
-    from jackettwin.records import Channel
+from jackettwin.records import Channel
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -14,14 +14,14 @@ from jackettwin.report import figures_measured, figures_record, section_records
 from jackettwin.report import tables_records as tables
 from jackettwin.report.figures_components import shape_components
 from jackettwin.report.page import Block, Plot, Section, Text, write_page
-from jackettwin.twin import Observation
+from jackettwin.twin import Examination
 from jackettwin.version import __version__
 
 PURE = 0.7
 """Share of a shape's energy along one axis from which it has its name."""
 
 
-def build_identification_page(seen: Observation, path: Path) -> Path:
+def build_identification_page(seen: Examination, path: Path) -> Path:
     """Write one self-contained HTML file on an observed record; return its path.
 
     Raises
@@ -45,7 +45,7 @@ def build_identification_page(seen: Observation, path: Path) -> Path:
     )
 
 
-def mode_names(seen: Observation) -> tuple[str, ...]:
+def mode_names(seen: Examination) -> tuple[str, ...]:
     """Return ``fore_aft_1``, ``side_side_1`` where the yaw is known and a shape is clear, else ``mode_1``."""
     found = seen.identification
     rotor = knows_yaw(seen.record) or seen.record.metadata.get("axes") == "rotor"
@@ -61,7 +61,7 @@ def mode_names(seen: Observation) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _record(seen: Observation, names: tuple[str, ...]) -> list[Block]:
+def _record(seen: Examination, names: tuple[str, ...]) -> list[Block]:
     found = seen.identification
     modes = list(zip(names, found.modes, strict=True))
     caption = (
@@ -76,7 +76,7 @@ def _record(seen: Observation, names: tuple[str, ...]) -> list[Block]:
     ]
 
 
-def _modes(seen: Observation, names: tuple[str, ...]) -> list[Block]:
+def _modes(seen: Examination, names: tuple[str, ...]) -> list[Block]:
     found = seen.identification
     blocks: list[Block] = [tables.identified_table(found, names)]
     if seen.comparison is not None:

@@ -12,11 +12,11 @@ from jackettwin.report.figures_identification import damping_interval, frequency
 from jackettwin.report.figures_record import plain
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, scientific, words
 from jackettwin.report.page import Table
-from jackettwin.twin import Observation, TwinResult
+from jackettwin.twin import Examination, TwinResult
 from jackettwin.twin.held import unpaired_finding
 
 
-def quality_table(seen: Observation) -> Table:
+def quality_table(seen: Examination) -> Table:
     """Return how good each channel of a record is."""
     channels = {channel.name: channel for channel in seen.record.channels}
     rows = []

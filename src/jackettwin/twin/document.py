@@ -10,8 +10,8 @@ import numpy.typing as npt
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
+from jackettwin.twin.examine import Examination
 from jackettwin.twin.held import held_document
-from jackettwin.twin.observe import Observation
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update, law_probability
@@ -50,7 +50,7 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
 
 
 def _held_document(
-    document: dict[str, Any], seen: Observation, held: tuple[Held, ...], labels: tuple[str, ...]
+    document: dict[str, Any], seen: Examination, held: tuple[Held, ...], labels: tuple[str, ...]
 ) -> dict[str, Any]:
     """Return a record's document with what each mode was held against in the model."""
     for plain, mode, against in zip(document["modes"], seen.identification.modes, held, strict=True):
@@ -287,7 +287,7 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
     ]
 
 
-def observation_document(seen: Observation, labels: tuple[str, ...] | None = None) -> dict[str, Any]:
+def observation_document(seen: Examination, labels: tuple[str, ...] | None = None) -> dict[str, Any]:
     """Return the document of one record of ``jackettwin identify``, with the model's labels if given."""
     document = identification_document(seen.identification, seen.quality.summary())
     if labels is not None:

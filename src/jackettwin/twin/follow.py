@@ -24,7 +24,8 @@ from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Day, Followed, RecordModes, since_first
-from jackettwin.twin.measure import Measured, measure, placed_sensors
+from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.model import placed_sensors
 from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
@@ -74,7 +75,7 @@ def follow_twin(
     if not new.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     assembly = assembled(config)
-    found = measure(new, assembly, numbered_modes(assembly, PAIRED_MODES), step=step)
+    found = measure(new, assembly, step=step)
     warnings = [f"left out: {one.problem}" for one in found.failed]
     warnings += [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
     followed = follow_modes(
@@ -148,7 +149,7 @@ def _record_modes(config: TwinConfig, found: Measured) -> list[RecordModes]:
                 seen.record.name,
                 start,
                 found.of_record(i),
-                placed_sensors(config, seen.record),
+                placed_sensors(config.sensors, seen.record),
                 found.relaxations[i],
             )
         )

@@ -26,7 +26,7 @@ from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.processes import in_processes
 from jackettwin.records.readers import FORMATS, description_file
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.twin.observe import Observation, observe
+from jackettwin.twin.examine import Examination, examine_file
 from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 6
@@ -178,7 +178,7 @@ def observe_many(
     )
 
 
-def kept(seen: Observation) -> Seen:
+def kept(seen: Examination) -> Seen:
     """Return what is kept of an observation."""
     return Seen(slim(seen.identification), seen.quality.summary(), dict(seen.record.conditions))
 
@@ -202,7 +202,7 @@ def _computed(
 def _one(work: _Work, file: Path) -> Seen | Failed:
     """Return what a record shows, or why it shows nothing, whatever went wrong."""
     try:
-        seen = observe(file, work.settings, picks=work.picks, unsaid=work.unsaid)
+        seen = examine_file(file, work.settings, picks=work.picks, unsaid=work.unsaid)
         return kept(seen)
     except Exception as error:  # one record must not end a batch; alone it shows the traceback
         return failure(file, error)

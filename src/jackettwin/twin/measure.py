@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from math import inf
-
-import scipy.sparse as sp
 
 from jackettwin.errors import located
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.many_records.fusion import average
 from jackettwin.identification.many_records.sightings import sightings as columns
-from jackettwin.records import Record
-from jackettwin.response.modal import UndampedModes
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.records import Record, read_record
+from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
+from jackettwin.twin.examine import Examination
 from jackettwin.twin.many import Failed, failure
-from jackettwin.twin.observe import Observation, observe
-from jackettwin.twin.sensor_polarity import sensor_polarity
+from jackettwin.twin.model import TwinModel, twin_model
+from jackettwin.twin.observe import examined, observed
 from jackettwin.updating import Target
-from jackettwin.updating.pairing import Held, held_against, likeness, pair
-from jackettwin.updating.softer_feet import Feet, softer_feet
+from jackettwin.updating.pairing import Held
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ class Measured:
     feet_stiffness_n_m : of the model's feet on which it is most like the measured modes; inf: as numbered
     """
 
-    observations: tuple[Observation, ...]
+    observations: tuple[Examination, ...]
     sensors: tuple[Sensor, ...]
     sightings: dict[int, tuple[Sighting, ...]]
     numbers: tuple[tuple[int | None, ...], ...]
@@ -72,7 +69,6 @@ class Measured:
 def measure(
     config: TwinConfig,
     assembly: Assembly,
-    numbered: UndampedModes,
     *,
     compare: bool = False,
     step: Callable[[str], None],
@@ -84,87 +80,62 @@ def measure(
     InputError
         If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
-    observations, failed = _observed(config, compare=compare, step=step)
-    seeing = [_seeing(config, assembly, seen) for seen in observations]
-    feet = _likest(observations, seeing, softer_feet(assembly, numbered))
-    sightings: dict[int, list[Sighting]] = {}
-    numbers, held = [], []
-    turned: list[str] = []
-    for seen, at_sensors in zip(observations, seeing, strict=True):
-        found, names = seen.identification, tuple(c.name for c in seen.identification.channels)
-        shapes = at_sensors @ feet.shapes
-        pairs = pair(found.modes, feet.frequency_hz, shapes)
-        held.append(held_against(found.modes, feet.frequency_hz, shapes))
-        for mode, (index, subspace_mac) in pairs.items():
-            sightings.setdefault(mode + 1, []).append(
-                Sighting(found.modes[index], subspace_mac, found.duration_s, _wind(seen.record), names)
-            )
-        turned += [
-            f"{seen.record.name}: {one.described(names)}"
-            for one in sensor_polarity(found.modes, feet.frequency_hz, shapes)
-        ]
-        number_of = {index: mode + 1 for mode, (index, _) in pairs.items()}
-        numbers.append(tuple(number_of.get(i) for i in range(len(found.modes))))
-    return Measured(
-        tuple(observations),
-        placed_sensors(config, observations[0].record),
-        {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
-        tuple(numbers),
-        tuple(_relaxations(seen.identification) for seen in observations),
-        tuple(turned),
-        failed,
-        tuple(held),
-        feet.stiffness_n_m,
-    )
-
-
-def _seeing(config: TwinConfig, assembly: Assembly, seen: Observation) -> sp.csr_array:
-    """Return what the identified channels of a record see of every motion, (n_channels, n_dof)."""
-    by_channel = {s.channel: s for s in placed_sensors(config, seen.record)}
+    model = twin_model(config, assembly)
+    records, examinations, failed = _examined(config, model, compare=compare, step=step)
     with located(file=config.path):
-        return observation_matrix(assembly, tuple(by_channel[c.name] for c in seen.identification.channels))
-
-
-def _likest(
-    observations: Sequence[Observation], seeing: Sequence[sp.csr_array], path: Sequence[Feet]
-) -> Feet:
-    """Return the feet on which the model is most like what all records show; the stiffest of equals."""
-    return max(
-        path,
-        key=lambda feet: sum(
-            likeness(seen.identification.modes, feet.frequency_hz, at_sensors @ feet.shapes)
-            for seen, at_sensors in zip(observations, seeing, strict=True)
+        feet = model.likest_feet(examinations)
+        observations = [
+            observed(record, seen, model, feet) for record, seen in zip(records, examinations, strict=True)
+        ]
+    sightings: dict[int, list[Sighting]] = {}
+    for one in observations:
+        names = tuple(c.name for c in one.identification.channels)
+        for mode, (estimate, known) in one.modes.items():
+            sighting = Sighting(estimate, known.mac, one.duration_s, one.wind_m_s, names)
+            sightings.setdefault(mode, []).append(sighting)
+    return Measured(
+        tuple(examinations),
+        observations[0].sensors,
+        {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
+        tuple(tuple(None if r is None else r.mode for r in one.recognised) for one in observations),
+        tuple(_relaxations(one.identification) for one in observations),
+        tuple(
+            f"{one.name}: {f}"
+            for one in observations
+            for f in one.findings
+            if f.code == "sensor_against_model"
         ),
+        failed,
+        tuple(one.held for one in observations),
+        inf if feet is None else feet.stiffness_n_m,
     )
 
 
-def _observed(
-    config: TwinConfig, *, compare: bool, step: Callable[[str], None]
-) -> tuple[list[Observation], tuple[Failed, ...]]:
+def _examined(
+    config: TwinConfig, model: TwinModel, *, compare: bool, step: Callable[[str], None]
+) -> tuple[list[Record], list[Examination], tuple[Failed, ...]]:
     """Return what the records show, and those that show nothing; the error of the first if none does."""
-    observations: list[Observation] = []
+    records: list[Record] = []
+    examinations: list[Examination] = []
     failed: list[Failed] = []
     first: Exception | None = None
     for path in config.records:
         step(f"identify {path.name}")
         try:
-            seen = observe(
-                path,
-                config.identification,
-                sensors=config.sensors,
-                picks=config.picks,
-                compare=compare and not observations,
-            )
+            record = read_record(path)
+            with located(file=path):
+                seen = examined(record, model, compare=compare and not examinations)
         except Exception as error:  # of many records, one that fails must not stop the others
             if not path.exists():
                 raise
             first = first or error
             failed.append(failure(path, error))
         else:
-            observations.append(seen)
-    if first is not None and not observations:
+            records.append(record)
+            examinations.append(seen)
+    if first is not None and not records:
         raise first
-    return observations, tuple(failed)
+    return records, examinations, tuple(failed)
 
 
 def _relaxations(found: Identification) -> tuple[GivenRelaxation, ...]:
@@ -179,24 +150,8 @@ def _relaxations(found: Identification) -> tuple[GivenRelaxation, ...]:
     )
 
 
-def _wind(record: Record) -> float | None:
-    value = record.conditions.get("mean_wind_speed_m_s")
-    return None if value is None else float(value)
-
-
 def fuse(mode: int, sightings: tuple[Sighting, ...]) -> Target:
     """Return one mode over records as a target, averaged as ``identification.fuse`` does."""
     mean = average(columns([s.estimate for s in sightings], [s.duration_s for s in sightings]))
     f, zeta = mean.frequency_hz, mean.damping_ratio
     return Target(mode, f, f * mean.log_std[0], zeta, zeta * mean.log_std[1], mean.correlation)
-
-
-def placed_sensors(config: TwinConfig, record: Record) -> tuple[Sensor, ...]:
-    """Return the sensors behind the channels; they point as the record's channels do once turned."""
-    given = {s.channel: s for s in config.sensors}
-    return tuple(
-        replace(given[c.name], direction=c.direction)
-        if given
-        else Sensor(c.name, c.direction, c.node, None if c.node else c.height_m)
-        for c in record.channels
-    )

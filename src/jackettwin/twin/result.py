@@ -12,7 +12,7 @@ from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
-from jackettwin.twin.observe import Observation
+from jackettwin.twin.examine import Examination
 from jackettwin.updating import Update
 from jackettwin.updating.pairing import Held
 
@@ -122,7 +122,7 @@ class TwinResult:
     ----------
     numbered, labels
         Undamped modes on pinned supports and what to call them.
-    observations : tuple of Observation
+    observations : tuple of Examination
         One a record: its quality, the repaired record, what was identified.
     names : tuple of tuple of str
         For each record, the label of each identified mode; empty without a counterpart in the model.
@@ -145,7 +145,7 @@ class TwinResult:
     sensors: tuple[Sensor, ...]
     numbered: UndampedModes
     labels: tuple[str, ...]
-    observations: tuple[Observation, ...]
+    observations: tuple[Examination, ...]
     names: tuple[tuple[str, ...], ...]
     measured: tuple[MeasuredMode, ...]
     updates: tuple[Update, ...]

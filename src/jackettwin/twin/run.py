@@ -52,7 +52,7 @@ def run_twin(
     number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
     numbered = numbered_modes(assembly, number)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes))
-    found = measure(config, assembly, numbered, compare=compare, step=step) if config.records else None
+    found = measure(config, assembly, compare=compare, step=step) if config.records else None
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
         if found is None

@@ -13,8 +13,8 @@ from jackettwin.errors import InputError
 from jackettwin.identification import IdentificationSettings, mac
 from jackettwin.records import Channel, Record, read_record, write_record
 from jackettwin.response.sensors import Sensor
-from jackettwin.twin import Observation, observe
-from jackettwin.twin.observe import _set_aside, _unknown, _unplaced, moving_channels
+from jackettwin.twin import Examination, examine_file
+from jackettwin.twin.examine import _set_aside, _unclear, _unplaced, moving_channels
 
 RECORDS = files("jackettwin") / "data" / "records"
 
@@ -29,17 +29,17 @@ def turned(name: str, yaw: np.ndarray) -> Record:
     return replace(record, data=data, conditions={})
 
 
-def seen(record: Record, path: Path, sensors: tuple[Sensor, ...] = ()) -> Observation:
+def seen(record: Record, path: Path, sensors: tuple[Sensor, ...] = ()) -> Examination:
     write_record(record, path)
-    return observe(path, IdentificationSettings(), sensors=sensors)
+    return examine_file(path, IdentificationSettings(), sensors=sensors)
 
 
 @pytest.fixture(scope="module")
-def straight() -> Observation:
-    return observe(Path(str(RECORDS / "pile_U12_s301.parquet")), IdentificationSettings())
+def straight() -> Examination:
+    return examine_file(Path(str(RECORDS / "pile_U12_s301.parquet")), IdentificationSettings())
 
 
-def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Observation, tmp_path: Path) -> None:
+def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Examination, tmp_path: Path) -> None:
     """Another ten minutes, turned by 60 degrees: MAC ≥ 0.95 with each mode of the first two pairs."""
     other = replace(turned("pile_U12_s308", np.array(np.pi / 3)), conditions={"yaw_deg": 60.0})
     found = seen(other, tmp_path / "r.parquet").identification
@@ -54,7 +54,7 @@ def test_modes_of_another_record_at_another_yaw_are_the_same(straight: Observati
     assert mac(straight.identification.modes[1].mode_shape_unaligned, found.modes[1].mode_shape) < 0.95
 
 
-def test_yaw_as_a_channel(straight: Observation, tmp_path: Path) -> None:
+def test_yaw_as_a_channel(straight: Examination, tmp_path: Path) -> None:
     """The same ten minutes while the nacelle turns by 80 degrees: the very same modes."""
     yaw = np.radians(np.linspace(-20.0, 60.0, 60_001))
     record = turned("pile_U12_s301", yaw)
@@ -68,7 +68,7 @@ def test_yaw_as_a_channel(straight: Observation, tmp_path: Path) -> None:
     assert found.record.channel_names == straight.record.channel_names
 
 
-def test_sensors_off_the_axes_are_turned_onto_them(straight: Observation, tmp_path: Path) -> None:
+def test_sensors_off_the_axes_are_turned_onto_them(straight: Examination, tmp_path: Path) -> None:
     """Sensors at 45 degrees to x, as a twin's ``sensors`` say; the record itself says nothing."""
     record = turned("pile_U12_s301", np.array(np.radians(-45.0)))
     channels = tuple(Channel(f"s{i}") for i in range(8))
@@ -107,15 +107,17 @@ def test_sensors_without_a_place_are_named() -> None:
     assert _unplaced(record) == ()
     nowhere = replace(record, channels=tuple(replace(c, height_m=None) for c in record.channels))
     (note,) = _unplaced(nowhere)
-    assert note.startswith("acc_top_x, acc_top_y, acc_g77_x …: the place is not known")
+    assert str(note).startswith(
+        "acc_top_x, acc_top_y, acc_g77_x, acc_g77_y, acc_g41_x …: the place is not known"
+    )
 
 
 def test_channels_of_which_nobody_knows_what_they_measure_are_named() -> None:
     record = turned("pile_U12_s301", np.array(0.0))
-    assert _unknown(record) == ()
+    assert _unclear(record) == ()
     strange = (replace(record.channels[0], quantity="other", unit="mm"), *record.channels[1:])
-    (note,) = _unknown(replace(record, channels=strange))
-    assert note.endswith("say what they measure: acc_top_x (mm)")
+    (note,) = _unclear(replace(record, channels=strange))
+    assert str(note).startswith("acc_top_x (mm): left out, neither name and unit nor the JSON say")
 
 
 def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
@@ -137,5 +139,5 @@ def test_strains_are_identified_where_nothing_measures_motion() -> None:
     mixed = replace(record, channels=(*strain, *record.channels[2:]))
     assert moving_channels(mixed).channel_names == record.channel_names[2:]
     (note,) = _set_aside(mixed, moving_channels(mixed))
-    assert note.endswith(", ".join(record.channel_names[:2]))
+    assert note.subject == ", ".join(record.channel_names[:2])
     assert moving_channels(mixed.select(record.channel_names[:2])).channels == strain

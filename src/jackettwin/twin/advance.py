@@ -1,0 +1,179 @@
+"""The second of the pair: a state and an observation become the next state. Cheap, to be folded in time.
+
+The fold is commutative: every observation belongs to the day it began on (UTC), and what it adds there does
+not depend on what came before. One that comes late changes its own day; what was estimated for later days is
+then out of date, and a finding says from when on. One whose samples are known already changes nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from math import floor, log
+
+from jackettwin.errors import InputError
+from jackettwin.findings import Finding
+from jackettwin.identification import RealPole
+from jackettwin.twin.observation import Observation
+from jackettwin.twin.state import (
+    UNDATED,
+    ClearShape,
+    Conditions,
+    Day,
+    Operation,
+    RateSums,
+    TwinState,
+    clearer,
+    join,
+)
+from jackettwin.twin.sums import of_estimate, whole
+
+WIND_BIN_M_S = 2.0
+"""Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
+RATE_BIN = 0.1
+"""Width of a bin of logarithmic rates: as near as poles of one relaxation lie over the model orders."""
+
+
+def advance(state: TwinState, observation: Observation) -> tuple[TwinState, tuple[Finding, ...]]:
+    """Return the state that knows one more observation, and what is worth saying of it.
+
+    Raises
+    ------
+    InputError
+        If the observation was made with another model than the state's.
+    """
+    if observation.model_hash != state.model_hash:
+        raise InputError(
+            "the observation is of another structure or other sensors than the state",
+            field="model_hash",
+            value=observation.model_hash,
+            allowed=state.model_hash,
+            remedy="observe the record with the model of the state, or rebuild the state with the new model",
+        )
+    date = day_of(observation)
+    old = state.days.get(date, Day())
+    if observation.record_id in old.records:
+        return state, (Finding("record_doubled", observation.name),)
+    findings = [*_overlapping(observation, old), *_late(state, observation, date)]
+    return state.with_day(date, _added(old, observation, state)), tuple(findings)
+
+
+def advance_all(
+    state: TwinState, observations: Iterable[Observation]
+) -> tuple[TwinState, tuple[Finding, ...]]:
+    """Return the state that knows some more observations, and what is worth saying of them."""
+    findings: list[Finding] = []
+    for observation in observations:
+        state, found = advance(state, observation)
+        findings += found
+    return state, tuple(findings)
+
+
+def day_of(observation: Observation) -> str:
+    """Return the UTC date that a record began on, ISO; empty if it has no start."""
+    start = observation.start_utc
+    return UNDATED if start is None else start.astimezone(UTC).date().isoformat()
+
+
+def operation_of(observation: Observation, *, by_wind: bool) -> str:
+    """Return the state of operation a record counts in: what its conditions say, and its bin of wind speed.
+
+    Winds are bins of 2 m/s, so that there are a dozen states of operation and not one for every record.
+    """
+    state = observation.conditions.get("state")
+    wind = observation.wind_m_s if by_wind else None
+    words = [] if state is None else [str(state)]
+    if wind is not None:
+        words.append(f"{WIND_BIN_M_S * floor(wind / WIND_BIN_M_S + 0.5):g} m/s")
+    return ", ".join(words) or "unknown"
+
+
+def _added(day: Day, seen: Observation, state: TwinState) -> Day:
+    start = seen.start_utc
+    at = 0 if start is None else round(_since_midnight(start))
+    records = {**day.records, seen.record_id: (at, round(seen.duration_s))}
+    name = operation_of(seen, by_wind=state.by_wind)
+    operations = {**day.operations, name: join(day.operations.get(name, Operation()), _operation(seen))}
+    times = [t for t in (day.first, day.last, start) if t is not None]
+    return Day(
+        records=dict(sorted(records.items())),
+        first=min(times).astimezone(UTC) if times else None,
+        last=max(times).astimezone(UTC) if times else None,
+        operations=dict(sorted(operations.items())),
+        clearest=clearer(day.clearest, _shapes(seen, state.with_shapes)),
+    )
+
+
+def _operation(seen: Observation) -> Operation:
+    """Return what one record says."""
+    wind, duration = seen.wind_m_s, seen.duration_s
+    height, period = (seen.conditions.get(key) for key in ("wave_height_m", "wave_period_s"))
+    waved = height is not None and period is not None
+    conditions = Conditions(
+        records=1,
+        duration=whole(duration),
+        windy=0 if wind is None else whole(duration),
+        wind=0 if wind is None else whole(duration * wind),
+        waved=int(waved),
+        wave_height=whole(float(height)) if height is not None and waved else 0,
+        wave_period=whole(float(period)) if period is not None and waved else 0,
+    )
+    modes = {
+        number: of_estimate(mode, duration)
+        for number, (mode, _) in sorted(seen.modes.items())
+        if mode.status.is_a_mode
+    }
+    rates: dict[int, RateSums] = {}
+    for pole in seen.identification.real_poles:
+        w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole)
+        own = RateSums(int(bin_ not in rates), whole(w), whole(w * x), whole(w * x * x))
+        rates[bin_] = rates.get(bin_, RateSums()).plus(own)
+    return Operation(conditions, modes, rates)
+
+
+def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:
+    """Return the shapes of a record's real poles, and of its modes if they are wanted."""
+    by_channel = {sensor.channel: sensor for sensor in seen.sensors}
+    sensors = tuple(by_channel[c.name] for c in seen.identification.channels if c.name in by_channel)
+    if len(sensors) < len(seen.identification.channels):
+        return {}
+    shapes = {
+        str(number): ClearShape(known.mac, seen.record_id, mode.frequency_hz, sensors, mode.mode_shape)
+        for number, (mode, known) in seen.modes.items()
+        if of_modes and mode.status.is_a_mode
+    }
+    for pole in seen.identification.real_poles:
+        clarity = -pole.rate_std_rad_s / pole.rate_rad_s
+        shape = ClearShape(clarity, seen.record_id, pole.rate_rad_s, sensors, pole.mode_shape)
+        shapes = clearer(shapes, {f"a{_bin(pole)}": shape})
+    return shapes
+
+
+def _bin(pole: RealPole) -> int:
+    return floor(log(pole.rate_rad_s) / RATE_BIN)
+
+
+def _since_midnight(time: datetime) -> float:
+    utc = time.astimezone(UTC)
+    return (utc - utc.replace(hour=0, minute=0, second=0, microsecond=0)).total_seconds()
+
+
+def _overlapping(seen: Observation, day: Day) -> list[Finding]:
+    """Say that other samples of the same minutes are known: another file of the same sensors counts twice."""
+    if seen.start_utc is None:
+        return []
+    start = _since_midnight(seen.start_utc)
+    # a record that ends as the next one starts does not overlap it, whatever a rate's rounding says
+    margin = 0.01 * seen.duration_s
+    if any(
+        at < start + seen.duration_s - margin and start < at + t - margin for at, t in day.records.values()
+    ):
+        return [Finding("record_overlaps", seen.name)]
+    return []
+
+
+def _late(state: TwinState, seen: Observation, date: str) -> list[Finding]:
+    if not date or not state.days or date >= state.last_date:
+        return []
+    later = sum(1 for other in state.days if other > date)
+    return [Finding("record_late", seen.name, {"days": later, "from": date})]

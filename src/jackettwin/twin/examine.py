@@ -1,0 +1,260 @@
+"""A record examined: judged, repaired, turned to the rotor's axes and identified. Stateless.
+
+What is done to the samples is a list of steps ``Record -> (Record, findings)``; a new one is a function and
+a line in :func:`examine`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.errors import InputError, located
+from jackettwin.findings import Finding
+from jackettwin.identification import Identification, IdentificationSettings, identify
+from jackettwin.identification.comparison import Comparison, compare_methods
+from jackettwin.identification.many_records.pairs import along_axes
+from jackettwin.identification.picks import Pick
+from jackettwin.identification.status import ModeStatus
+from jackettwin.records import Record, assess, detrend, read_record, repair
+from jackettwin.records.conditions import with_conditions
+from jackettwin.records.quality import Quality
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.rotor_orders import rotor_speed, without_orders
+from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
+from jackettwin.response.sensors import Sensor
+
+WORTH_SAYING = 1e-3
+"""Share of a channel's power from which a tone is mentioned."""
+FEWEST_TO_COMPARE = 3
+"""Sensors without a place of which it is said that they cannot be compared."""
+MOTION = ("acceleration", "velocity", "displacement")
+"""Quantities of which one record may mix several."""
+DEFORMATION = ("inclination", "strain")
+"""Quantities identified where no channel measures motion, the first of them that there is."""
+_NAMED = 5
+"""Channels that a finding names; more are dots."""
+
+Findings = tuple[Finding, ...]
+Step = Callable[[Record], tuple[Record, Findings]]
+"""One thing done to a record before it is identified."""
+
+
+@dataclass(frozen=True)
+class Examination:
+    """One record, judged, repaired and identified.
+
+    Attributes
+    ----------
+    record : Record
+        As it was identified.
+    quality : Quality
+        Of the record as it was read.
+    findings : tuple of Finding
+        What the steps of the preparation found.
+    comparison : Comparison or None
+        The same modes by every method, if it was asked for.
+    """
+
+    record: Record
+    quality: Quality
+    identification: Identification
+    findings: Findings = ()
+    comparison: Comparison | None = None
+
+
+def examine_file(
+    path: Path,
+    settings: IdentificationSettings,
+    *,
+    sensors: tuple[Sensor, ...] = (),
+    picks: tuple[Pick, ...] = (),
+    unsaid: Unsaid | None = None,
+    compare: bool = False,
+) -> Examination:
+    """Read and examine one record; ``unsaid`` holds rate and unit for a file that does not say them.
+
+    Raises
+    ------
+    InputError
+        If the record cannot be read, no channel carries a signal, or the record cannot be identified.
+    """
+    record = read_record(path, unsaid)
+    with located(file=path):
+        return examine(record, settings, sensors=sensors, picks=picks, compare=compare)
+
+
+def examine(
+    record: Record,
+    settings: IdentificationSettings,
+    *,
+    sensors: tuple[Sensor, ...] = (),
+    picks: tuple[Pick, ...] = (),
+    compare: bool = False,
+) -> Examination:
+    """Judge, repair, turn to the rotor's axes and identify one record.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor, optional
+        Only these channels, at these places; default: all that measure motion, where the record says.
+    picks : tuple of Pick
+        Poles to take instead of the automatic selection, for the records they name.
+    compare : bool
+        Identify by every method as well.
+
+    Raises
+    ------
+    InputError
+        If no channel carries a signal, or the record cannot be identified.
+    """
+    source = with_conditions(record)
+    chosen = _placed(source, sensors) if sensors else moving_channels(source)
+    quality = assess(chosen)
+    steps: tuple[Step, ...] = (
+        partial(repaired, quality=quality),
+        partial(in_rotor_axes, source=source),
+        partial(without_rotor_orders, source=source),
+    )
+    ready, findings = prepared(chosen, steps)
+    findings = (
+        *findings,
+        *_unplaced(chosen),
+        *(() if sensors else (*_unclear(source), *_set_aside(source, chosen))),
+    )
+    found = _beside_orders(identify(ready, settings, picks=picks), findings)
+    if knows_yaw(source) or source.metadata.get("axes") == "rotor":
+        found = along_axes(found)
+    warnings = (str(f) for f in findings if f.severity != "info")
+    notes = (str(f) for f in findings if f.severity == "info")
+    found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
+    compared = compare_methods(ready, found, settings) if compare and found.modes else None
+    return Examination(ready, quality, found, findings, compared)
+
+
+def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
+    """Return a record after some steps, and everything they found."""
+    findings: list[Finding] = []
+    for step in steps:
+        record, found = step(record)
+        findings += found
+    return record, tuple(findings)
+
+
+def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
+    """Take out what the quality says is damaged; what was damaged stands in the quality."""
+    return repair(record, quality), ()
+
+
+def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
+    """Detrend a record and turn it to the rotor's axes, if ``source`` knows the yaw.
+
+    Channels keep their names, so that records at different yaw compare and sensors find them: the one
+    nearer to global x is the fore-aft one. A yaw that is zero throughout changes nothing.
+    """
+    if record.metadata.get("axes") == "rotor":
+        return record, ()
+    if not knows_yaw(source):
+        frames = {channel.frame for channel in record.channels if is_horizontal(channel)}
+        return record, (Finding("yaw_unknown"),) if len(frames) > 1 else ()
+    yaw = yaw_of(source)
+    if not np.any(yaw):
+        return record, ()
+    turned = to_rotor_axes(detrend(record), yaw_rad=yaw, rename=False)
+    lost = turned.metadata.get("without_partner", [])
+    if not turned.channels:
+        return record, (Finding("not_in_rotor_axes"),)
+    return turned, (Finding("channels_without_partner", _listed(lost)),) if lost else ()
+
+
+def without_rotor_orders(record: Record, *, source: Record) -> tuple[Record, Findings]:
+    """Take the tones of the rotor out, if ``source`` measures its speed."""
+    speed = rotor_speed(source)
+    if speed is None:
+        return record, ()
+    left, orders = without_orders(record, speed)
+    return left, tuple(
+        Finding(
+            "rotor_order_removed" if o.share > WORTH_SAYING else "rotor_order_weak",
+            f"{o.order}P",
+            {"order": o.order, "low_hz": o.low_hz, "high_hz": o.high_hz, "share": o.share},
+        )
+        for o in orders
+    )
+
+
+def _beside_orders(found: Identification, findings: Findings) -> Identification:
+    """Flag the modes that a multiple of the rotor's speed passed."""
+    orders = [f.params for f in findings if f.code in ("rotor_order_removed", "rotor_order_weak")]
+    modes = []
+    for mode in found.modes:
+        half = mode.damping_ratio * mode.frequency_hz
+        low, high = mode.frequency_hz - half, mode.frequency_hz + half
+        passing = [o for o in orders if float(o["low_hz"] or 0.0) < high and float(o["high_hz"] or 0.0) > low]
+        if passing:
+            order = Finding("rotor_order_passes", params={"order": passing[0]["order"]})
+            mode = mode.flagged(ModeStatus.DOUBTFUL, order)
+        modes.append(mode)
+    return replace(found, modes=tuple(modes))
+
+
+def _unplaced(record: Record) -> Findings:
+    """Say that signs and units were not judged, where several sensors do not say where they sit."""
+    nowhere = [c.name for c in record.channels if c.node is None and c.height_m is None]
+    return (Finding("places_unknown", _listed(nowhere)),) if len(nowhere) >= FEWEST_TO_COMPARE else ()
+
+
+def _unclear(record: Record) -> Findings:
+    """Name the channels that are left out because nobody knows what they measure."""
+    names = [f"{c.name} ({c.unit})" for c in record.channels if c.quantity == "other"]
+    return (Finding("channels_unclear", _listed(names)),) if names else ()
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Return names in one text, at most ``_NAMED`` of them."""
+    listed = list(names)
+    return ", ".join(listed[:_NAMED]) + (" …" if len(listed) > _NAMED else "")
+
+
+def _set_aside(record: Record, chosen: Record) -> Findings:
+    """Name the inclinations and strains beside channels that measure motion."""
+    names = [
+        c.name for c in record.channels if c.quantity in DEFORMATION and c.name not in chosen.channel_names
+    ]
+    return (Finding("deformation_set_aside", _listed(names)),) if names else ()
+
+
+def moving_channels(record: Record) -> Record:
+    """Return the record with only the channels that measure motion; without any, its inclinations or strains.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    for kinds in (MOTION, *((kind,) for kind in DEFORMATION)):
+        names = [c.name for c in record.channels if c.quantity in kinds]
+        if names:
+            return record.select(names)
+    raise InputError(
+        "no channel measures motion",
+        field="channels",
+        value=record.channel_names,
+        allowed=", ".join((*MOTION, *DEFORMATION)),
+        remedy="state quantity and unit in the JSON beside the record (identify: or --unit)",
+    )
+
+
+def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
+    """Return the channels of the sensors, where and which way these say they point."""
+    chosen = record.select([s.channel for s in sensors])
+    channels = []
+    for channel, s in zip(chosen.channels, sensors, strict=True):
+        length = float(np.linalg.norm(s.direction)) or 1.0
+        x, y, z = (float(v) / length for v in s.direction)
+        channels.append(replace(channel, node=s.node, height_m=s.height_m, direction=(x, y, z)))
+    return replace(chosen, channels=tuple(channels))

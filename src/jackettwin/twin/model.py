@@ -1,0 +1,151 @@
+"""All that the pair of functions needs of a twin: made once of its file, the same in every process."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import scipy.sparse as sp
+
+from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.picks import Pick
+from jackettwin.records import Record
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.modal import UndampedModes
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.structure import Assembly
+from jackettwin.twin.assembled import assembled
+from jackettwin.twin.config import PAIRED_MODES, TwinConfig
+from jackettwin.twin.examine import Examination
+from jackettwin.twin.stored import digest
+from jackettwin.updating import numbered_modes
+from jackettwin.updating.pairing import likeness
+from jackettwin.updating.softer_feet import Feet, softer_feet
+
+
+@dataclass(frozen=True)
+class TwinModel:
+    """What a record is observed with and a state is of: no path, no record, no law.
+
+    Attributes
+    ----------
+    name : str
+    assembly : Assembly or None
+        The structure whose modes are recognised; None recognises none.
+    numbered : UndampedModes or None
+        Its modes on pinned feet.
+    feet : tuple of Feet
+        These modes on softer and softer feet: measured ones are recognised on the likest.
+    labels : tuple of str
+        Of these.
+    identification : IdentificationSettings
+    sensors : tuple of Sensor
+        Only these channels, at these places; empty takes all that measure motion, where the record says.
+    picks : tuple of Pick
+        Poles to take instead of the automatic selection, for the records they name.
+    by_wind : bool
+        Whether the state keeps winds apart, because a rotor's damping is to be told from the ground's.
+    with_shapes : bool
+        Whether the state keeps the clearest shapes, because they are fitted.
+    """
+
+    name: str
+    assembly: Assembly | None = None
+    numbered: UndampedModes | None = None
+    feet: tuple[Feet, ...] = ()
+    labels: tuple[str, ...] = ()
+    identification: IdentificationSettings = IdentificationSettings()
+    sensors: tuple[Sensor, ...] = ()
+    picks: tuple[Pick, ...] = ()
+    by_wind: bool = False
+    with_shapes: bool = False
+
+    @cached_property
+    def model_hash(self) -> str:
+        """Identity of the structure, its sensors and what a state keeps: states of another are not merged."""
+        parts: dict[str, object] = {
+            "sensors": self.sensors,
+            "by_wind": self.by_wind,
+            "with_shapes": self.with_shapes,
+        }
+        if self.assembly is not None:
+            for name in ("mass", "stiffness"):
+                matrix = getattr(self.assembly, name).tocsc()
+                parts[name] = [matrix.data, matrix.indices, matrix.indptr]
+            parts["nodes"] = {
+                name: list(map(float, at)) for name, at in self.assembly.structure.nodes.items()
+            }
+        return digest(parts)
+
+    def settings_hash(self, record: str) -> str:
+        """Identity of how a record of this name is identified: settings and the picks that name it."""
+        picks = [pick for pick in self.picks if pick.record in (None, record)]
+        return digest([self.identification, picks])
+
+    def with_picks(self, picks: tuple[Pick, ...]) -> TwinModel:
+        """Return the model with other poles chosen by hand."""
+        return replace(self, picks=picks)
+
+    def sees(self, seen: Examination) -> sp.csr_array:
+        """Return what the identified channels of a record see of every motion, (n_channels, n_dof).
+
+        Raises
+        ------
+        InputError
+            If a sensor sits where the structure has no place.
+        """
+        if self.assembly is None:
+            raise ValueError("a model without a structure has no motion")
+        by_channel = {s.channel: s for s in placed_sensors(self.sensors, seen.record)}
+        return observation_matrix(
+            self.assembly, tuple(by_channel[c.name] for c in seen.identification.channels)
+        )
+
+    def likest_feet(self, examinations: Sequence[Examination]) -> Feet | None:
+        """Return the feet on which the model is most like what records show; the stiffest of equals.
+
+        Raises
+        ------
+        InputError
+            If a sensor sits where the structure has no place.
+        """
+        seeing = [self.sees(seen) for seen in examinations] if self.feet else []
+
+        def alike(feet: Feet) -> float:
+            return sum(
+                likeness(seen.identification.modes, feet.frequency_hz, at @ feet.shapes)
+                for seen, at in zip(examinations, seeing, strict=True)
+            )
+
+        return max(self.feet, key=alike, default=None)
+
+
+def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, ...]:
+    """Return the sensors behind the channels; they point as the record's channels do once turned."""
+    by_channel = {sensor.channel: sensor for sensor in given}
+    return tuple(
+        replace(by_channel[c.name], direction=c.direction)
+        if given
+        else Sensor(c.name, c.direction, c.node, None if c.node else c.height_m)
+        for c in record.channels
+    )
+
+
+def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinModel:
+    """Return the model of a twin; with ``assembly`` its structure is not assembled again."""
+    assembly = assembled(config) if assembly is None else assembly
+    number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
+    numbered = numbered_modes(assembly, number)
+    return TwinModel(
+        name=config.name,
+        assembly=assembly,
+        numbered=numbered,
+        feet=softer_feet(assembly, numbered),
+        labels=mode_labels(mode_kinds(assembly, numbered.shapes)),
+        identification=config.identification,
+        sensors=config.sensors,
+        picks=config.picks,
+        by_wind="c_side_side" in config.update.dashpots,
+        with_shapes=config.update.mac_std is not None,
+    )

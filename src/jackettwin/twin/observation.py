@@ -1,0 +1,97 @@
+"""What is kept of a record: everything the twin will ever ask of it, in some kilobytes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from jackettwin.findings import Finding
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.response.sensors import Sensor
+from jackettwin.twin.stored import StoredSchema
+from jackettwin.updating.pairing import Held
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """Which mode of the model an identified mode is.
+
+    Attributes
+    ----------
+    mode : int
+        Its number on pinned feet, from 1.
+    label : str
+        ``fore_aft_1`` …
+    mac : float
+        With the subspace of the model's modes nearby.
+    """
+
+    mode: int
+    label: str
+    mac: float
+
+
+@dataclass(frozen=True)
+class Observation:
+    """One record as the twin sees it; the same record, model and version give the same observation.
+
+    Attributes
+    ----------
+    record_id : str
+        Hash of samples, rate, start and channels.
+    model_hash, settings_hash, code_version : str
+        What it was made with.
+    name : str
+        Of the record; says nothing of its identity.
+    start_utc : datetime or None
+    conditions : mapping
+        Wind, yaw, state of operation and whatever else the record says or its channels tell.
+    quality : mapping
+        ``Quality.summary()``.
+    identification : Identification
+        Without poles and spectrum, which figures need: those are made of the record again.
+    recognised : tuple of Recognised or None
+        For each identified mode; None if the model has no such mode.
+    sensors : tuple of Sensor
+        Where the identified channels sit and which way they point; empty if the record does not say.
+    findings : tuple of Finding
+    held : tuple of Held
+        For each identified mode, what it was held against in the model; empty without a structure.
+    """
+
+    record_id: str
+    model_hash: str
+    settings_hash: str
+    code_version: str
+    name: str
+    start_utc: datetime | None
+    conditions: Mapping[str, Any]
+    quality: Mapping[str, Any]
+    identification: Identification
+    recognised: tuple[Recognised | None, ...]
+    sensors: tuple[Sensor, ...]
+    findings: tuple[Finding, ...] = ()
+    held: tuple[Held, ...] = ()
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the record [s]."""
+        return self.identification.duration_s
+
+    @property
+    def modes(self) -> dict[int, tuple[ModalEstimate, Recognised]]:
+        """The modes of the model that the record shows, {number: (estimate, which one)}."""
+        pairs = zip(self.identification.modes, self.recognised, strict=True)
+        return {known.mode: (mode, known) for mode, known in pairs if known is not None}
+
+    @property
+    def wind_m_s(self) -> float | None:
+        """Mean wind speed [m/s], if the record says it."""
+        value = self.conditions.get("mean_wind_speed_m_s")
+        return None if value is None else float(value)
+
+
+OBSERVATION = StoredSchema("observation", Observation)
+"""How observations are kept."""
