@@ -16,7 +16,7 @@ from jackettwin.files import json_pieces
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import read_record, write_record
-from jackettwin.twin import many, observe
+from jackettwin.twin import examine_file, many
 from jackettwin.twin.export import export_modes
 from jackettwin.twin.many import Batch, observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -70,9 +70,9 @@ def test_a_fault_of_ours_in_one_record_stops_nothing(
     def broken(file: Path, *rest, **more):
         if file.stem == "r1":
             raise FloatingPointError("underflow")
-        return observe(file, *rest, **more)
+        return examine_file(file, *rest, **more)
 
-    monkeypatch.setattr(many, "observe", broken)
+    monkeypatch.setattr(many, "examine_file", broken)
     files = [folder / "r0.parquet", folder / "r1.parquet"]
     found = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
     assert [s.identification.records[0] for s in found] == ["r0"]
