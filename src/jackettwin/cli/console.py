@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.files import json_pieces
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -25,7 +24,39 @@ output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatt
 
 
 class Commands(click.Group):
-    """A group whose commands end with the exit codes of the contract."""
+    """A group whose commands end with the exit codes of the contract, each read when it is called.
+
+    Parameters
+    ----------
+    summaries : {name: sentence}
+        Of every command; ``a-b`` is ``a_b_command`` in ``jackettwin.cli.a_b``.
+    """
+
+    def __init__(self, *args: Any, summaries: Mapping[str, str], **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.summaries = summaries
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all commands."""
+        return sorted(self.summaries)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Read a command; None if there is no such one."""
+        if cmd_name not in self.summaries:
+            return None
+        name = cmd_name.replace("-", "_")
+        command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what every command does, in a line each."""
+        width = formatter.width - 6 - max(map(len, self.summaries))
+        rows = []
+        for name in self.list_commands(ctx):
+            summary = click.Command(name, help=self.summaries[name])
+            rows.append((name, summary.get_short_help_str(width)))
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; turn errors into one message and an exit code."""
@@ -79,6 +110,8 @@ class Step:
 @contextmanager
 def progress(total: int, title: str) -> Iterator[Step]:
     """Yield what announces the next of ``total`` steps; the bar is shown on stderr."""
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -100,6 +133,8 @@ def progress(total: int, title: str) -> Iterator[Step]:
 
 def print_json(document: object) -> None:
     """Print one JSON document on stdout: null for what is not known, never NaN."""
+    from jackettwin.files import json_pieces
+
     sys.stdout.writelines(json_pieces(document))
 
 

@@ -1,30 +1,42 @@
-"""Entry point; each command lives in a file of its own."""
+"""Entry point; each command lives in a file of its own, which is read when the command is called."""
 
 from __future__ import annotations
 
 import click
 
-from jackettwin.cli.check import check_command
 from jackettwin.cli.console import Commands
-from jackettwin.cli.export import export_command
-from jackettwin.cli.follow import follow_command
-from jackettwin.cli.identify import identify_command
-from jackettwin.cli.loads import loads_command
-from jackettwin.cli.modes import modes_command
-from jackettwin.cli.refine import refine_command
-from jackettwin.cli.run import run_command
-from jackettwin.cli.simulate import simulate_command
-from jackettwin.cli.simulate_set import simulate_set_command
-from jackettwin.cli.stages import stages_command
-from jackettwin.cli.superelement import superelement_command
-from jackettwin.cli.update import update_command
-from jackettwin.cli.verify import verify_command
-from jackettwin.cli.view import view_command
-from jackettwin.cli.watch import watch_command
 from jackettwin.version import __version__
 
+COMMANDS = {
+    "run": "Go from records to modes to updated supports: report.html, result.json, figures.",
+    "verify": "Recompute every number and figure of the thesis; exit 1 if a number fails.",
+    "modes": "Undamped and damped modes of STRUCTURE: a shipped name, a YAML file, or a SubDyn .dat file.",
+    "identify": "Identify the modes of RECORDS: files, or folders of files.",
+    "update": "Update the supports of TWIN under one law; writes nothing.",
+    "follow": "Update the supports of TWIN day after day; say whether their stiffness drifts.",
+    "watch": "Say whether the modes in TABLE have changed, since when, by how much, and why.",
+    "refine": "Scale E and ρ of the steel, part by part, to known frequencies; writes nothing.",
+    "superelement": "Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right "
+    "that is.",
+    "export": "Write what stands below the interface of STRUCTURE as a SubDyn input file.",
+    "stages": "Frequencies of STRUCTURE on pinned feet as its parts are added: jacket, transition piece, "
+    "tower.",
+    "check": "Check every member of STRUCTURE at rest under its weight and the forces given, or of a "
+    "scenario.",
+    "simulate": "Simulate SCENARIO, a shipped name or a YAML file, and write its record.",
+    "simulate-set": "Simulate every case of SET, a shipped name (dlc64) or a YAML file; finished cases are "
+    "kept.",
+    "loads": "Wave and wind loads of SCENARIO on an asset that stands still, about still water and about the "
+    "bed.",
+    "view": "Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record.",
+}
+"""What ``--help`` says of every command, the first sentence of its docstring, without reading the command.
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+``simulate-set`` is ``simulate_set_command`` in ``jackettwin/cli/simulate_set.py``, and so on.
+"""
+
+
+@click.group(cls=Commands, summaries=COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__)
 @click.option("--traceback", is_flag=True, help="Show the traceback of an internal error.")
 def main(traceback: bool) -> None:
@@ -32,24 +44,3 @@ def main(traceback: bool) -> None:
 
     Start with `jackettwin run`: it needs no argument.
     """
-
-
-for command in (
-    run_command,
-    verify_command,
-    modes_command,
-    identify_command,
-    update_command,
-    follow_command,
-    watch_command,
-    refine_command,
-    superelement_command,
-    export_command,
-    stages_command,
-    check_command,
-    simulate_command,
-    simulate_set_command,
-    loads_command,
-    view_command,
-):
-    main.add_command(command)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -49,6 +48,8 @@ def track_modes(M: Any, omega: FloatArray, phi: FloatArray, x: npt.NDArray[Any])
     for group in near_degenerate(omega):
         subspace[group] = single[group].sum(axis=0)
     # the subspace decides who belongs; inside it the single shapes say which is which
+    from scipy.optimize import linear_sum_assignment  # half a second, and rarely needed
+
     rows, columns = linear_sum_assignment(-(subspace + 0.1 * single))
     known = subspace[rows, columns] >= RECOGNISED
     successor[rows[known]] = columns[known]

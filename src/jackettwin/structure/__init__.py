@@ -1,11 +1,16 @@
 """Steel: geometry to matrices."""
 
-from jackettwin.structure.assemble import Assembly, assemble
-from jackettwin.structure.check import ModelCheck, check
-from jackettwin.structure.damping import Rayleigh
-from jackettwin.structure.files import read_structure, shipped_structures
-from jackettwin.structure.jacket import jacket
-from jackettwin.structure.model import Material, Section, Structure
+from typing import TYPE_CHECKING
+
+from jackettwin.doors import door
+
+if TYPE_CHECKING:
+    from jackettwin.structure.assemble import Assembly, assemble
+    from jackettwin.structure.check import ModelCheck, check
+    from jackettwin.structure.damping import Rayleigh
+    from jackettwin.structure.files import read_structure, shipped_structures
+    from jackettwin.structure.jacket import jacket
+    from jackettwin.structure.model import Material, Section, Structure
 
 __all__ = [
     "Assembly",
@@ -20,3 +25,15 @@ __all__ = [
     "read_structure",
     "shipped_structures",
 ]
+
+door(
+    __name__,
+    {
+        "assemble": "Assembly assemble",
+        "check": "ModelCheck check",
+        "damping": "Rayleigh",
+        "files": "read_structure shipped_structures",
+        "jacket": "jacket",
+        "model": "Material Section Structure",
+    },
+)

@@ -1,9 +1,14 @@
 """Watching: has a structure changed, since when, by how much and why; of any structure, on arrays."""
 
-from jackettwin.watching.causes import Cause, general_causes, lognormal_sizes, sensor_noise
-from jackettwin.watching.diagnosis import Diagnosis, Verdict, diagnose
-from jackettwin.watching.history import History
-from jackettwin.watching.watch import Change, Look, Watch, start, step
+from typing import TYPE_CHECKING
+
+from jackettwin.doors import door
+
+if TYPE_CHECKING:
+    from jackettwin.watching.causes import Cause, general_causes, lognormal_sizes, sensor_noise
+    from jackettwin.watching.diagnosis import Diagnosis, Verdict, diagnose
+    from jackettwin.watching.history import History
+    from jackettwin.watching.watch import Change, Look, Watch, start, step
 
 __all__ = [
     "Cause",
@@ -20,3 +25,13 @@ __all__ = [
     "start",
     "step",
 ]
+
+door(
+    __name__,
+    {
+        "causes": "Cause general_causes lognormal_sizes sensor_noise",
+        "diagnosis": "Diagnosis Verdict diagnose",
+        "history": "History",
+        "watch": "Change Look Watch start step",
+    },
+)
