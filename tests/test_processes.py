@@ -5,11 +5,12 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from jackettwin.processes import in_processes
+from jackettwin.processes import GRACE_S, in_processes
 
 PARENT = """
 import os, sys, time
@@ -51,3 +52,36 @@ def test_a_worker_that_dies_loses_its_own_item_only() -> None:
 def test_an_error_of_the_work_is_raised() -> None:
     with pytest.raises(ZeroDivisionError):
         list(in_processes(eval, ["1 / 0"], 1))
+
+
+INTERRUPTED = """
+import sys, time
+from jackettwin.files import atomic_path
+from jackettwin.processes import GRACE_S, in_processes
+
+def work(path):
+    with atomic_path(path):
+        print("ready", flush=True)
+        time.sleep(600)
+
+if __name__ == "__main__":
+    list(in_processes(work, sys.argv[1:], 2))
+"""
+
+
+def test_ctrl_c_ends_what_runs_within_two_seconds_and_leaves_nothing(tmp_path: Path) -> None:
+    script, out = tmp_path / "parent.py", tmp_path / "out"
+    script.write_text(INTERRUPTED, encoding="utf-8")
+    places = [str(out / name) for name in ("a", "b", "c")]
+    with subprocess.Popen(
+        [sys.executable, script, *places], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as parent:
+        assert parent.stdout is not None
+        assert [parent.stdout.readline() for _ in range(2)] == [b"ready\n"] * 2
+        begun = time.monotonic()
+        parent.send_signal(signal.SIGINT)
+        parent.communicate(timeout=30.0)
+        took = time.monotonic() - begun
+    # one second of grace, and a machine that may be busy
+    assert took < 2.0 + GRACE_S
+    assert list(out.iterdir()) == []

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -17,20 +19,28 @@ R = TypeVar("R")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _AHEAD = 2
 """Items handed out for every worker: the others are not even opened."""
+GRACE_S = 1.0
+"""Time that a process gets to end by itself: Ctrl-C answers within two seconds."""
+ASKED_EVERY_S = 0.1
+"""Time between two requests to end: enough to remove a file."""
 _ORPHANED = 1
 """Exit code of a worker whose parent died."""
 
 
 @contextmanager
 def worker_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Start a pool of processes; at the end, whatever ends it, what runs is finished and the rest dropped.
+    """Start a pool of processes; they end with the block, at once if it ends by an error or Ctrl-C.
 
     They are spawned, not forked: a forked child shares locks and BLAS threads it cannot use.
     """
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepare_worker)
     with _one_thread_each():
+        before = set(active_children())
         try:
             yield pool
+        except BaseException:
+            _stop([child for child in active_children() if child not in before])
+            raise
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
@@ -88,6 +98,20 @@ def _alone(work: Callable[[T], R], item: T) -> R | None:
             return None
 
 
+def _stop(children: Sequence[BaseProcess]) -> None:
+    """End processes within ``GRACE_S``: asked, so that they remove what is half-written, then killed.
+
+    They are asked again and again: a worker takes the end of its item for a result, and goes on to the next.
+    """
+    deadline = time.monotonic() + GRACE_S
+    while any(child.is_alive() for child in children) and time.monotonic() < deadline:
+        for child in children:
+            child.terminate()
+        time.sleep(ASKED_EVERY_S)
+    for child in children:
+        child.kill()
+
+
 @contextmanager
 def _one_thread_each() -> Iterator[None]:
     """Have processes that start meanwhile use one BLAS thread: they are as many as the cores."""
@@ -105,7 +129,13 @@ def _prepare_worker() -> None:
     """Leave Ctrl-C to the parent, and end with it."""
     # a child that dies with the queue's lock in hand hangs its brothers
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _end)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end(*_: object) -> None:
+    """End by an exception, which removes temporary files, wherever the work is."""
+    raise SystemExit(_ORPHANED)
 
 
 def _end_with_parent() -> None:

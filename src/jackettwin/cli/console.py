@@ -13,6 +13,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from jackettwin.cli.plain_progress import plain_progress
 from jackettwin.errors import InputError, JackettwinError
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -109,7 +110,11 @@ class Step:
 
 @contextmanager
 def progress(total: int, title: str) -> Iterator[Step]:
-    """Yield what announces the next of ``total`` steps; the bar is shown on stderr."""
+    """Yield what announces the next of ``total`` steps: a bar on a terminal, else plain lines, on stderr."""
+    if not messages.is_terminal:
+        with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as say:
+            yield Step(say.announce, say.within)
+        return
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     columns = (
@@ -118,7 +123,7 @@ def progress(total: int, title: str) -> Iterator[Step]:
         TextColumn("{task.completed}/{task.total}"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=messages, disable=not messages.is_terminal) as bar:
+    with Progress(*columns, console=messages) as bar:
         task = bar.add_task(title, total=total)
         started = False
 

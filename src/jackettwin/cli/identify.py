@@ -14,7 +14,7 @@ from rich.table import Table
 
 from jackettwin.cli.console import messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
-from jackettwin.files import read_mapping, read_yaml, write_json
+from jackettwin.files import check_room, read_mapping, read_yaml, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
@@ -23,6 +23,7 @@ from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import examine_file, observation_document
 from jackettwin.twin.export import WRITERS, export_modes
+from jackettwin.twin.long_records import LONG, PIECE_S, without_long
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
 from jackettwin.twin.together import fuse_batch
@@ -63,6 +64,9 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 )
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
 @click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
+@click.option(
+    "--whole", is_flag=True, help="Take records longer than an hour as one, not in ten-minute pieces."
+)
 @click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def identify_command(
@@ -77,6 +81,7 @@ def identify_command(
     sample_rate: float | None,
     unit: str | None,
     gain: float | None,
+    whole: bool,
     workers: int | None,
     as_json: bool,
 ) -> None:
@@ -92,12 +97,29 @@ def identify_command(
         several = f"{len(files)} records"
         raise InputError("takes one record", field="--compare", value=several, remedy="run it once a record")
     how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain)}
-    if len(files) == 1:
-        _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
-        return
+    for path in (out, report):
+        if path is not None:
+            check_room(path)
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as passing:
+        if not whole:
+            files = _without_long(files, Path(passing) / "pieces", how["unsaid"])
+        if len(files) == 1:
+            _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
+            return
         kept = Path(passing) if out is None or not _folder(out) else out / "records"
         _deliver(_many(files, settings, how, kept, workers, report), out, as_json, _print_many)
+
+
+def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
+    """Return the files, with ten-minute pieces in the place of records longer than an hour."""
+    with progress(len(files), "read") as step:
+        cut = without_long(files, folder, unsaid, step)
+    if len(cut) > len(files):
+        messages.print(
+            f"records longer than {LONG * PIECE_S / 3600:g} h are identified in pieces of {PIECE_S:g} s on "
+            "UTC boundaries and fused; --whole takes them as one"
+        )
+    return cut
 
 
 def _deliver(

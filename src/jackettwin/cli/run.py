@@ -9,7 +9,7 @@ import click
 
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
-from jackettwin.files import atomic_folder, write_json
+from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report import build_report
 from jackettwin.simulate.batch import pending_cases, record_path, run_set
 from jackettwin.simulate.sets import read_set
@@ -36,6 +36,7 @@ def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: st
     """
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
+    check_room(folder)
     if simulate:
         config = replace(config, records=_simulated(set_file, folder / "records"), targets=())
     with progress(count_steps(config) + 1, config.name) as step:

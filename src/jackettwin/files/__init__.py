@@ -7,6 +7,7 @@ from jackettwin.doors import door
 if TYPE_CHECKING:
     from jackettwin.files.atomic import atomic_folder, atomic_path
     from jackettwin.files.json import Streamed, json_pieces, write_json
+    from jackettwin.files.room import check_room
     from jackettwin.files.schema import Schema, validate
     from jackettwin.files.shipped import find_file, shipped
     from jackettwin.files.yaml import read_mapping, read_yaml
@@ -16,6 +17,7 @@ __all__ = [
     "Streamed",
     "atomic_folder",
     "atomic_path",
+    "check_room",
     "find_file",
     "json_pieces",
     "read_mapping",
@@ -30,6 +32,7 @@ door(
     {
         "atomic": "atomic_folder atomic_path",
         "json": "Streamed json_pieces write_json",
+        "room": "check_room",
         "schema": "Schema validate",
         "shipped": "find_file shipped",
         "yaml": "read_mapping read_yaml",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -23,9 +24,10 @@ def atomic_path(path: Path | str) -> Iterator[Path]:
     os.close(handle)
     temporary = Path(name)
     try:
-        yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(target)
+        with _full_disk_named(target):
+            yield temporary
+            temporary.chmod(0o644)
+            temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -38,7 +40,8 @@ def atomic_folder(path: Path | str) -> Iterator[Path]:
     with _named(target):
         temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}.", suffix=".tmp", dir=target.parent))
     try:
-        yield temporary
+        with _full_disk_named(target):
+            yield temporary
         for file in sorted(p for p in temporary.rglob("*") if p.is_file()):
             place = target / file.relative_to(temporary)
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -54,3 +57,14 @@ def _named(target: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(target)) from None
+
+
+@contextmanager
+def _full_disk_named(target: Path) -> Iterator[None]:
+    """Let the error of a full disk, which names nothing, say what was being written."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise OSError(error.errno, error.strerror or "no space left", str(target)) from None
+        raise

@@ -1,6 +1,15 @@
 """Files in and out: one small reader a format behind one registry."""
 
+from jackettwin.records.readers.pieces import read_record_pieces
 from jackettwin.records.readers.registry import FORMATS, description_file, read_record, write_record
 from jackettwin.records.readers.sep005 import from_sep005, to_sep005
 
-__all__ = ["FORMATS", "description_file", "from_sep005", "read_record", "to_sep005", "write_record"]
+__all__ = [
+    "FORMATS",
+    "description_file",
+    "from_sep005",
+    "read_record",
+    "read_record_pieces",
+    "to_sep005",
+    "write_record",
+]

@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from jackettwin.records.readers.description import parse_time
 from jackettwin.records.readers.table import Table, table_from_columns
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from jackettwin.records.record import Record
@@ -38,6 +40,12 @@ RATE_KEYS = (
     "fs",
     "fsamp",
 )
+ROWS = 15_000
+"""Lines of a table when a file is read in pieces: as texts some ten megabytes."""
+MOST_LINES_ON_TOP = 200
+"""Lines looked at for comments, names and units."""
+SNIFFED_BYTES = 1 << 16
+"""Of a text file, read to tell its encoding."""
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
 # Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
 _DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
@@ -53,7 +61,57 @@ def read(path: Path) -> Table:
     InputError
         Names the line and the cell that is not understood.
     """
-    lines = _decode(path.read_bytes()).splitlines()
+    return _table(_decode(path.read_bytes()).splitlines())
+
+
+def pieces(path: Path) -> Iterator[Table]:
+    """Yield tables of ``ROWS`` lines; each is read with the lines on top of the file above it.
+
+    Raises
+    ------
+    InputError
+        Names the line and the cell that is not understood.
+    """
+    with path.open(encoding=_encoding(path), errors="replace", newline=None) as stream:
+        top = [line.rstrip("\n") for line in islice(stream, MOST_LINES_ON_TOP)]
+        head = _lines_on_top(top)
+        lines, above = top[head:], 0
+        while lines or above == 0:
+            lines += [line.rstrip("\n") for line in islice(stream, max(ROWS - len(lines), 0))]
+            if above == 0 or any(line.strip() for line in lines):
+                yield _table(top[:head] + lines, above)
+            above += max(len(lines), 1)
+            lines = [line.rstrip("\n") for line in islice(stream, 1)]
+
+
+def _lines_on_top(lines: list[str]) -> int:
+    """Return how many lines stand above the numbers: comments, names, units."""
+    further = len(lines) - len(_without_toa5(lines))
+    lines = _without_toa5(lines)
+    _, start = _preamble(lines)
+    delimiter = _delimiter(lines[start : start + 50])
+    for count, line in enumerate(lines[start:]):
+        cells = _cells(line, delimiter)
+        if cells and _is_data(cells[0], delimiter):
+            return further + start + count
+    return further + len(lines)
+
+
+def _encoding(path: Path) -> str:
+    """Return the encoding of a text file: by its mark, else UTF-8 if its beginning is, else cp1252."""
+    with path.open("rb") as stream:
+        raw = stream.read(SNIFFED_BYTES)
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    try:
+        raw[: raw.rfind(b"\n") + 1].decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
+def _table(lines: list[str], above: int = 0) -> Table:
+    """Return what lines hold; ``above`` lines of numbers were left out between the top and the others."""
     lines = _without_toa5(lines)
     comments, start = _preamble(lines)
     delimiter = _delimiter(lines[start : start + 50])
@@ -68,7 +126,7 @@ def read(path: Path) -> Table:
     if body and not _is_data(body[0], delimiter):
         units = {name: cell.strip() for name, cell in zip(names, body[0], strict=False) if cell.strip()}
         body = body[1:]
-    first_line = start + len(rows) - len(body) + 1
+    first_line = start + len(rows) - len(body) + 1 + above
     _refuse_further_cells(names, body, delimiter, first_line)
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
     if bare and _climbs_evenly(columns[0]):

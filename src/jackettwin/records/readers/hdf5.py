@@ -6,7 +6,9 @@ group or of a dataset (the rate, the start) count as named scalars.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib import import_module
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,12 +19,15 @@ from jackettwin.records.readers.arrays import STEP_KEYS, arrays_from_record, tab
 from jackettwin.records.readers.delimited import RATE_KEYS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from jackettwin.records.readers.table import Table
     from jackettwin.records.record import Record
 
 UNIT_KEYS = ("unit", "units", "unit_string")
+ROWS = 32_768
+"""Rows of a table when a file is read in pieces."""
 MOST_COMPRESSION = 1000
 """A damaged header announces any size; what deflate cannot have packed into the file is refused."""
 
@@ -36,6 +41,50 @@ def read(path: Path) -> Table:
         If h5py is not installed.
     """
     h5py = _h5py()
+    with h5py.File(path, "r") as file:
+        arrays, units = _collected(h5py, file, None)
+    return table_from_arrays(arrays, units)
+
+
+def pieces(path: Path) -> Iterator[Table]:
+    """Yield tables of ``ROWS`` rows: of every dataset as long as the longest only these are read.
+
+    Raises
+    ------
+    MissingExtra
+        If h5py is not installed.
+    """
+    h5py = _h5py()
+    with h5py.File(path, "r") as file:
+        sizes: list[int] = []
+        file.visititems(lambda _, item: sizes.extend(getattr(item, "shape", ())))
+        length = max(sizes, default=1)
+        # even parts: a short last one could have fewer rows than there are channels
+        edges = np.linspace(0, length, -(-length // ROWS) + 1).astype(int).tolist()
+        for start, stop in pairwise(edges):
+            yield table_from_arrays(*_collected(h5py, file, _Window(length, start, stop)))
+
+
+@dataclass(frozen=True)
+class _Window:
+    """Rows ``start`` to ``stop`` of the datasets that have ``length`` of them."""
+
+    length: int
+    start: int
+    stop: int
+
+    def of(self, item: Any) -> Any:
+        """Return these rows of a dataset; a shorter one whole."""
+        if self.length not in item.shape:
+            return item[()]
+        axis = item.shape.index(self.length)
+        return item[(slice(None),) * axis + (slice(self.start, self.stop),)]
+
+
+def _collected(
+    h5py: Any, file: Any, window: _Window | None
+) -> tuple[dict[str, npt.NDArray[Any]], dict[str, str]]:
+    """Return every dataset and scalar attribute by name, and the units of datasets."""
     arrays: dict[str, npt.NDArray[Any]] = {}
     units: dict[str, str] = {}
 
@@ -48,12 +97,11 @@ def read(path: Path) -> Table:
             elif isinstance(item, h5py.Group) or key.lower() in (*RATE_KEYS, *STEP_KEYS):
                 arrays[f"{name}.{key}".lstrip(".")] = _array(value)
         if isinstance(item, h5py.Dataset):
-            arrays[name] = _dataset(h5py, item)
+            arrays[name] = _dataset(h5py, item, window)
 
-    with h5py.File(path, "r") as file:
-        collect("", file)
-        file.visititems(collect)
-    return table_from_arrays(arrays, units)
+    collect("", file)
+    file.visititems(collect)
+    return arrays, units
 
 
 def write(record: Record, path: Path) -> None:
@@ -80,7 +128,7 @@ def _h5py() -> Any:
         ) from None
 
 
-def _dataset(h5py: Any, item: Any) -> npt.NDArray[Any]:
+def _dataset(h5py: Any, item: Any, window: _Window | None) -> npt.NDArray[Any]:
     if item.dtype.itemsize * item.size > MOST_COMPRESSION * item.file.id.get_filesize():
         raise InputError(
             "announces more data than the file can hold",
@@ -88,7 +136,7 @@ def _dataset(h5py: Any, item: Any) -> npt.NDArray[Any]:
             value=item.shape,
             remedy="the file is damaged: copy or export it again",
         )
-    value = np.asarray(item[()])
+    value = np.asarray(item[()] if window is None else window.of(item))
     if h5py.check_ref_dtype(item.dtype) is not None:  # MATLAB's cell array: one reference a cell
         return np.array([_matlab_text(np.asarray(item.file[cell][()])) for cell in value.ravel()])
     if _attribute(item, "MATLAB_class") == "char":

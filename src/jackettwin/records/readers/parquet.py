@@ -13,24 +13,39 @@ import pyarrow.parquet as pq
 from jackettwin.records.readers.table import Table, table_from_columns
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from jackettwin.records.record import Record
 
+ROWS = 32_768
+"""Rows of a table when a file is read in pieces: a few megabytes."""
+BUFFER_BYTES = 1 << 20
+"""Read ahead of each column [bytes]."""
+
 
 def read(path: Path) -> Table:
     """Read every column; nulls are missing samples."""
-    stored = pq.read_table(path)
-    # pandas calls an index without a name like this
-    names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
-    columns = [_values(stored.column(i)) for i in range(len(names))]
-    return table_from_columns(names, columns)
+    return _table(pq.read_table(path))
+
+
+def pieces(path: Path) -> Iterator[Table]:
+    """Yield the columns in tables of ``ROWS`` rows."""
+    with pq.ParquetFile(path, memory_map=True, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
+        for batch in file.iter_batches(batch_size=ROWS):
+            yield _table(pa.Table.from_batches([batch]))
 
 
 def write(record: Record, path: Path) -> None:
     """Write one float64 column a channel; missing samples as NaN."""
     columns = {channel.name: row for channel, row in zip(record.channels, record.data, strict=True)}
     pq.write_table(pa.table(columns), path)
+
+
+def _table(stored: Any) -> Table:
+    # pandas calls an index without a name like this
+    names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
+    return table_from_columns(names, [_values(stored.column(i)) for i in range(len(names))])
 
 
 def _values(column: Any) -> npt.NDArray[Any]:

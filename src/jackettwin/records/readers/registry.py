@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
 from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.description import description_text, read_description
+from jackettwin.records.readers.description import Description, description_text, read_description
 from jackettwin.records.readers.table import Table, to_record
 from jackettwin.records.record import Record
 
@@ -22,7 +23,8 @@ SHARED_DESCRIPTION = "records.json"
 class Format:
     """A file format: how it is called, read and, if we write it, written.
 
-    ``json_beside`` says that the description does not fit inside the file.
+    ``json_beside`` says that the description does not fit inside the file; ``pieces`` reads it in tables of
+    some ten thousand rows.
     """
 
     name: str
@@ -30,14 +32,21 @@ class Format:
     read: Callable[[Path], Table]
     write: Callable[[Record, Path], None] | None = None
     json_beside: bool = True
+    pieces: Callable[[Path], Iterator[Table]] | None = None
 
 
 FORMATS = (
-    Format("Parquet", (".parquet", ".pq"), parquet.read, parquet.write),
-    Format("delimited text", (".csv", ".txt", ".tsv", ".asc"), delimited.read, delimited.write),
+    Format("Parquet", (".parquet", ".pq"), parquet.read, parquet.write, pieces=parquet.pieces),
+    Format(
+        "delimited text",
+        (".csv", ".txt", ".tsv", ".asc"),
+        delimited.read,
+        delimited.write,
+        pieces=delimited.pieces,
+    ),
     Format("NumPy archive", (".npz",), npz.read, npz.write, json_beside=False),
     Format("NumPy array", (".npy",), npz.read_single),
-    Format("HDF5", (".h5", ".hdf5"), hdf5.read, hdf5.write, json_beside=False),
+    Format("HDF5", (".h5", ".hdf5"), hdf5.read, hdf5.write, json_beside=False, pieces=hdf5.pieces),
     Format("MATLAB", (".mat",), matlab.read, matlab.write, json_beside=False),
     Format("universal file", (".uff", ".unv"), uff.read, uff.write),
     Format("TDMS", (".tdms",), tdms.read),
@@ -65,24 +74,49 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
         Names the file, the field, the value, what is allowed and what to do.
     """
     path = Path(path)
+    described = described_by(path)
+    with reading(path):
+        return to_record(_format_of(path).read(path), described, path, unsaid)
+
+
+def tables_of(path: Path) -> Iterator[Table]:
+    """Yield a file in tables of some ten thousand rows, where the format allows it; else in one."""
     form = _format_of(path)
+    if form.pieces is None:
+        yield form.read(path)
+    else:
+        yield from form.pieces(path)
+
+
+def described_by(path: Path) -> Description | None:
+    """Return what the JSON beside a record says, None without one.
+
+    Raises
+    ------
+    InputError
+        If the record cannot be opened or is of no known format, or the JSON is wrong.
+    """
+    _format_of(path)
     _refuse_unreadable(path)
     beside = description_file(path)
-    description = read_description(beside) if beside is not None else None
+    return read_description(beside) if beside is not None else None
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Name the file in every error raised inside; what a parser raises is an error of the file."""
     try:
-        table = form.read(path)
-    except JackettwinError as error:
-        raise (error.at(file=path) if isinstance(error, InputError) else error) from error.__cause__
+        yield
+    except InputError as error:
+        raise error.at(file=path) from error.__cause__
+    except (JackettwinError, MemoryError, GeneratorExit):
+        raise
     except Exception as error:  # what parsers raise on damaged bytes is not theirs to promise
         raise InputError(
-            f"is not readable as {form.name} ({type(error).__name__}: {str(error)[:120]})",
+            f"is not readable as {_format_of(path).name} ({type(error).__name__}: {str(error)[:120]})",
             file=path,
             remedy="the file is damaged or not of this format",
         ) from error
-    try:
-        return to_record(table, description, path, unsaid)
-    except InputError as error:
-        raise error.at(file=path) from None
 
 
 def description_file(path: Path) -> Path | None:

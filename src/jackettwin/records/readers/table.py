@@ -172,7 +172,7 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
     said, unsaid = beside or table.description or Description(), unsaid or Unsaid()
     names = tuple(said.channels) if said.channels else table.names
     data = table.data[[_row_of(name, table) for name in names]]
-    stated = _stated_rate(table, said)
+    stated = stated_rate(table, said)
     data, missing = _without_sentinels(names, data)
     metadata = {**table.metadata, **said.metadata}
     if table.remarks or missing:
@@ -263,7 +263,14 @@ def _row_of(name: str, table: Table) -> int:
     return table.names.index(name)
 
 
-def _stated_rate(table: Table, said: Description) -> float | None:
+def stated_rate(table: Table, said: Description) -> float | None:
+    """Return the rate that the file or its description states, if either does.
+
+    Raises
+    ------
+    InputError
+        If they contradict each other.
+    """
     own, given = table.sample_rate_hz, said.sample_rate_hz
     if own is not None and given is not None and abs(own / given - 1.0) > 1e-3:
         raise InputError(

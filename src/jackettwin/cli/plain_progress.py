@@ -1,0 +1,76 @@
+"""Progress in plain lines, where there is no terminal to draw a bar on."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+EVERY_S = 2.0
+"""Shortest time between two lines: a thousand records are not a thousand lines."""
+SILENCE_S = 15.0
+"""Time after which a step that goes on says so again."""
+
+
+class PlainProgress:
+    """Says which step is running, at most every ``EVERY_S``, and that it still does after ``SILENCE_S``.
+
+    Parameters
+    ----------
+    total : int
+        Steps.
+    say : callable
+        Takes a line.
+    """
+
+    def __init__(self, total: int, say: Callable[[str], None]) -> None:
+        self._total, self._say = total, say
+        self._lock = threading.Lock()
+        self._step, self._what, self._within = 0, "", ""
+        self._begun = self._said = -float("inf")
+
+    def announce(self, what: str) -> None:
+        """Begin the next step."""
+        with self._lock:
+            self._step, self._what, self._within = self._step + 1, what, ""
+            self._begun = time.monotonic()
+            self._line(EVERY_S)
+
+    def within(self, what: str) -> None:
+        """Say how far the present step is."""
+        with self._lock:
+            self._within = what
+            self._line(EVERY_S)
+
+    def remind(self) -> None:
+        """Say that the present step goes on, if nothing was said for a while."""
+        with self._lock:
+            if self._what:
+                self._line(SILENCE_S)
+
+    def _line(self, after_s: float) -> None:
+        now = time.monotonic()
+        if now - self._said < after_s:
+            return
+        self._said, lasts = now, now - self._begun
+        going = f", {lasts:.0f} s" if lasts >= 1.0 else ""
+        self._say(f"{min(self._step, self._total)}/{self._total} {self._within or self._what}{going}")
+
+
+@contextmanager
+def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[PlainProgress]:
+    """Yield what tells progress in lines, with a thread that breaks long silences."""
+    progress, done = PlainProgress(total, say), threading.Event()
+
+    def remind() -> None:
+        while not done.wait(EVERY_S):
+            progress.remind()
+
+    thread = threading.Thread(target=remind, daemon=True)
+    thread.start()
+    try:
+        yield progress
+    finally:
+        done.set()
+        thread.join()

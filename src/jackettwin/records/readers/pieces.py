@@ -1,0 +1,164 @@
+"""A long file as a sequence of short records: only one piece is in memory at a time.
+
+Pieces end on UTC boundaries (ten minutes: hh:00, hh:10, …) where the start is known, else they are counted
+from the first sample. Delimited text, Parquet and HDF5 are read piece by piece; of other formats the samples
+are read at once, and only what follows is done piece by piece.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from itertools import chain
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.description import Description
+from jackettwin.records.readers.registry import described_by, reading, tables_of
+from jackettwin.records.readers.table import Table, stated_rate, to_record
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from jackettwin.records.record import Record
+
+FloatArray = npt.NDArray[np.float64]
+
+SHORTEST = 0.5
+"""A first or last piece shorter than this share of the others is left out."""
+
+
+def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None = None) -> Iterator[Record]:
+    """Yield a record's pieces in the order of time, each as ``read_record`` would read it.
+
+    Pieces are called like the file and their start (``A1_20250601T141000``, or ``A1_0001``).
+
+    Parameters
+    ----------
+    seconds : float
+        Length of a piece.
+    unsaid : Unsaid, optional
+        Rate, unit and zone, for a file that does not say them.
+
+    Raises
+    ------
+    InputError
+        As ``read_record``; some pieces may have been yielded before.
+    """
+    beside, unsaid = described_by(path), unsaid or Unsaid()
+    with reading(path):
+        tables = tables_of(path)
+        first = next(tables)
+        said = beside or first.description or Description()
+        for number, piece in enumerate(_split(chain([first], tables), said, unsaid, seconds), start=1):
+            record = to_record(piece, replace(said, start_utc=None), path, unsaid)
+            start = record.start_utc
+            stamp = f"{number:04d}" if start is None else f"{_nearest_second(start):%Y%m%dT%H%M%S}"
+            yield replace(record, name=f"{path.stem}_{stamp}")
+
+
+@dataclass(frozen=True)
+class _Timed:
+    """Rows of a table with their times since the first sample of the file."""
+
+    table: Table
+    t: FloatArray
+
+    def rows(self, start: int, stop: int | None = None) -> _Timed:
+        part = slice(start, stop)
+        times = None if self.table.times_s is None else self.table.times_s[part]
+        return _Timed(replace(self.table, data=self.table.data[:, part].copy(), times_s=times), self.t[part])
+
+    def followed_by(self, other: _Timed) -> _Timed:
+        data = np.hstack([self.table.data, other.table.data])
+        t = np.concatenate([self.t, other.t])
+        times = None if self.table.times_s is None else t
+        return _Timed(replace(self.table, data=data, times_s=times), t)
+
+
+def _split(tables: Iterable[Table], said: Description, unsaid: Unsaid, seconds: float) -> Iterator[Table]:
+    """Yield tables cut at the boundaries, each with the start of its first row."""
+    held: _Timed | None = None
+    origin: datetime | None = None
+    end = seconds
+    for chunk in _timed(tables, said, unsaid):
+        if held is None:
+            origin = said.start_utc or chunk.table.start_utc
+            held, end = chunk, _first_boundary(origin, seconds)
+        else:
+            held = held.followed_by(chunk)
+        while len(held.t) and held.t[-1] >= end:
+            cut = int(np.searchsorted(held.t, end))
+            yield from _long_enough(held.rows(0, cut), origin, seconds)
+            held, end = held.rows(cut), end + seconds
+    if held is not None:
+        yield from _long_enough(held, origin, seconds)
+
+
+def _timed(tables: Iterable[Table], said: Description, unsaid: Unsaid) -> Iterator[_Timed]:
+    """Yield tables with their times since the first sample, all with the columns of the first."""
+    first: Table | None = None
+    count, latest, zero = 0, 0.0, 0.0
+    for table in tables:
+        if first is None:
+            first = table
+            zero = float(table.times_s[0]) if table.times_s is not None and table.start_utc is None else 0.0
+        data = _columns_of(first, table)
+        n = data.shape[1]
+        if first.times_s is None or table.times_s is None:
+            t = (count + np.arange(n)) / _rate(stated_rate(first, said) or unsaid.sample_rate_hz)
+        else:
+            since = 0.0
+            if first.start_utc is not None and table.start_utc is not None:
+                since = (table.start_utc - first.start_utc).total_seconds()
+            # stamps out of order are for the clock to judge: cuts need times that do not fall
+            t = np.maximum.accumulate(np.fmax(table.times_s + since - zero, latest))
+        count, latest = count + n, float(t[-1]) if n else latest
+        times = None if first.times_s is None else t
+        yield _Timed(replace(first, data=data, times_s=times), t)
+
+
+def _columns_of(first: Table, table: Table) -> FloatArray:
+    """Return a table's data in the columns of the first one: a column empty for hours stays a channel."""
+    if table.names == first.names:
+        return table.data
+    rows = dict(zip(table.names, table.data, strict=True))
+    missing = np.full(table.data.shape[1], np.nan)
+    return np.vstack([rows.get(name, missing) for name in first.names])
+
+
+def _rate(rate: float | None) -> float:
+    if rate is None:
+        raise InputError(
+            "sample rate is missing",
+            field="sample_rate_hz",
+            allowed="> 0 Hz",
+            remedy='write "sample_rate_hz" into the JSON beside the file (identify: or --sample-rate)',
+        )
+    return rate
+
+
+def _first_boundary(origin: datetime | None, seconds: float) -> float:
+    """Return the time of the first boundary since the first sample [s]."""
+    if origin is None:
+        return seconds
+    midnight = origin.replace(hour=0, minute=0, second=0, microsecond=0)
+    return seconds - (origin - midnight).total_seconds() % seconds
+
+
+def _long_enough(piece: _Timed, origin: datetime | None, seconds: float) -> Iterator[Table]:
+    """Yield a piece with the start of its first row, unless it is too short or empty."""
+    if len(piece.t) < 2 or piece.t[-1] - piece.t[0] < SHORTEST * seconds:
+        return
+    start = None if origin is None else origin + timedelta(seconds=float(piece.t[0]))
+    times = None if piece.table.times_s is None else piece.t - piece.t[0]
+    yield replace(piece.table, times_s=times, start_utc=start)
+
+
+def _nearest_second(time: datetime) -> datetime:
+    return (time.astimezone(UTC) + timedelta(microseconds=500_000)).replace(microsecond=0)
