@@ -109,8 +109,8 @@ def main() -> None:
     lines = [
         "# Intervals over random systems",
         "",
-        f"`python qualify/random_systems.py --systems {n}`: one record of each of {n} random systems; modes that are",
-        "`ok`, their number in brackets.",
+        f"`python qualify/random_systems.py --systems {n}`: one record of each of {n} random systems;",
+        "modes that are `ok`, their number in brackets.",
         "",
         head,
         "|---" * 6 + "|",

@@ -24,6 +24,8 @@ FloatArray = npt.NDArray[np.float64]
 
 BESIDE_THE_MODES = 2
 """Directions more than modes that are sought: forces act in two."""
+FEWEST_MODES = 2
+"""Beside a mode alone there may be a doubtful one of another direction."""
 
 
 def directions(
@@ -39,7 +41,7 @@ def directions(
         Of the modes that are sought; they lie in the span.
     """
     n_channels, n_samples = y.shape
-    wanted = len(shapes) + BESIDE_THE_MODES
+    wanted = max(len(shapes), FEWEST_MODES) + BESIDE_THE_MODES
     if wanted >= n_channels:
         return None
     x = np.fft.rfft(np.nan_to_num(y), axis=1)
@@ -55,7 +57,7 @@ def directions(
 
 
 def projected(y: FloatArray, basis: FloatArray) -> FloatArray:
-    """Return the samples along each direction, (n_directions, n_samples); a gap of one channel is one of all."""
+    """Return the samples along each direction, (n_directions, n_samples); one gap is one of all."""
     whole = np.isfinite(y).all(axis=0)
     return np.asarray(np.where(whole, basis.T @ np.where(whole, y, 0.0), np.nan))
 
