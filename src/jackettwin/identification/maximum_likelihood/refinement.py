@@ -44,9 +44,8 @@ WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
-MOST_STEPS, MOST_LOCAL_STEPS = 60, 30
-"""Steps after those, over a whole and in a narrow band: fits that end take eight to twenty as a rule, and in a
-narrow band another share of dither is tried instead."""
+MOST_STEPS = 60
+"""Steps after those: fits that end take eight to twenty as a rule."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""
 
@@ -174,8 +173,7 @@ def refine(
     if lack > STILL_HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
     if not climb.converged:
-        most = MOST_STEPS if narrow is None else MOST_LOCAL_STEPS
-        climb = likelihood.climbed(data, climb.parameters, most)
+        climb = likelihood.climbed(data, climb.parameters, MOST_STEPS)
         lack = accuracy.lack_of_fit(data, climb.parameters)
     if not climb.converged:
         return _given_up(gain, unit.shape[1], lack)
