@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-BESIDE_THE_MODES = 2
-"""Directions more than modes that are sought: forces act in two."""
+BESIDE_THE_MODES = 3
+"""Directions more than modes that are sought: forces act in two, and what is beside the band adds one."""
 FEWEST_MODES = 2
 """Beside a mode alone there may be a doubtful one of another direction."""
 
