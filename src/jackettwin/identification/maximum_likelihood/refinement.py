@@ -175,10 +175,8 @@ def refine(
     if not climb.converged:
         climb = likelihood.climbed(data, climb.parameters, MOST_STEPS)
         lack = accuracy.lack_of_fit(data, climb.parameters)
-    if not climb.converged:
-        return _given_up(gain, unit.shape[1], lack)
     known = accuracy.accuracy_of(data, climb.parameters)
-    if lack <= most_lack_of_fit:
+    if climb.converged and lack <= most_lack_of_fit:
         climb, chosen, known = thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
 
