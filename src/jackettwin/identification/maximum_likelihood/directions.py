@@ -24,6 +24,8 @@ FloatArray = npt.NDArray[np.float64]
 
 BESIDE_THE_MODES = 3
 """Directions more than modes that are sought: forces act in two, and what is beside the band adds one."""
+FEW_LINES = 150
+"""A band of fewer lines costs little, and there all channels together tell a close pair apart."""
 FEWEST_MODES = 2
 """Beside a mode alone there may be a doubtful one of another direction."""
 
@@ -42,7 +44,8 @@ def directions(
     """
     n_channels, n_samples = y.shape
     wanted = max(len(shapes), FEWEST_MODES) + BESIDE_THE_MODES
-    if wanted >= n_channels:
+    lines = (band_hz[1] - band_hz[0]) * n_samples / sample_rate_hz
+    if wanted >= n_channels or lines < FEW_LINES:
         return None
     x = np.fft.rfft(np.nan_to_num(y), axis=1)
     line = np.arange(x.shape[1]) * sample_rate_hz / n_samples
