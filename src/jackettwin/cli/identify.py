@@ -19,6 +19,7 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.zones import read_zone
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import examine_file, observation_document
@@ -64,6 +65,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 )
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
 @click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
+@click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
 @click.option(
     "--whole", is_flag=True, help="Take records longer than an hour as one, not in ten-minute pieces."
 )
@@ -81,6 +83,7 @@ def identify_command(
     sample_rate: float | None,
     unit: str | None,
     gain: float | None,
+    zone: str | None,
     whole: bool,
     workers: int | None,
     as_json: bool,
@@ -96,7 +99,7 @@ def identify_command(
     if compare and len(files) > 1:
         several = f"{len(files)} records"
         raise InputError("takes one record", field="--compare", value=several, remedy="run it once a record")
-    how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain)}
+    how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:
             check_room(path)
@@ -196,11 +199,13 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
     return replace(settings, real_poles=True) if real_poles else settings
 
 
-def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None) -> Unsaid:
+def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
     if unit is not None:
         with located(field="--unit"):
             vibration_of(plain_unit(unit))
-    return Unsaid(sample_rate, unit, gain)
+    if zone is not None:
+        read_zone(zone, field="--timezone")
+    return Unsaid(sample_rate, unit, gain, zone)
 
 
 def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:

@@ -10,6 +10,7 @@ from typing import Literal
 
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.water import WaterConfig
@@ -139,3 +140,5 @@ class TwinConfig:
     picks: tuple[Pick, ...]
     """Poles to take instead of the automatic selection, for the records they name."""
     update: UpdateSettings
+    unsaid: Unsaid = Unsaid()
+    """What holds for records whose files do not say it."""

@@ -12,14 +12,19 @@ from jackettwin.files import find_file, read_mapping, read_yaml, shipped, valida
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads.conditions import SeaState
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.mode_words import read_mode_label
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.files import depth_of
 from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure
+from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import PAIRED_MODES, GivenRelaxation, ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
+from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
-from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family
+from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family, numbered_modes
 from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters
 from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
 
@@ -43,7 +48,10 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
         If the file is missing or anything in it is wrong; the message names file, field and value.
     """
     path = find_file(source, "twins")
-    schema = validate(TwinSchema, read_yaml(path, what="twin file"), file=path)
+    given_keys = read_yaml(path, what="twin file")
+    if isinstance(given_keys, dict) and isinstance(given_keys.get("targets"), str):
+        given_keys = {**given_keys, "targets": read_targets_table(path.parent / given_keys["targets"])}
+    schema = validate(TwinSchema, given_keys, file=path)
     with located(file=path):
         given = [key for key in ("records", "targets") if getattr(schema, key)]
         if len(given) != 1 and not (records_follow and not given):
@@ -52,7 +60,38 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
                 field="records",
                 remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
             )
-        return _build(schema, path)
+        return _build(_with_numbers(schema, path), path)
+
+
+def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
+    """Return the schema with named modes (``mode: 1st FA``) as numbers of the structure's modes."""
+    if not any(isinstance(target.mode, str) for target in schema.targets):
+        return schema
+    assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSchema()}), path))
+    numbered = numbered_modes(assembly, PAIRED_MODES)
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    targets = []
+    for i, target in enumerate(schema.targets):
+        if isinstance(target.mode, str):
+            with located(field=f"targets.{i}"):
+                target = target.model_copy(update={"mode": _number(target.mode, labels)})
+        targets.append(target)
+    return schema.model_copy(update={"targets": targets})
+
+
+def _number(name: str, labels: tuple[str, ...]) -> int:
+    if name.strip().isdigit():
+        return int(name)
+    label = read_mode_label(name)
+    if label not in labels:
+        raise InputError(
+            "no mode of the structure is called so",
+            field="mode",
+            value=name,
+            allowed=", ".join(labels),
+            remedy=did_you_mean(label, labels) or "jackettwin modes lists them",
+        )
+    return labels.index(label) + 1
 
 
 def _build(schema: TwinSchema, path: Path) -> TwinConfig:
@@ -67,7 +106,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         with located(field=f"update.laws.{i}"):
             family(law)
     with located(field="update"):
-        _check_update(schema.update, {target.mode for target in schema.targets})
+        _check_update(schema.update, {target.number for target in schema.targets})
     with located(field="support"):
         _check_ties(schema.support, schema.update)
     targets, relaxations = _targets(schema)
@@ -90,6 +129,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         heads=schema.support.stiffness,
         sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
         records=tuple(path.parent / record for record in schema.records),
+        unsaid=_unsaid(schema),
         targets=targets,
         shapes=_shapes(schema, targets),
         relaxations=relaxations,
@@ -97,6 +137,11 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
         update=_update_settings(schema, path.parent),
     )
+
+
+def _unsaid(schema: TwinSchema) -> Unsaid:
+    with located(field="logger"):
+        return schema.logger.build()
 
 
 def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxation, ...]]:
@@ -119,7 +164,7 @@ def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxat
 
 def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[str, complex]]:
     """Return the shapes of the targets that are modes; ``update.mac_std`` weighs them."""
-    shapes = {t.mode: t.shape for t in schema.targets if t.mode is not None and t.mode_shape}
+    shapes = {t.number: t.shape for t in schema.targets if t.number is not None and t.mode_shape}
     if not schema.targets:
         return {}
     if shapes and schema.update.mac_std is None:
@@ -270,7 +315,9 @@ def _fitted_modes(schema: TwinSchema) -> tuple[int, ...]:
     """Return the modes that are fitted: those asked for; by default the usual ones and all targets."""
     if schema.update.modes is not None:
         return tuple(schema.update.modes)
-    return tuple(sorted({*UpdateSettings().modes, *(t.mode for t in schema.targets if t.mode is not None)}))
+    return tuple(
+        sorted({*UpdateSettings().modes, *(t.number for t in schema.targets if t.number is not None)})
+    )
 
 
 def _damping_of(schema: TwinSchema) -> str | tuple[str, ...]:

@@ -122,7 +122,7 @@ def _examined(
     for path in config.records:
         step(f"identify {path.name}")
         try:
-            record = read_record(path)
+            record = read_record(path, config.unsaid)
             with located(file=path):
                 seen = examined(record, model, compare=compare and not examinations)
         except Exception as error:  # of many records, one that fails must not stop the others

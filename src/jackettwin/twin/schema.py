@@ -9,6 +9,9 @@ from pydantic import BeforeValidator, Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema
+from jackettwin.quantities import plain_unit, vibration_of
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.zones import read_zone
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import RnaSchema
@@ -89,10 +92,34 @@ class SensorSchema(Schema):
     direction: Vector
 
 
+class LoggerSchema(Schema):
+    """What holds for all records whose files do not say it: unit, gain, clock and rate."""
+
+    unit: str | None = None
+    gain: float | None = None
+    clock: str | None = None
+    sample_rate_hz: Positive | None = None
+
+    def build(self) -> Unsaid:
+        """Return it as the readers take it.
+
+        Raises
+        ------
+        InputError
+            If the unit is none of a vibration, or the clock no zone.
+        """
+        if self.unit is not None:
+            with located(field="unit"):
+                vibration_of(plain_unit(self.unit))
+        if self.clock is not None:
+            read_zone(self.clock)
+        return Unsaid(self.sample_rate_hz, self.unit, self.gain, self.clock)
+
+
 class TargetSchema(Schema):
     """A mode known from elsewhere, or a relaxation: ``rate_rad_s``; either with its shape at the sensors."""
 
-    mode: Annotated[int, Field(ge=1, le=50)] | None = None
+    mode: Annotated[int, Field(ge=1, le=50)] | str | None = None
     frequency_hz: Positive | None = None
     frequency_std_hz: Positive | None = None
     damping_ratio: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
@@ -124,7 +151,7 @@ class TargetSchema(Schema):
                     remedy=f"give {value}, or leave {std} out",
                 )
         self._check_channels(channels)
-        if self.mode is not None and not given & _OF_RELAXATIONS:
+        if isinstance(self.mode, int) and not given & _OF_RELAXATIONS:
             values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode", "mode_shape"})
             return Target(mode=self.mode, **values)
         if self.rate_rad_s is None or given - _OF_RELAXATIONS - {"mode_shape"}:
@@ -134,6 +161,11 @@ class TargetSchema(Schema):
                 remedy="a mode: {mode, frequency_hz, …}; a relaxation: {rate_rad_s, rate_std_rad_s}",
             )
         return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, self.shape)
+
+    @property
+    def number(self) -> int | None:
+        """The mode's number; None of a relaxation, or of a mode that is only named yet."""
+        return self.mode if isinstance(self.mode, int) else None
 
     @property
     def shape(self) -> dict[str, complex]:
@@ -216,6 +248,7 @@ class TwinSchema(Schema):
     support: SupportSchema = SupportSchema()
     sensors: list[SensorSchema] = []
     records: list[str] = []
+    logger: LoggerSchema = LoggerSchema()
     targets: list[TargetSchema] = []
     identification: dict[str, Any] = {}
     update: UpdateSchema = UpdateSchema()

@@ -49,6 +49,7 @@ SNIFFED_BYTES = 1 << 16
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
 # Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
 _DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
+_ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
 _DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 
@@ -131,7 +132,10 @@ def _table(lines: list[str], above: int = 0) -> Table:
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
     if bare and _climbs_evenly(columns[0]):
         names[0] = ""  # a count or a time, as an index without a name is
-    return table_from_columns(names, columns, units, **_known(comments))
+    known = _known(comments)
+    if "start_utc" not in known and any(_ZONED.search(cell) for cell in body[0] if _DATE.match(cell)):
+        known["zone_said"] = True
+    return table_from_columns(names, columns, units, **known)
 
 
 def write(record: Record, path: Path) -> None:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import ConfigDict, Field
 
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, validate
+from jackettwin.records.readers.zones import read_zone
 from jackettwin.records.record import Frame
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class _File(Schema):
 
     sample_rate_hz: float | None = Field(default=None, gt=0.0, strict=True)
     start_utc: str | None = None
+    clock: str | dict[str, Any] | None = None
     channels: dict[str, ChannelEntry] | None = None
     conditions: dict[str, Any] = Field(default_factory=dict)
 
@@ -58,6 +60,7 @@ class Description:
 
     sample_rate_hz: float | None = None
     start_utc: datetime | None = None
+    clock: str | None = None
     channels: Mapping[str, ChannelEntry] | None = None
     conditions: Mapping[str, Any] = field(default_factory=dict)
     metadata: Mapping[str, Any] = field(default_factory=dict)
@@ -109,9 +112,15 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
         name: entry.model_extra for name, entry in (entries.channels or {}).items() if entry.model_extra
     }
     metadata = dict(entries.model_extra or {})
+    if isinstance(entries.clock, dict):  # what an earlier reader measured of the stamps
+        metadata["clock"] = entries.clock
+    elif entries.clock is not None:
+        with located(file=file):
+            read_zone(entries.clock)
     return Description(
         sample_rate_hz=entries.sample_rate_hz,
         start_utc=parse_time(entries.start_utc, file=file) if entries.start_utc else None,
+        clock=entries.clock if isinstance(entries.clock, str) else None,
         channels=entries.channels,
         conditions=entries.conditions,
         metadata={**metadata, CHANNEL_METADATA: further} if further else metadata,

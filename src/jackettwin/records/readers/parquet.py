@@ -45,7 +45,9 @@ def write(record: Record, path: Path) -> None:
 def _table(stored: Any) -> Table:
     # pandas calls an index without a name like this
     names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
-    return table_from_columns(names, [_values(stored.column(i)) for i in range(len(names))])
+    zoned = any(pa.types.is_timestamp(field.type) and field.type.tz is not None for field in stored.schema)
+    known: dict[str, Any] = {"zone_said": True} if zoned else {}
+    return table_from_columns(names, [_values(stored.column(i)) for i in range(len(names))], **known)
 
 
 def _values(column: Any) -> npt.NDArray[Any]:

@@ -56,6 +56,8 @@ def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None
         first = next(tables)
         said = beside or first.description or Description()
         for number, piece in enumerate(_split(chain([first], tables), said, unsaid, seconds), start=1):
+            if said.start_utc is not None:
+                piece = replace(piece, zone_said=True)
             record = to_record(piece, replace(said, start_utc=None), path, unsaid)
             start = record.start_utc
             stamp = f"{number:04d}" if start is None else f"{_nearest_second(start):%Y%m%dT%H%M%S}"

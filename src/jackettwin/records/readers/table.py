@@ -17,6 +17,7 @@ from jackettwin.records.readers.channel_names import told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.sentinels import without_sentinels
+from jackettwin.records.readers.zones import UNSAID, in_utc, read_zone
 from jackettwin.records.record import LARGEST, Record
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ class Table:
         In the file's own units.
     channels : mapping
         Per name what the file says of the channel; units in ``unit``.
+    zone_said : bool
+        Whether ``start_utc`` is UTC; else it is what a clock shows whose zone the file does not say.
     times_s : (n_samples,) array, optional
         Stamps, if the file has them, from any origin.
     description : Description, optional
@@ -55,6 +58,7 @@ class Table:
     channels: Mapping[str, ChannelEntry] = field(default_factory=dict)
     sample_rate_hz: float | None = None
     start_utc: datetime | None = None
+    zone_said: bool = True
     times_s: FloatArray | None = None
     metadata: Mapping[str, Any] = field(default_factory=dict)
     description: Description | None = None
@@ -84,7 +88,8 @@ def table_from_columns(
     if time is not None:
         unit = channels.pop(names[time], ChannelEntry()).unit or time_unit(names[time])
         times_s, start_utc = seconds(columns[time], unit)
-        known = {"start_utc": start_utc, **known, "times_s": times_s}
+        dated = columns[time].dtype.kind == "M" and "start_utc" not in known
+        known = {"start_utc": start_utc, "zone_said": not dated, **known, "times_s": times_s}
     kept = [i for i in range(len(names)) if i != time and names[i] and columns[i].dtype.kind == "f"]
     left_out = [name for i, name in enumerate(names) if name and i != time and i not in kept]
     if left_out:
@@ -190,6 +195,8 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
             remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file '
             "(identify: or --sample-rate)",
         )
+    start_utc, unzoned = _start(table, said, unsaid)
+    metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
     if data.shape[1] < 2:
         raise InputError(
             "holds no samples",
@@ -199,20 +206,30 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
             remedy="export the record again",
         )
     described = _described(names, table, said, unsaid)
-    from_names = told({one.channel.name: one.from_name for one in described})
-    if from_names:
-        metadata["remarks"] = [*metadata.get("remarks", ()), *from_names]
+    metadata["remarks"] += told({one.channel.name: one.from_name for one in described})
+    if not metadata["remarks"]:
+        del metadata["remarks"]
     with np.errstate(over="ignore"):  # what overflows is as unreadable as infinity: missing
         data = data * np.array([one.factor for one in described])[:, None]
     return Record(
         data=np.where(np.abs(data) <= LARGEST, data, np.nan),
         sample_rate_hz=stated,
         channels=tuple(one.channel for one in described),
-        start_utc=said.start_utc or table.start_utc,
+        start_utc=start_utc,
         conditions=dict(said.conditions),
         metadata=metadata,
         name=path.stem,
     )
+
+
+def _start(table: Table, said: Description, unsaid: Unsaid) -> tuple[datetime | None, tuple[str, ...]]:
+    """Return the start in UTC, and the remark that the clock's zone is not known."""
+    if said.start_utc is not None or table.start_utc is None or table.zone_said:
+        return said.start_utc or table.start_utc, ()
+    zone = said.clock or unsaid.timezone
+    if zone is None:
+        return table.start_utc, (UNSAID,)
+    return in_utc(table.start_utc, read_zone(zone, field="clock" if said.clock else "--timezone")), ()
 
 
 def _described(

@@ -1,0 +1,164 @@
+"""``jackettwin init``: a twin file from a structure and records, without typing."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from jackettwin.cli.console import messages, output, print_json, progress
+from jackettwin.errors import InputError
+from jackettwin.files import atomic_path, check_room
+from jackettwin.records import Record, read_record
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.zones import UNSAID, read_zone
+from jackettwin.structure import assemble, read_structure
+from jackettwin.twin import read_twin
+from jackettwin.twin.draft import Draft, draft_twin
+from jackettwin.twin.many import record_files
+
+_MOST_READ = 20
+"""Records that are read to be described; of more the rest is only listed."""
+_QUESTIONS = {
+    "unit": ("unit", "Unit of the channels without one (g, mg, m/s^2, mm/s)", str),
+    "sample_rate_hz": ("sample_rate_hz", "Sample rate of the files [Hz]", float),
+    "gain": ("gain", "What one count is worth, in the unit", float),
+}
+"""What a reader misses → what it is in ``Unsaid``, what to ask, and its type."""
+
+
+@click.command("init")
+@click.argument("structure")
+@click.argument("records", nargs=-1, required=True)
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, path_type=Path),
+    default=Path("twin.yaml"),
+    show_default=True,
+    help="Twin file to write.",
+)
+@click.option("--unit", help="Of channels without one, e.g. g or mm/s.")
+@click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
+@click.option(
+    "--sample-rate", type=click.FloatRange(min=0.0, min_open=True), help="Hz, of files that do not say it."
+)
+@click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
+@click.option("--force", is_flag=True, help="Write over an existing file.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def init_command(
+    structure: str,
+    records: tuple[str, ...],
+    out: Path,
+    unit: str | None,
+    gain: float | None,
+    sample_rate: float | None,
+    zone: str | None,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Write a commented twin file for STRUCTURE and RECORDS, check it, and say what is missing.
+
+    Sensors are placed by the names of the channels. What the files do not say of unit, clock and rate is
+    taken from the options, else asked once.
+    """
+    if out.exists() and not force:
+        raise InputError("is there already", file=out, remedy="choose another --out, or --force")
+    check_room(out, least_bytes=10_000)
+    if zone is not None:
+        read_zone(zone, field="--timezone")
+    files = record_files(records)
+    built = read_structure(structure)
+    with progress(2 + min(len(files), _MOST_READ), "init") as step:
+        step(f"assemble {structure}")
+        assembly = assemble(built, gravity=True)
+        read, unsaid = [], Unsaid(sample_rate, unit, gain, zone)
+        for file in files[:_MOST_READ]:
+            step(f"read {file.name}")
+            record, unsaid = _read(file, unsaid)
+            read.append((_beside(file, out), record))
+        step("write and check")
+        draft = draft_twin(_structure_name(structure, out), assembly, read, unsaid)
+        rest = "".join(f"  - {_beside(file, out)}\n" for file in files[_MOST_READ:])
+        text = (
+            draft.text.replace("# Missing:", f"{rest}# Missing:")
+            if "# Missing:" in draft.text
+            else draft.text + rest
+        )
+        with atomic_path(out) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        if draft.complete:
+            read_twin(out)
+    if as_json:
+        print_json(_document(draft, out, [str(file) for file in files]))
+    else:
+        _print(draft, out)
+
+
+def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
+    """Return a record, and what had to be asked for to read it."""
+    while True:
+        try:
+            record = read_record(file, unsaid)
+        except InputError as error:
+            lacking = (error.field or "").rsplit(".", 1)[-1]
+            if lacking not in _QUESTIONS or "missing" not in error.problem and lacking != "gain":
+                raise
+            key, question, kind = _QUESTIONS[lacking]
+            if getattr(unsaid, key) is not None or not sys.stdin.isatty():
+                raise
+            unsaid = replace(unsaid, **{key: click.prompt(question, type=kind, err=True)})
+            continue
+        if UNSAID not in record.metadata.get("remarks", ()) or not sys.stdin.isatty():
+            return record, unsaid
+        answer = click.prompt("Zone of the logger's clock", default="UTC", err=True)
+        read_zone(answer)
+        unsaid = replace(unsaid, timezone=answer)
+
+
+def _structure_name(source: str, out: Path) -> str:
+    return _beside(Path(source), out) if Path(source).exists() else source
+
+
+def _beside(file: Path, out: Path) -> str:
+    """Return a path as the twin file names it: relative to its folder."""
+    return Path(os.path.relpath(file.resolve(), out.resolve().parent)).as_posix()
+
+
+def _print(draft: Draft, out: Path) -> None:
+    for place in draft.places:
+        s = place.sensor
+        where = s.node if s.node is not None else "?" if s.height_m is None else f"{s.height_m:g} m"
+        direction = ", ".join(f"{v:g}" for v in s.direction)
+        note = f"lacks {place.lacks}" if place.lacks else place.why or "as the record says"
+        output.print(f"{s.channel}: {where}, [{direction}]: {note}", markup=False)
+    for sentence in draft.missing:
+        output.print(f"missing: {sentence}", markup=False)
+    messages.print(f"wrote {out}")
+    if draft.complete:
+        output.print(f"next: jackettwin run {out}", markup=False)
+    else:
+        output.print(f"next: complete the sensors in {out}, then jackettwin run {out}", markup=False)
+
+
+def _document(draft: Draft, out: Path, records: Sequence[str]) -> dict[str, object]:
+    return {
+        "twin": str(out),
+        "complete": draft.complete,
+        "sensors": [
+            {
+                "channel": place.sensor.channel,
+                "node": place.sensor.node,
+                "height_m": place.sensor.height_m,
+                "direction": list(place.sensor.direction),
+                "read_from": place.why or None,
+                "lacks": place.lacks or None,
+            }
+            for place in draft.places
+        ],
+        "records": list(records),
+        "missing": list(draft.missing),
+    }

@@ -1,0 +1,208 @@
+"""A twin file drafted from a structure and its records: what they say, and what nobody has said yet."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from jackettwin.errors import InputError
+from jackettwin.records import Channel, Record
+from jackettwin.records.conditions import with_conditions
+from jackettwin.records.readers.channel_names import read_name
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.structure import Assembly, Structure
+from jackettwin.twin.examine import moving_channels
+from jackettwin.updating import numbered_modes
+from jackettwin.version import __version__
+
+STEEL_DAMPING = 0.005
+"""Ratio of critical at the first frequency: what welded steel towers and jackets are usually given."""
+_PLAIN = re.compile(r"^[A-Za-z_][\w./\-]*$")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A channel as the draft places it.
+
+    Attributes
+    ----------
+    sensor : Sensor
+    why : str
+        Where place and direction come from.
+    lacks : str
+        What is missing to make a sensor of it; empty if nothing is.
+    """
+
+    sensor: Sensor
+    why: str
+    lacks: str = ""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A twin file and what is missing to trust it.
+
+    Attributes
+    ----------
+    text : str
+        YAML with comments.
+    places : tuple of Place
+        One a channel that measures motion.
+    missing : tuple of str
+        Sentences on what to add.
+    """
+
+    text: str
+    places: tuple[Place, ...]
+    missing: tuple[str, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether the twin can be run: at least one sensor has its place."""
+        return any(not place.lacks for place in self.places)
+
+
+def draft_twin(
+    source: str, assembly: Assembly, records: Sequence[tuple[str, Record]], unsaid: Unsaid
+) -> Draft:
+    """Return a commented twin file.
+
+    Parameters
+    ----------
+    source : str
+        The structure as the file names it.
+    assembly : Assembly
+        Of the structure, with its geometric stiffness.
+    records : sequence of (path as the file names it, record)
+        At least one; sensors are those of the first.
+    unsaid : Unsaid
+        What the user said of the logger.
+    """
+    first = with_conditions(records[0][1])
+    places = tuple(_place(channel, assembly) for channel in moving_channels(first).channels)
+    missing = _missing(places, [record for _, record in records], assembly.structure)
+    first_hz = float(numbered_modes(assembly, 1).frequency_hz[0])
+    lines = [
+        f"# A twin, drafted by `jackettwin init` {__version__}. Look through the lines that say CHECK.",
+        "# docs/reference/twin.md lists every key.",
+        f"structure: {_text(source)}",
+        "gravity: true                       # self-weight softens: 1 to 4 % on the first frequencies",
+        f"damping: {{rayleigh: {{ratio: {STEEL_DAMPING}, frequency_hz: {first_hz:.3f}}}}}"
+        "   # of the steel alone: CHECK",
+        *_water(assembly.structure),
+        "support: {tie: all}                 # or horizontal-vertical, per-leg",
+        *_logger(unsaid),
+        "sensors:                            # place above mean sea level, direction in global axes: CHECK",
+        *[_sensor_line(place) for place in places],
+        "records:",
+        *[f"  - {_text(path)}   # {_described(record)}" for path, record in records],
+        *(["# Missing:"] if missing else []),
+        *[f"#   {sentence}" for sentence in missing],
+    ]
+    return Draft("\n".join(lines) + "\n", places, missing)
+
+
+def _place(channel: Channel, assembly: Assembly) -> Place:
+    """Return where a channel's sensor sits, and what is missing to say so."""
+    structure, read = assembly.structure, read_name(channel.name)
+    node, height, why = channel.node, channel.height_m, []
+    if node is None and height is None and read.level == "tower top":
+        node = structure.top_node
+        why.append("the tower's top, by its name")
+    elif height is not None and height == read.height_m:
+        why.append(f"{height:g} m by its name")
+    if read.direction is not None and read.direction == channel.direction:
+        why.append(f"{read.direction_word} by its name")
+    sensor = Sensor(channel.name, channel.direction, node, None if node is not None else height)
+    return Place(sensor, ", ".join(why), _lacks(sensor, assembly))
+
+
+def _lacks(sensor: Sensor, assembly: Assembly) -> str:
+    lacks = []
+    if sensor.node is None and sensor.height_m is None:
+        lacks.append("height_m (above mean sea level) or node")
+    if not any(sensor.direction):
+        lacks.append("direction")
+    if lacks:
+        return " and ".join(lacks)
+    try:
+        observation_matrix(assembly, (sensor,))
+    except InputError as error:
+        return f"a place on the structure: {error.problem}, allowed {error.allowed or error.remedy}"
+    return ""
+
+
+def _sensor_line(place: Place) -> str:
+    """Return a sensor's line, commented out if something of it is missing."""
+    s = place.sensor
+    at = f"node: {_text(s.node)}" if s.node is not None else f"height_m: {_number(s.height_m)}"
+    direction = ", ".join(f"{v:g}" for v in s.direction) if any(s.direction) else "?, ?, ?"
+    line = f"- {{channel: {_text(s.channel)}, {at}, direction: [{direction}]}}"
+    if place.lacks:
+        return f"  # {line}   # CHECK: lacks {place.lacks}"
+    return f"  {line}" + (f"   # {place.why}" if place.why else "")
+
+
+def _water(structure: Structure) -> list[str]:
+    """Return the line of the water around a structure whose feet stand in it."""
+    feet = [structure.nodes[node][2] for node in structure.reaction_nodes]
+    depth = structure.sea_level_z_m - min(feet, default=structure.sea_level_z_m)
+    if not depth > 0.0:
+        return []
+    return [
+        f"water: {{depth_m: {depth:g}}}   # its added mass, and in flooded members; CHECK: add marine_growth,"
+        " or adds_mass: false"
+    ]
+
+
+def _logger(unsaid: Unsaid) -> list[str]:
+    """Return the line of what the user said of the logger."""
+    said = {
+        "unit": unsaid.unit and _text(unsaid.unit),
+        "gain": unsaid.gain,
+        "clock": unsaid.timezone and json.dumps(unsaid.timezone),
+        "sample_rate_hz": unsaid.sample_rate_hz,
+    }
+    given = ", ".join(f"{key}: {value}" for key, value in said.items() if value is not None)
+    return [f"logger: {{{given}}}   # of files that do not say it"] if given else []
+
+
+def _missing(places: Sequence[Place], records: Sequence[Record], structure: Structure) -> tuple[str, ...]:
+    """Return what nobody has said, most needed first."""
+    missing = [f"{place.sensor.channel}: {place.lacks}" for place in places if place.lacks]
+    remarks = {text for record in records for text in record.metadata.get("remarks", ())}
+    missing += sorted(text for text in remarks if "zone" in text)
+    names = set(records[0].channel_names)
+    for record in records:
+        gone = sorted(names - {*record.channel_names})
+        if gone:
+            missing.append(f"{record.name} lacks channels of the first record: {', '.join(gone)}")
+    conditions = with_conditions(records[0]).conditions
+    lacking = [key for key in ("mean_wind_speed_m_s", "yaw_deg", "state") if conditions.get(key) is None]
+    if lacking:
+        missing.append(
+            f'conditions of the records ({", ".join(lacking)}): "conditions" in the JSON beside a record, or '
+            "records.json; without the yaw, fore-aft is taken along global x"
+        )
+    if not structure.masses:
+        missing.append("the rotor–nacelle assembly: rna: {mass_kg, cg_offset_m, inertia_about_cg_kg_m2}")
+    return tuple(missing)
+
+
+def _described(record: Record) -> str:
+    start = "start not known" if record.start_utc is None else f"from {record.start_utc:%Y-%m-%dT%H:%M:%SZ}"
+    known = with_conditions(record).conditions
+    state = f", {known['state']}" if known.get("state") else ""
+    return f"{record.duration_s:.0f} s at {record.sample_rate_hz:g} Hz, {start}{state}"
+
+
+def _text(text: str) -> str:
+    """Return a text as YAML takes it, in quotes where it could be read as something else."""
+    return text if _PLAIN.match(text) else json.dumps(text, ensure_ascii=False)
+
+
+def _number(value: float | None) -> str:
+    return "?" if value is None else f"{value:g}"

@@ -1,0 +1,130 @@
+"""A table of measured modes as a consultant delivers it, to the ``targets`` of a twin.
+
+One row a mode: its name or number, frequency, damping, and either with a standard deviation in a column of
+its own or behind ``±``. Separator and decimal sign are found; units stand in the names of the columns.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from pathlib import Path
+from typing import Any
+
+from jackettwin.errors import InputError, located
+
+NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
+SPREAD = re.compile(r"std|sigma|σ|±|\+/?-|uncert|error|dev", re.IGNORECASE)
+FREQUENCY = re.compile(r"^(?:f|fn|freq\w*|eigenfreq\w*|natural freq\w*)(?:[\s_\[(]|$)", re.IGNORECASE)
+DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|damp\w*|d)(?:[\s_\[(]|$)", re.IGNORECASE)
+PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
+OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|damp", re.IGNORECASE)
+INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
+TWO_SIDED_95 = 1.959964
+"""Half width of a 95 % interval in standard deviations."""
+_CELL = re.compile(
+    r"^\s*(?P<value>[+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
+    r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>[\d.]+(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
+)
+MOST_RATIO = 0.2
+"""A damping ratio beyond this is a percentage whose unit was forgotten."""
+
+
+def read_targets_table(path: Path) -> list[dict[str, Any]]:
+    """Return the rows of a table as ``targets`` of a twin file.
+
+    Raises
+    ------
+    InputError
+        Names file, line and cell that is not understood.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError:
+        raise InputError(
+            "no such table of modes", file=path, field="targets", remedy="check the path"
+        ) from None
+    except UnicodeDecodeError:
+        text = path.read_text(encoding="cp1252", errors="replace")
+    with located(file=path):
+        return _targets(text)
+
+
+def _targets(text: str) -> list[dict[str, Any]]:
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    if len(lines) < 2:
+        raise InputError("holds no modes", field="targets", allowed="names of columns, then a row a mode")
+    delimiter = max(";\t,|", key=lines[0].count)
+    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=delimiter)]
+    columns = {i: key for i, name in enumerate(rows[0]) if (key := _key(name)) is not None}
+    for needed in ("mode", "frequency_hz"):
+        if needed not in columns.values():
+            raise InputError(
+                f"has no column for the {'name of the mode' if needed == 'mode' else 'frequency'}",
+                field="columns",
+                value=", ".join(rows[0]),
+                allowed="mode, frequency [Hz], std [Hz], damping [%], std damping [%]",
+                remedy="name the columns so",
+            )
+    targets = []
+    for number, row in enumerate(rows[1:], start=2):
+        with located(field=f"row {number}"):
+            targets.append(_target(row, rows[0], columns, delimiter))
+    return targets
+
+
+def _key(column: str) -> str | None:
+    """Return the key of ``targets`` that a column fills, None for one that fills none."""
+    name = column.strip()
+    if SPREAD.search(name):
+        return "damping_ratio_std" if OF_DAMPING.search(name) else "frequency_std_hz"
+    for pattern, key in ((FREQUENCY, "frequency_hz"), (DAMPING, "damping_ratio"), (NAME, "mode")):
+        if pattern.search(name):
+            return key
+    return None
+
+
+def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter: str) -> dict[str, Any]:
+    target: dict[str, Any] = {}
+    for i, key in columns.items():
+        cell = row[i] if i < len(row) else ""
+        if not cell or cell in ("-", "–"):
+            continue
+        if key == "mode":
+            # a number of its own beside a name says less than the name
+            if "mode" not in target or not cell.isdigit():
+                target["mode"] = int(cell) if cell.isdigit() else cell
+            continue
+        target.update(_values(key, cell if delimiter == "," else cell.replace(",", "."), names[i]))
+    return target
+
+
+def _values(key: str, cell: str, column: str) -> dict[str, float]:
+    """Return a cell's value under its key, and what stands behind ± under that of its standard deviation."""
+    match = _CELL.match(cell)
+    if match is None:
+        raise InputError(
+            "is not a number",
+            field=column,
+            value=cell,
+            allowed="0.3123, 0.3123 ± 0.0008, or 1.2 %",
+            remedy="correct the cell, or leave it empty",
+        )
+    damps = key.startswith("damping")
+    percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
+    scale = 0.01 if percent else 1.0
+    if damps and not percent and float(match["value"]) > MOST_RATIO:
+        raise InputError(
+            "looks like a percentage, and nothing says so",
+            field=column,
+            value=cell,
+            allowed=f"a ratio up to {MOST_RATIO}, or a column called damping [%]",
+            remedy="write the unit into the name of the column",
+        )
+    width = TWO_SIDED_95 if INTERVAL_95.search(column) else 1.0
+    value = float(match["value"]) * scale
+    if key.endswith(("_std", "_std_hz")):
+        return {key: value / width}
+    std = {"frequency_hz": "frequency_std_hz", "damping_ratio": "damping_ratio_std"}[key]
+    spread = {} if match["std"] is None else {std: float(match["std"]) * scale / width}
+    return {key: value, **spread}

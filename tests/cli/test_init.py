@@ -1,0 +1,91 @@
+"""A twin file from a deck and a folder of files: what names say is taken, what nobody says is asked for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+from jackettwin.twin import read_twin
+
+
+def written(path: Path, header: str, n: int = 400) -> Path:
+    """Write a CSV of a clock without zone, at 10 Hz."""
+    y = np.random.default_rng(1).normal(size=(n, header.count(",") + 1))
+    rows = [
+        f"2025-06-01 14:00:{k / 10:06.3f}," + ",".join(f"{v:.4f}" for v in row)
+        for k, row in enumerate(y[: min(n, 590)])
+    ]
+    path.write_text(f"time,{header}\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    return path
+
+
+def run(*arguments: str) -> tuple[int, str, str]:
+    result = CliRunner().invoke(main, ["init", "jacket15", *arguments])
+    return result.exit_code, result.stdout, result.stderr
+
+
+def test_a_german_logger_becomes_a_twin_that_reads(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_088m_N [g],TT_FA [g],ACC_leg_a [g]")
+    out = tmp_path / "twins" / "twin.yaml"
+    code, text, _ = run(str(record), "--out", str(out), "--timezone", "Europe/Berlin", "--json")
+    assert code == 0
+    document = json.loads(text)
+    assert document["complete"]
+    assert [(s["height_m"], s["direction"], s["lacks"]) for s in document["sensors"][:2]] == [
+        (88.0, [1.0, 0.0, 0.0], None),
+        (88.0, [0.0, 1.0, 0.0], None),
+    ]
+    assert document["sensors"][2]["node"] is not None  # the tower's top has a node
+    assert "height_m" in document["sensors"][3]["lacks"]
+    config = read_twin(out)
+    assert [sensor.channel for sensor in config.sensors] == ["ACC_088m_E", "ACC_088m_N", "TT_FA"]
+    assert config.records[0].resolve() == record
+    assert config.unsaid.timezone == "Europe/Berlin"
+    written_text = out.read_text()
+    assert "from 2025-06-01T12:00:00Z" in written_text
+    assert "# - {channel: ACC_leg_a" in written_text
+
+
+def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_400m_N [g]")
+    code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"))
+    assert code == 0
+    assert "missing: ACC_400m_N: a place on the structure" in text
+    assert "missing: the clock does not say its zone" in text
+    assert "conditions of the records" in text
+    assert f"next: jackettwin run {tmp_path / 'twin.yaml'}" in text
+
+
+def test_units_come_by_option_or_are_refused(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "ACC_088m_E,ACC_088m_N")
+    out = tmp_path / "twin.yaml"
+    code, _, error = run(str(record), "--out", str(out))
+    assert code == 2
+    assert "unit is missing" in error
+    assert not out.exists()
+    assert run(str(record), "--out", str(out), "--unit", "mg")[0] == 0
+    assert "logger: {unit: mg}" in out.read_text()
+    assert read_twin(out).unsaid.unit == "mg"
+
+
+def test_nothing_is_written_over(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_088m_N [g]")
+    out = tmp_path / "twin.yaml"
+    out.write_text("mine")
+    code, _, error = run(str(record), "--out", str(out))
+    assert (code, out.read_text()) == (2, "mine")
+    assert "is there already" in error
+    assert run(str(record), "--out", str(out), "--force")[0] == 0
+
+
+@pytest.mark.parametrize("name", ["first: 1", "no", "Ä 1 [x]"])
+def test_names_that_yaml_would_misread_are_quoted(tmp_path: Path, name: str) -> None:
+    record = written(tmp_path / "A1.csv", f'"{name} 88m_x [g]",ACC_088m_N [g]')
+    out = tmp_path / "twin.yaml"
+    assert run(str(record), "--out", str(out))[0] == 0
+    assert read_twin(out).sensors[0].channel == f"{name} 88m_x"

@@ -1,0 +1,82 @@
+"""Clocks: what says its zone is UTC; what does not is said, and can be told."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.records import read_record
+from jackettwin.records.readers import read_record_pieces
+from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.readers.zones import in_utc, read_zone
+
+LOCAL = datetime(2025, 6, 1, 14, 0, 0)
+TWELVE = datetime(2025, 6, 1, 12, tzinfo=UTC)
+
+
+def written(path: Path, ending: str = "") -> Path:
+    rows = [f"2025-06-01 14:{i // 600:02d}:{i % 600 / 10:04.1f}{ending},{i % 7}" for i in range(13000)]
+    path.write_text("time,acc_x [g]\n" + "\n".join(rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("text", ["+02:00", "UTC+2", "utc +02:00", "Europe/Berlin", "+0200"])
+def test_zones_of_one_summer_clock(text: str) -> None:
+    assert in_utc(LOCAL, read_zone(text)) == TWELVE
+
+
+def test_zones_of_utc_and_none() -> None:
+    assert in_utc(LOCAL, read_zone("Z")) == LOCAL.replace(tzinfo=UTC)
+    assert in_utc(datetime(2025, 1, 1, 14), read_zone("Europe/Berlin")).hour == 13
+    with pytest.raises(InputError, match="is not a time zone"):
+        read_zone("Mars/Base")
+
+
+def test_a_clock_without_zone_is_said_or_told(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv")
+    silent = read_record(path)
+    assert silent.start_utc == LOCAL.replace(tzinfo=UTC)
+    assert any("does not say its zone" in text for text in silent.metadata["remarks"])
+    told = read_record(path, Unsaid(timezone="Europe/Berlin"))
+    assert told.start_utc == TWELVE
+    assert "remarks" not in told.metadata
+    path.with_suffix(".json").write_text(json.dumps({"clock": "UTC+2"}))
+    assert read_record(path).start_utc == TWELVE
+    (first, *_) = read_record_pieces(path)
+    assert (first.start_utc, first.name) == (TWELVE, "a_20250601T120000")
+    path.with_suffix(".json").write_text(json.dumps({"clock": "local"}))
+    with pytest.raises(InputError, match="is not a time zone") as refused:
+        read_record(path)
+    assert refused.value.file == path.with_suffix(".json")
+
+
+@pytest.mark.parametrize("ending", ["Z", "+02:00"])
+def test_a_clock_with_zone_needs_no_telling(ending: str, tmp_path: Path) -> None:
+    record = read_record(written(tmp_path / "a.csv", ending), Unsaid(timezone="+05:00"))
+    assert record.start_utc == (TWELVE if ending != "Z" else LOCAL.replace(tzinfo=UTC))
+    assert "remarks" not in record.metadata
+
+
+def test_stamps_of_parquet_say_their_zone_or_not(tmp_path: Path) -> None:
+    stamps = np.datetime64("2025-06-01T14:00:00", "ns") + np.arange(50) * np.timedelta64(100, "ms")
+    y = pa.array(np.arange(50.0))
+    for name, kind in (("naive", pa.timestamp("ns")), ("utc", pa.timestamp("ns", tz="UTC"))):
+        pq.write_table(
+            pa.table({"time": pa.array(stamps).cast(kind), "acc_x": y}), tmp_path / f"{name}.parquet"
+        )
+    unsaid = Unsaid(unit="g", timezone="+02:00")
+    assert read_record(tmp_path / "naive.parquet", unsaid).start_utc == TWELVE
+    assert read_record(tmp_path / "utc.parquet", unsaid).start_utc == LOCAL.replace(tzinfo=UTC)
+
+
+def test_the_statistics_of_stamps_stay_metadata(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", "Z")
+    path.with_suffix(".json").write_text(json.dumps({"clock": {"jitter_s": 0.5}}))
+    assert "jitter_s" in read_record(path).metadata["clock"]

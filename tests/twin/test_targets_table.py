@@ -1,0 +1,94 @@
+"""A consultant's table becomes the targets of a twin: by name, with ± or columns, in percent or not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.twin import read_twin
+from jackettwin.twin.targets_table import read_targets_table
+
+
+def table(path: Path, *lines: str) -> Path:
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_columns_of_standard_deviations_in_percent(tmp_path: Path) -> None:
+    path = table(
+        tmp_path / "m.csv",
+        "No.;Mode;Frequency [Hz];Std [Hz];Damping [%];Std damping [%];Remark",
+        "1;1st FA;0,1819;0,0008;1,27;0,4;good",
+        "2;1st SS;0,1835;0,0009;;;rotor",
+    )
+    first, second = read_targets_table(path)
+    assert first == {
+        "mode": "1st FA",
+        "frequency_hz": 0.1819,
+        "frequency_std_hz": 0.0008,
+        "damping_ratio": pytest.approx(0.0127),
+        "damping_ratio_std": pytest.approx(0.004),
+    }
+    assert second == {"mode": "1st SS", "frequency_hz": 0.1835, "frequency_std_hz": 0.0009}
+
+
+def test_plus_minus_behind_the_value(tmp_path: Path) -> None:
+    path = table(
+        tmp_path / "m.csv",
+        "mode,f (Hz),damping",
+        "SS1,0.25 ± 0.001,1.2 ± 0.3 %",
+        "fore_aft_2,1.01 +/- 0.01,0.02",
+        "5,1.3,–",
+    )
+    one, two, three = read_targets_table(path)
+    assert one["frequency_std_hz"] == 0.001
+    assert (one["damping_ratio"], one["damping_ratio_std"]) == (pytest.approx(0.012), pytest.approx(0.003))
+    assert (two["frequency_std_hz"], two["damping_ratio"]) == (0.01, 0.02)
+    assert three == {"mode": 5, "frequency_hz": 1.3}
+
+
+def test_intervals_of_95_percent_are_two_standard_deviations_wide(tmp_path: Path) -> None:
+    path = table(tmp_path / "m.csv", "mode,frequency_hz,±95% [Hz]", "FA1,0.25,0.00196")
+    assert read_targets_table(path)[0]["frequency_std_hz"] == pytest.approx(1e-3, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        (["mode,f [Hz],damping", "FA1,0.25,1.2"], "looks like a percentage"),
+        (["mode,f [Hz]", "FA1,about 0.25"], "row 2.f \\[Hz\\]: is not a number"),
+        (["what,f [Hz]", "FA1,0.25"], "no column for the name of the mode"),
+        (["mode,value", "FA1,0.25"], "no column for the frequency"),
+        (["mode,f [Hz]"], "holds no modes"),
+    ],
+)
+def test_what_is_not_understood_is_named(tmp_path: Path, lines: list[str], message: str) -> None:
+    path = table(tmp_path / "m.csv", *lines)
+    with pytest.raises(InputError, match=message) as refused:
+        read_targets_table(path)
+    assert refused.value.file == path
+
+
+def test_a_twin_takes_the_table_and_names_among_its_targets(tmp_path: Path) -> None:
+    """The reference jacket's modes 1 and 2 are its first side-side and fore-aft ones, in some order."""
+    table(tmp_path / "m.csv", "mode,f [Hz],std [Hz]", "1st FA,0.18,0.001", "1st SS,0.181,0.001")
+    (tmp_path / "twin.yaml").write_text("structure: jacket15\ntargets: m.csv\n")
+    config = read_twin(tmp_path / "twin.yaml")
+    assert sorted(target.mode for target in config.targets) == [1, 2]
+    (tmp_path / "twin.yaml").write_text("structure: jacket15\ntargets: [{mode: FA9, frequency_hz: 0.2}]\n")
+    with pytest.raises(InputError, match="no mode of the structure is called so") as refused:
+        read_twin(tmp_path / "twin.yaml")
+    assert refused.value.field == "targets.0.mode"
+
+
+def test_a_logger_is_told_once_for_all_records(tmp_path: Path) -> None:
+    head = "structure: jacket15\nrecords: [a.csv]\nlogger: "
+    (tmp_path / "twin.yaml").write_text(head + "{unit: mg, clock: +02:00, sample_rate_hz: 25}\n")
+    unsaid = read_twin(tmp_path / "twin.yaml").unsaid
+    assert (unsaid.unit, unsaid.timezone, unsaid.sample_rate_hz) == ("mg", "+02:00", 25.0)
+    (tmp_path / "twin.yaml").write_text(head + "{clock: here}\n")
+    with pytest.raises(InputError, match="is not a time zone") as refused:
+        read_twin(tmp_path / "twin.yaml")
+    assert refused.value.field == "logger.clock"
