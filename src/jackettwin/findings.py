@@ -90,7 +90,7 @@ CATALOGUE: dict[str, Kind] = {
     "identification": Kind("warning", "{text}"),
     "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
     # twin: an observation on its way into the state
-    "record_doubled": Kind("info", "these samples are known already; they count once"),
+    "record_doubled": Kind("warning", "these samples are known already; they count once"),
     "record_overlaps": Kind(
         "warning",
         "other samples of the same minutes are known; if they are of the same sensors, they count twice",

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -10,25 +10,25 @@ import pytest
 from click.testing import CliRunner, Result
 
 from jackettwin.cli import follow, main
-from jackettwin.identification import ModalEstimate
-from jackettwin.twin.followed import Day, Followed, RecordModes
-from jackettwin.twin.measure import Sighting
+from jackettwin.twin import TwinState
+from jackettwin.twin.followed import Followed, Known
 from jackettwin.updating.drift import Drift
 
 
 def found(n_days: int = 3) -> Followed:
     """Return a twin whose stiffness falls by a hundredth a day."""
-    estimate = ModalEstimate(0.18, 0.01, np.zeros(0, complex), 1.0, 0.0, 1.0, log_covariance=1e-6 * np.eye(2))
     days = []
     for i in range(n_days):
-        time = datetime(2025, 1, 1 + i, 12, tzinfo=UTC)
-        records = (
-            RecordModes(f"r{i}a", time, {1: Sighting(estimate, 0.99, 600.0, 12.0)}),
-            RecordModes(f"r{i}b", time + timedelta(hours=1), {}),
-        )
         k, eta = 3e9 * 0.99**i, 0.1
         days.append(
-            Day(records, {"k": k, "loss_factor": eta}, {"k": (k / 2, 2 * k), "loss_factor": (0.05, 0.2)})
+            Known(
+                f"2025-01-0{1 + i}",
+                datetime(2025, 1, 1 + i, 12, 30, tzinfo=UTC),
+                2,
+                "evidence",
+                {"k": k, "loss_factor": eta},
+                {"k": (k / 2, 2 * k), "loss_factor": (0.05, 0.2)},
+            )
         )
     z = np.array([np.log(3e9), np.log(0.1), np.log(0.99)])
     drift = Drift(("k", "loss_factor", "growth_per_day"), z, np.diag([1e-2, 1e-2, 1e-6]), 1.0)
@@ -40,6 +40,7 @@ def found(n_days: int = 3) -> Followed:
         units={"k": "N/m", "loss_factor": "-"},
         days=tuple(days),
         drift=drift if n_days >= 3 else None,
+        state=TwinState("model"),
         warnings=("r0a: few cycles",),
     )
 
@@ -68,7 +69,7 @@ def test_the_folder_holds_the_next_prior_and_a_page(run, tmp_path: Path) -> None
     assert sorted(p.name for p in out.iterdir()) == ["followed.json", "report.html"]
     document = json.loads((out / "followed.json").read_text())
     assert document["drift"]["detected"] is True
-    assert document["days"][0]["records"][0]["modes"][0]["wind_speed_m_s"] == 12.0
+    assert document["days"][0]["records"] == 2 and document["wind_speed_m_s"] == 12.0
     again = run(found(), "--prior", str(out / "followed.json"), "--json")
     assert json.loads(again.stdout) == document
 

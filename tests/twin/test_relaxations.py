@@ -2,17 +2,29 @@
 
 import json
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
+from observations import observation
 
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
+from jackettwin.identification import RealPole
 from jackettwin.report.tables_updating import relaxation_table
-from jackettwin.twin import TwinConfig, TwinResult, read_twin, run_document, run_twin, update_document
+from jackettwin.response.sensors import Sensor
+from jackettwin.twin import (
+    TwinConfig,
+    TwinResult,
+    TwinState,
+    advance_all,
+    read_twin,
+    run_document,
+    run_twin,
+    update_document,
+)
 from jackettwin.twin.config import GivenRelaxation
-from jackettwin.twin.measure import Measured
 from jackettwin.twin.relaxations import measured_relaxations
 
 GOOD = """\
@@ -114,32 +126,38 @@ def test_documents_and_tables_say_both_rates(result: TwinResult) -> None:
     assert len(relaxation_table(result).rows) == 2
 
 
-def shown(*poles: tuple[float, float, tuple[float, float]]) -> tuple[GivenRelaxation, ...]:
-    """What one record shows: rates, deviations of ln a, shapes at two channels."""
-    return tuple(GivenRelaxation(a, a * s, {"x": shape[0] + 0j, "y": shape[1] + 0j}) for a, s, shape in poles)
+Shown = tuple[tuple[float, float, tuple[float, float]], ...]
+"""What one record shows: rates, deviations of ln a, shapes at two channels."""
+SENSORS = (Sensor("x", (1.0, 0.0, 0.0), "foot_1"), Sensor("y", (0.0, 1.0, 0.0), "foot_1"))
 
 
-def in_records(*records: tuple[GivenRelaxation, ...]) -> Measured:
-    return Measured((), (), {}, (), records)
+def in_records(*records: Shown) -> TwinState:
+    observations = []
+    for i, poles in enumerate(records):
+        real_poles = tuple(
+            RealPole(a, a * s, (a / 2, 2 * a), np.array(shape, complex), 1.0) for a, s, shape in poles
+        )
+        start = datetime(2025, 1, 1, i, tzinfo=UTC)
+        observations.append(observation({}, start, name=f"r{i}", sensors=SENSORS, real_poles=real_poles))
+    return advance_all(TwinState("model"), observations)[0]
 
 
 def test_records_share_relaxations(config: TwinConfig) -> None:
     """One in two of three records, another shape at its rate in one, a third in two."""
     x, y = (1.0, 0.1), (-0.1, 1.0)
-    seen = in_records(
-        shown((3.0, 0.1, x), (3.1, 0.2, y)), shown((3.3, 0.2, x), (6.0, 0.1, y)), shown((6.6, 0.1, y))
-    )
-    found = measured_relaxations(config, seen)
+    state = in_records(((3.0, 0.1, x), (3.1, 0.2, y)), ((3.3, 0.2, x), (6.0, 0.1, y)), ((6.6, 0.1, y),))
+    found = measured_relaxations(config, state)
     assert [(one.name, one.records) for one in found] == [("a1", 2), ("a2", 2)]
     # precision weights 4 : 1; χ² = (ln 1.1)²/(0.1² + 0.2²) < 1 does not widen the deviation
     assert np.log(found[0].rate_rad_s) == pytest.approx(np.log(3.0) + 0.2 * np.log(1.1))
     assert found[0].rate_std_rad_s == pytest.approx(found[0].rate_rad_s / np.sqrt(125.0))
     # equal deviations of 10 %, apart by ln 1.1: χ² = (ln 1.1)²/0.02 < 1
     assert found[1].rate_rad_s == pytest.approx(6.0 * np.sqrt(1.1))
+    assert found[1].channels == ("x", "y")
 
 
 def test_scatter_between_records_widens_the_deviation(config: TwinConfig) -> None:
-    records = tuple(shown((a, 0.01, (1.0, 0.0))) for a in (2.0, 2.2, 2.4))
+    records = tuple(((a, 0.01, (1.0, 0.0)),) for a in (2.0, 2.2, 2.4))
     (found,) = measured_relaxations(config, in_records(*records))
     scatter = np.log([2.0, 2.2, 2.4]).std(ddof=1)
     assert found.rate_std_rad_s == pytest.approx(found.rate_rad_s * scatter / np.sqrt(3.0))

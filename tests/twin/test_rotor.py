@@ -1,16 +1,16 @@
 """The parked rotor in a twin: priors from geometry and wind, damping fitted wind by wind."""
 
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from observations import estimate, observation
 
-from jackettwin.identification import ModalEstimate
 from jackettwin.response.numbered import Status
 from jackettwin.structure import assemble
-from jackettwin.twin import read_twin
+from jackettwin.twin import TwinState, advance_all, read_twin
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.measure import Measured, Sighting
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Residuals, Target, family, numbered_modes, support_model
@@ -19,11 +19,6 @@ from jackettwin.updating import Residuals, Target, family, numbered_modes, suppo
 @pytest.fixture(scope="module")
 def config() -> TwinConfig:
     return read_twin("openfast_pile")
-
-
-def seen(zeta: float, wind: float | None) -> Sighting:
-    estimate = ModalEstimate(0.175, zeta, np.ones(1, complex), 1.0, 0.0, 1.0)
-    return Sighting(estimate, 1.0, 600.0, wind)
 
 
 def measured(label: str, mode: int) -> MeasuredMode:
@@ -37,9 +32,18 @@ RESIDUALS = Residuals(
 MODES = (measured("side_side_1", 1), measured("fore_aft_1", 2))
 
 
-def found(winds: tuple[tuple[float, float | None], ...]) -> Measured:
-    sightings = tuple(seen(*pair) for pair in winds)
-    return Measured((), (), {1: sightings, 2: sightings}, ())
+def found(winds: tuple[tuple[float, float | None], ...]) -> TwinState:
+    """Return the state of records of ten minutes, one after the other, in these winds."""
+    observations = [
+        observation(
+            {mode: estimate(0.175, zeta, None) for mode in (1, 2)},
+            datetime(2025, 1, 1, i, tzinfo=UTC),
+            name=f"r{i}",
+            conditions={} if wind is None else {"mean_wind_speed_m_s": wind},
+        )
+        for i, (zeta, wind) in enumerate(winds)
+    ]
+    return advance_all(TwinState("model", by_wind=True), observations)[0]
 
 
 def test_side_side_damping_is_fitted_in_each_wind(config: TwinConfig) -> None:

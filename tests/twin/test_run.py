@@ -1,26 +1,29 @@
 """The main job end to end, on the records OpenFAST made and on the thesis's own targets."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
 import pytest
+from observations import estimate, observation
 
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
-from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.twin import TwinResult, count_steps, read_twin, run_document, run_twin
+from jackettwin.twin import TwinResult, TwinState, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.fitted import residuals, target_modes
-from jackettwin.twin.measure import Measured, Sighting, fuse
+from jackettwin.twin.measure import Measured, mean_target
 from jackettwin.twin.narrative import cautions
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.rotor import RotorDamping
+from jackettwin.twin.sums import ModeSums, of_day, of_estimate
 from jackettwin.twin.truth import true_modes
 from jackettwin.updating import Target, numbered_modes
 
@@ -137,14 +140,13 @@ def test_result_is_json_with_null_for_unknown(pile: TwinResult, thesis: TwinResu
 
 
 def sighting(
-    f: float, zeta: float, f_std: float | None = None, zeta_std: float | None = None, rho: float = 0.0
-) -> Sighting:
-    shape = np.array([1.0 + 0j])
-    estimate = ModalEstimate(f, zeta, shape, 1.0, 0.0, 1.0)
-    if f_std is not None and zeta_std is not None:
-        std = np.array([f_std / f, zeta_std / zeta])
-        estimate = with_covariance(estimate, np.outer(std, std) * np.array([[1.0, rho], [rho, 1.0]]))
-    return Sighting(estimate, 1.0, 600.0)
+    f: float, zeta: float, f_std: float | None = None, zeta_std: float = 0.0, rho: float = 0.0
+) -> ModalEstimate:
+    return estimate(f, zeta, None if f_std is None else f_std / f, zeta_std / zeta, rho)
+
+
+def fuse(mode: int, modes: Sequence[ModalEstimate]) -> Target:
+    return mean_target(mode, of_day(reduce(ModeSums.plus, (of_estimate(m, 600.0) for m in modes))))
 
 
 def numbers(target: Target) -> tuple[float | None, ...]:
@@ -255,8 +257,8 @@ def test_a_target_in_another_unit_is_refused_at_once() -> None:
 
 def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None:
     config = read_twin("openfast_pile")
-    windy = replace(sighting(0.178, 0.0108), wind_m_s=12.0)
-    found = Measured((), pile.sensors, {2: (windy,)}, ())
+    windy = observation({2: sighting(0.178, 0.0108)}, None, conditions={"mean_wind_speed_m_s": 12.0})
+    found = Measured((windy,), TwinState("model"))
     fitted = tuple(m for m in pile.measured if m.label == "fore_aft_1")
     bare = replace(config, update=replace(config.update, dashpots=(), rotor=None))
     assert any("upper value" in line for line in cautions(bare, found, fitted, ()))

@@ -5,17 +5,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from observations import observation
 
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.water import Water
-from jackettwin.records import Channel, Record
-from jackettwin.twin import read_twin
+from jackettwin.twin import TwinState, advance_all, read_twin
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.fitted import residuals, target_modes
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.rotor import RotorDamping
+from jackettwin.twin.state import ALL
 from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
 from jackettwin.updating import family, support_model
 from jackettwin.updating.budget import damping_budget
@@ -66,15 +67,16 @@ def test_a_factor_without_water_or_sea_is_refused(tmp_path: Path) -> None:
 
 def test_the_records_sea_is_the_mean_of_all(tmp_path: Path) -> None:
     config, _ = twin(tmp_path, sea="")
-    records = [
-        Record(np.zeros((1, 4)), 1.0, (Channel("a"),), conditions={"wave_height_m": h, "wave_period_s": 8.0})
-        for h in (1.0, 2.0)
-    ]
-    water = in_the_records_sea(config.water, records)
+    seas: list[dict[str, float]] = [{"wave_height_m": h, "wave_period_s": 8.0} for h in (1.0, 2.0)]
+
+    def waves(conditions: list[dict[str, float]]) -> tuple[float, float] | None:
+        seen = [observation({}, None, name=f"r{i}", conditions=c) for i, c in enumerate(conditions)]
+        return advance_all(TwinState("model"), seen)[0].totals[ALL].conditions.waves
+
+    water = in_the_records_sea(config.water, waves(seas))
     assert water is not None and water.sea is not None
     assert (water.sea.Hs, water.sea.Tp) == (1.5, 8.0)
-    silent = replace(records[0], conditions={})
-    assert in_the_records_sea(config.water, [records[0], silent]) == config.water
+    assert in_the_records_sea(config.water, waves([seas[0], {}])) == config.water
 
 
 def test_the_share_of_water_is_that_of_the_simulated_record() -> None:

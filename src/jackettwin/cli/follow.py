@@ -73,5 +73,5 @@ def _table(followed: Followed) -> Table:
         spans = [
             f"{day.median[n]:.3g} ({day.interval_90[n][0]:.2g} … {day.interval_90[n][1]:.2g})" for n in names
         ]
-        table.add_row(f"{day.time_utc:%Y-%m-%d %H:%M}", str(len(day.records)), *spans)
+        table.add_row(f"{day.time_utc:%Y-%m-%d %H:%M}", str(day.records), *spans)
     return table

@@ -50,12 +50,10 @@ def _table(followed: Followed) -> Block:
         for name in names:
             low, high = day.interval_90[name]
             cells.append(f"{day.median[name]:.3g} ({low:.3g} to {high:.3g})")
-        rows.append(
-            (f"{day.time_utc:%Y-%m-%d %H:%M}", ", ".join(record.name for record in day.records), *cells)
-        )
+        rows.append((f"{day.time_utc:%Y-%m-%d %H:%M}", str(day.records), day.status, *cells))
     return Table(
         "Median and 90 % interval of every parameter after each day.",
-        ("time (UTC)", "records", *units),
+        ("time (UTC)", "records", "posterior", *units),
         tuple(rows),
-        text_columns=2,
+        text_columns=3,
     )

@@ -11,6 +11,8 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from math import floor, log
 
+import numpy as np
+
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import RealPole
@@ -123,9 +125,9 @@ def _operation(seen: Observation) -> Operation:
         for number, (mode, _) in sorted(seen.modes.items())
         if mode.status.is_a_mode
     }
-    rates: dict[int, RateSums] = {}
+    rates: dict[str, RateSums] = {}
     for pole in seen.identification.real_poles:
-        w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole)
+        w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole, seen)
         own = RateSums(int(bin_ not in rates), whole(w), whole(w * x), whole(w * x * x))
         rates[bin_] = rates.get(bin_, RateSums()).plus(own)
     return Operation(conditions, modes, rates)
@@ -145,12 +147,14 @@ def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:
     for pole in seen.identification.real_poles:
         clarity = -pole.rate_std_rad_s / pole.rate_rad_s
         shape = ClearShape(clarity, seen.record_id, pole.rate_rad_s, sensors, pole.mode_shape)
-        shapes = clearer(shapes, {f"a{_bin(pole)}": shape})
+        shapes = clearer(shapes, {f"a{_bin(pole, seen)}": shape})
     return shapes
 
 
-def _bin(pole: RealPole) -> int:
-    return floor(log(pole.rate_rad_s) / RATE_BIN)
+def _bin(pole: RealPole, seen: Observation) -> str:
+    """Return what tells relaxations apart: about which rate, and the channel that moves most."""
+    channel = seen.identification.channels[int(np.argmax(np.abs(pole.mode_shape)))].name
+    return f"{floor(log(pole.rate_rad_s) / RATE_BIN)}:{channel}"
 
 
 def _since_midnight(time: datetime) -> float:

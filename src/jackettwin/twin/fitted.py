@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import hypot, pi
 
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.identification import ModalEstimate
 from jackettwin.twin.config import ModelError, TwinConfig
-from jackettwin.twin.measure import Measured, Sighting, fuse
+from jackettwin.twin.measure import mean_target
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
+from jackettwin.twin.state import ALL, TwinState
 from jackettwin.updating import Residuals, Target
 
 FloatArray = npt.NDArray[np.float64]
@@ -97,8 +100,18 @@ def target_modes(
     )
 
 
-def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...]) -> tuple[MeasuredMode, ...]:
+def recorded_modes(
+    config: TwinConfig,
+    state: TwinState,
+    labels: tuple[str, ...],
+    clearest: Callable[[int], tuple[ModalEstimate, float] | None] = lambda _: None,
+) -> tuple[MeasuredMode, ...]:
     """Return the modes of the records, fused.
+
+    Parameters
+    ----------
+    clearest : callable, optional
+        Gives a mode as the record shows it that is most like the model, and the MAC.
 
     Raises
     ------
@@ -106,7 +119,8 @@ def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...])
         If none of the records' modes is one of the model.
     """
     _check_labels(config, labels)
-    if not found.sightings:
+    totals = state.totals.get(ALL)
+    if totals is None or not totals.modes:
         raise InputError(
             "no identified mode resembles a mode of the model",
             file=config.path,
@@ -115,7 +129,8 @@ def recorded_modes(config: TwinConfig, found: Measured, labels: tuple[str, ...])
             remedy="check the sensors' places and directions, and the structure",
         )
     return tuple(
-        _measured_mode(config, mode, labels[mode - 1], seen) for mode, seen in found.sightings.items()
+        _measured_mode(config, mean_target(mode, total), labels[mode - 1], clearest(mode))
+        for mode, total in totals.modes.items()
     )
 
 
@@ -134,20 +149,21 @@ def _check_labels(config: TwinConfig, labels: tuple[str, ...]) -> None:
             )
 
 
-def _measured_mode(config: TwinConfig, mode: int, label: str, seen: tuple[Sighting, ...]) -> MeasuredMode:
-    mean = fuse(mode, seen)
-    best = max(seen, key=lambda s: s.mac)
-    chosen = mode in config.update.modes
+def _measured_mode(
+    config: TwinConfig, mean: Target, label: str, clearest: tuple[ModalEstimate, float] | None
+) -> MeasuredMode:
+    estimate, mac = clearest or (None, None)
+    chosen = mean.mode in config.update.modes
     return MeasuredMode(
-        mode=mode,
+        mode=mean.mode,
         label=label,
         frequency_hz=mean.frequency_hz,
         frequency_std_hz=mean.frequency_std_hz,
         damping_ratio=mean.damping_ratio,
         damping_ratio_std=mean.damping_ratio_std,
         correlation=mean.correlation,
-        estimate=best.estimate,
-        mac=best.mac,
+        estimate=estimate,
+        mac=mac,
         fits_frequency=chosen,
         fits_damping=chosen and config.update.fits_damping(label),
     )

@@ -2,37 +2,42 @@
 
 Records are fused in the data, where they are independent of each other; errors of the model are not, and
 enter once. The posterior after a day is that of the prior and of all records so far: what taking each day's
-posterior as the next day's prior comes to, without the loss of handing draws on.
+posterior as the next day's prior comes to, without the loss of handing draws on. Its cost does not depend on
+how many days there were, since the state holds their sums.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-from datetime import UTC
-from functools import partial
-from itertools import groupby
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.errors import InputError
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.structure import Assembly
-from jackettwin.twin.assembled import assembled
-from jackettwin.twin.config import PAIRED_MODES, TwinConfig
+from jackettwin.errors import InputError, located
+from jackettwin.records import read_record
+from jackettwin.records.identity import record_id
+from jackettwin.twin.advance import advance
+from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
-from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Day, Followed, RecordModes, since_first
-from jackettwin.twin.measure import Measured, measure
-from jackettwin.twin.model import placed_sensors
+from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
+from jackettwin.twin.many import failure
+from jackettwin.twin.model import TwinModel, twin_model
+from jackettwin.twin.observation import Observation
+from jackettwin.twin.observe import observe
 from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
-from jackettwin.updating import Problem, SupportModel, numbered_modes
+from jackettwin.twin.state import ALL, UNDATED, Conditions, TwinState, empty_state
+from jackettwin.twin.stored import digest
+from jackettwin.updating import Problem, SupportModel
 from jackettwin.updating.drift import Drift, find_drift
 from jackettwin.updating.joint import Growth
-from jackettwin.updating.posterior import sample_posterior
+from jackettwin.updating.laplace import laplace_draws
+from jackettwin.updating.solutions import search
+from jackettwin.updating.update import posterior_or_status
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -40,6 +45,8 @@ Each = Literal["day", "record"]
 
 _WHOLE_SPAN = 2.0
 """Prior standard deviation of the logarithm by which stiffness drifts over the whole time."""
+MOST_SPANS = 10
+"""Spans of days that a drift is fitted to: its cost is that of the tenth day, however many there are."""
 
 
 def follow_twin(
@@ -59,127 +66,132 @@ def follow_twin(
     each : {"day", "record"}
         Whether the records of a UTC day count together, or each on its own.
     prior : Followed, optional
-        To go on from; records that are in it already are left out.
+        To go on from; records that are in it already are left out, whatever their files are called.
     step : callable
         Told what is being done: once a record, then once a day.
 
     Raises
     ------
     InputError
-        If there is no new record, a record has no start time or precedes the prior, or the twin has changed.
-    NumericalError
-        If a posterior does not converge.
+        If there is no new record, a record has no start time, or the twin has changed.
     """
-    known = {record.name for day in prior.days for record in day.records} if prior is not None else set()
-    new = replace(config, records=tuple(path for path in config.records if path.stem not in known))
-    if not new.records:
+    if not config.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
-    assembly = assembled(config)
-    found = measure(new, assembly, step=step)
-    warnings = [f"left out: {one.problem}" for one in found.failed]
-    warnings += [f"{o.record.name}: {w}" for o in found.observations for w in o.identification.warnings]
-    followed = follow_modes(
-        config, assembly, _record_modes(new, found), law=law, each=each, prior=prior, step=step
-    )
-    return replace(followed, warnings=tuple(warnings))
+    model = twin_model(config)
+    observations, warnings = _observed(config, model, prior, step)
+    followed = follow_observations(config, model, observations, law=law, each=each, prior=prior, step=step)
+    return replace(followed, warnings=(*warnings, *followed.warnings))
 
 
-def follow_modes(
+def follow_observations(
     config: TwinConfig,
-    assembly: Assembly,
-    records: Sequence[RecordModes],
+    model: TwinModel,
+    observations: Iterable[Observation],
     *,
     law: str | None = None,
     each: Each = "day",
     prior: Followed | None = None,
     step: Callable[[str], None] = lambda _: None,
 ) -> Followed:
-    """Return what is known after each day, from the modes that records show; see :func:`follow_twin`."""
-    past = () if prior is None else prior.days
-    batches = _batches(config, sorted(records, key=lambda r: r.time_utc), each, past)
-    known = [record for day in past for record in day.records]
-    everything = [*known, *(record for batch in batches for record in batch)]
-    numbered = numbered_modes(assembly, PAIRED_MODES)
-    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
-    wind = mean_wind(config, _measured(everything)) if prior is None else prior.wind_m_s
-    law = law or (config.update.laws[0] if prior is None else prior.law)
-    rotor = rotor_damping(config, assembly, numbered, wind)
-    evidence = partial(_evidence, config, assembly, rotor, labels, wind)
-    at_last = evidence(everything)
-    if at_last.relaxations:
-        relaxing(config, (law,))
-    model = law_model(config, at_last, law)
-    parameters = model_problem(config, at_last, model).parameters
-    if prior is not None:
-        _agree(config, prior, law, model, [p.name for p in parameters])
-    days = past
-    for batch in batches:
-        step(f"update after {batch[-1].name}")
-        known = [*known, *batch]
-        now = evidence(known)
-        reaching = model.reaching(max(m for r, _ in now.states.values() for m in r.modes))
-        days = (*days, _known_after(config, batch, model_problem(config, now, reaching)))
-    return Followed(
-        name=config.name,
-        law=law,
-        reference_hz=model.reference_hz,
-        wind_m_s=wind,
-        units={p.name: p.unit for p in parameters},
-        days=days,
-        drift=_drift(config, model, days, labels, wind),
-        warnings=(),
-    )
-
-
-def _record_modes(config: TwinConfig, found: Measured) -> list[RecordModes]:
-    """Return the modes of every record."""
-    records = []
-    for i, seen in enumerate(found.observations):
-        start = seen.record.start_utc
-        if start is None:
+    """Return what is known after each day, from what records show; see :func:`follow_twin`."""
+    ordered = sorted(observations, key=lambda seen: (_start(seen), seen.record_id))
+    state = empty_state(model) if prior is None else prior.state
+    moments, findings = [], []
+    for observation in ordered:
+        if observation.start_utc is None:
             raise InputError(
                 "a record without a start cannot be followed in time",
                 file=config.path,
                 field="records",
-                value=seen.record.name,
+                value=observation.name,
                 remedy="give start_utc in the record's description",
             )
-        records.append(
-            RecordModes(
-                seen.record.name,
-                start,
-                found.of_record(i),
-                placed_sensors(config.sensors, seen.record),
-                found.relaxations[i],
-            )
-        )
-    return records
-
-
-def _batches(
-    config: TwinConfig, records: list[RecordModes], each: Each, past: tuple[Day, ...]
-) -> list[tuple[RecordModes, ...]]:
-    """Return the new records of each day."""
-    if past and records[0].time_utc < past[-1].time_utc:
-        raise InputError(
-            "a record precedes the last day of the prior",
-            file=config.path,
-            field="records",
-            value=records[0].name,
-            allowed=f"starts from {past[-1].time_utc.isoformat()} on",
-            remedy="follow all records anew, without the prior",
-        )
+        before = state
+        state, found = advance(state, observation)
+        findings += [str(finding) for finding in found]
+        if each == "record" and state is not before:
+            moments.append((observation, state))
+    if ALL not in state.totals:
+        raise InputError("no new records to follow", file=config.path, field="records", value=[])
+    question = _question(config, model, state, law, prior)
     if each == "record":
-        return [(record,) for record in records]
-    return [tuple(day) for _, day in groupby(records, key=lambda r: r.time_utc.astimezone(UTC).date())]
+        known = () if prior is None else prior.days
+        days = (*known, *(question.after_record(seen, then, step) for seen, then in moments))
+    else:
+        days = question.after_days(state, () if prior is None else prior.days, step)
+    return Followed(
+        name=config.name,
+        law=question.support.family.name,
+        reference_hz=question.support.reference_hz,
+        wind_m_s=question.wind,
+        units=question.units,
+        days=days,
+        drift=question.drift(state, days),
+        state=state,
+        warnings=tuple(findings),
+    )
 
 
-def _states(
-    config: TwinConfig, records: Sequence[RecordModes], labels: tuple[str, ...], wind: float | None
-) -> States:
+def _observed(
+    config: TwinConfig, model: TwinModel, prior: Followed | None, step: Callable[[str], None]
+) -> tuple[list[Observation], tuple[str, ...]]:
+    """Return what the records show that the prior does not know, and what is worth saying of them."""
+    known = set() if prior is None else {own for day in prior.state.days.values() for own in day.records}
+    observations: list[Observation] = []
+    warnings: list[str] = []
+    new = 0
+    first: Exception | None = None
+    for path in config.records:
+        step(f"identify {path.name}")
+        try:
+            record = read_record(path)
+            if record_id(record) in known:
+                continue
+            new += 1
+            with located(file=path):
+                observations.append(observe(record, model))
+        except Exception as error:  # of many records, one that fails must not stop the others
+            if not path.exists():
+                raise
+            first = first or error
+            warnings.append(f"left out: {failure(path, error).problem}")
+    if first is not None and not observations:
+        raise first
+    if not new:
+        names = [path.name for path in config.records]
+        raise InputError("no new records to follow", file=config.path, field="records", value=names)
+    for one in observations:
+        warnings += [f"{one.name}: {finding}" for finding in one.findings if finding.severity != "info"]
+    return observations, tuple(warnings)
+
+
+def _question(
+    config: TwinConfig, model: TwinModel, state: TwinState, law: str | None, prior: Followed | None
+) -> _Question:
+    """Return what is asked of every day, fixed by the last one."""
+    wind = mean_wind(config, state.until(next(iter(state.days)))) if prior is None else prior.wind_m_s
+    rotor = rotor_damping(config, model.structure, model.modes, wind)
+    law = law or (config.update.laws[0] if prior is None else prior.law)
+    evidence = _evidence(config, model, rotor, wind, state)
+    if evidence.relaxations:
+        relaxing(config, (law,))
+    question = _Question(config, model, wind, rotor, law_model(config, evidence, law))
+    if prior is not None:
+        _agree(config, prior, law, question)
+    return question
+
+
+def _evidence(
+    config: TwinConfig, model: TwinModel, rotor: RotorDamping, wind: float | None, state: TwinState
+) -> Evidence:
+    """Return what some records say, as a law is fitted to it."""
+    relaxations = measured_relaxations(config, state)
+    return Evidence(model.structure, state, _states(config, model, state, wind), rotor, relaxations)
+
+
+def _states(config: TwinConfig, model: TwinModel, state: TwinState, wind: float | None) -> States:
     """Return the data of some records by operating state."""
-    found = _measured(records)
-    measured = recorded_modes(config, found, labels)
+    measured = recorded_modes(config, state, model.labels)
     fitted = residuals(config, measured)
     if fitted.relative:
         raise InputError(
@@ -189,73 +201,135 @@ def _states(
             value=config.update.weighting,
             allowed="auto or covariance",
         )
-    return operating_states(config, measured, found, fitted, wind)
+    return operating_states(config, measured, state, fitted, wind)
 
 
-def _measured(records: Sequence[RecordModes]) -> Measured:
-    modes = sorted({mode for record in records for mode in record.sightings})
-    sightings = {m: tuple(r.sightings[m] for r in records if m in r.sightings) for m in modes}
-    sensors = {sensor.channel: sensor for record in reversed(records) for sensor in record.sensors}
-    relaxations = tuple(record.relaxations for record in records)
-    return Measured((), tuple(sensors.values()), sightings, (), relaxations)
+@dataclass(frozen=True)
+class _Question:
+    """What is asked of the state after each day."""
+
+    config: TwinConfig
+    model: TwinModel
+    wind: float | None
+    rotor: RotorDamping
+    support: SupportModel
+
+    @property
+    def units(self) -> dict[str, str]:
+        return {p.name: p.unit for p in self.support.parameters}
+
+    def after_days(
+        self, state: TwinState, known: Sequence[Known], step: Callable[[str], None]
+    ) -> tuple[Known, ...]:
+        """Return what is known after each day: what is out of date is estimated anew, nothing else."""
+        before, days = {day.date: day for day in known}, []
+        running = replace(state, days={}, totals={}, clearest={})
+        for date_, day in state.days.items():
+            running = running.with_day(date_, day)
+            old = before.get(date_)
+            if not running.totals[ALL].modes:
+                continue
+            if old is not None and old.evidence == self._identity(running):
+                days.append(old)
+                continue
+            step(f"update after {date_}")
+            time = day.time_utc
+            if date_ != UNDATED and time is not None:
+                days.append(self._known(running, Known(date_, time, len(day.records), "", {}, {})))
+        return tuple(days)
+
+    def after_record(self, seen: Observation, state: TwinState, step: Callable[[str], None]) -> Known:
+        """Return what is known after one record."""
+        if seen.start_utc is None:
+            raise ValueError("a record that is followed has a start")
+        step(f"update after {seen.name}")
+        time = seen.start_utc.astimezone(UTC)
+        return self._known(state, Known(time.isoformat(), time, 1, "", {}, {}))
+
+    def _known(self, state: TwinState, moment: Known) -> Known:
+        """Return the moment with what the records up to then say."""
+        evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
+        highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
+        problem = model_problem(self.config, evidence, self.support.reaching(highest))
+        log_theta, status = _draws(self.config, problem)
+        names = [p.name for p in problem.parameters]
+        low, median, high = np.exp(np.quantile(log_theta, [0.05, 0.5, 0.95], axis=0))
+        return replace(
+            moment,
+            evidence=self._identity(state),
+            median=dict(zip(names, median.tolist(), strict=True)),
+            interval_90=dict(zip(names, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
+            status=status,
+        )
+
+    def _identity(self, state: TwinState) -> str:
+        """Return the identity of everything that an estimate follows from."""
+        return digest([state.totals, state.clearest, self.wind, self.support.family.name, self.units])
+
+    def drift(self, state: TwinState, days: Sequence[Known]) -> Drift | None:
+        """Return the slope of all stiffness through the frequencies and damping of spans of days."""
+        if len(days) < FEWEST_DAYS:
+            return None
+        config = self.config
+        exact = replace(config, update=replace(config.update, model_errors=()))
+        states: States = {}
+        times: dict[str, float] = {}
+        for i, span in enumerate(_spans(state)):
+            t = _mean_time(span, days[0].time_utc)
+            for name, (data, factors) in _states(exact, self.model, span, self.wind).items():
+                said = span.totals[ALL].conditions
+                states[f"{i}: {name}"] = (data, factors or _usual(config, said, self.wind))
+                times[f"{i}: {name}"] = t
+        growing = tuple(p.name for p in self.support.parameters if p.unit == STIFFNESS)
+        growth = Growth(growing, times, _WHOLE_SPAN / float(since_first([d.time_utc for d in days])[-1]))
+        errors = _model_errors(config, self.model.labels)
+        problem = tied_problem(config, self.support, states, errors=errors, growth=growth)
+        z = [days[-1].median.get(p.name, 1.0) for p in problem.parameters[:-1]]
+        return find_drift(problem, np.log(z))
 
 
-def _evidence(
-    config: TwinConfig,
-    assembly: Assembly,
-    rotor: RotorDamping,
-    labels: tuple[str, ...],
-    wind: float | None,
-    records: Sequence[RecordModes],
-) -> Evidence:
-    """Return what some records say, as a law is fitted to it."""
-    found = _measured(records)
-    relaxations = measured_relaxations(config, found)
-    states = _states(config, records, labels, wind)
-    return Evidence(assembly, found, states, rotor, relaxations)
+def _draws(config: TwinConfig, problem: Problem) -> tuple[FloatArray, str]:
+    """Return draws of ln θ and ``"ok"``; those of Laplace's method, and why, if there is no posterior."""
+    how = config.update
+    posterior, status = posterior_or_status(
+        problem, sampler=how.sampler, particles=how.particles, seed=how.seed
+    )
+    if posterior is not None:
+        return posterior.log_theta, status
+    found = search(problem, starts=how.starts, seed=how.seed)
+    return laplace_draws(problem, found.solutions[0].theta, seed=how.seed), status
 
 
-def _known_after(config: TwinConfig, batch: tuple[RecordModes, ...], problem: Problem) -> Day:
-    posterior = sample_posterior(problem, particles=config.update.particles, seed=config.update.seed)
-    names = [p.name for p in problem.parameters]
-    median = np.exp(np.median(posterior.log_theta, axis=0))
-    interval = {n: (float(a), float(b)) for n, (a, b) in zip(names, posterior.interval(), strict=True)}
-    return Day(batch, dict(zip(names, median.tolist(), strict=True)), interval)
+def _spans(state: TwinState) -> list[TwinState]:
+    """Return the days in spans of 1, 2, 4, … days, ``MOST_SPANS`` at most, those with modes."""
+    dates = [own for own in state.days if own != UNDATED]
+    days = {own: date.fromisoformat(own).toordinal() for own in dates}
+    width = 1
+    while len({ordinal // width for ordinal in days.values()}) > MOST_SPANS:
+        width *= 2
+    groups: dict[int, list[str]] = {}
+    for own, ordinal in days.items():
+        groups.setdefault(ordinal // width, []).append(own)
+    spans = [
+        replace(state, days={own: state.days[own] for own in group}).until(group[-1])
+        for group in groups.values()
+    ]
+    return [span for span in spans if span.totals[ALL].modes]
 
 
-def _drift(
-    config: TwinConfig,
-    model: SupportModel,
-    days: tuple[Day, ...],
-    labels: tuple[str, ...],
-    wind: float | None,
-) -> Drift | None:
-    """Return the slope of all stiffness through the days' frequencies and damping, each by itself."""
-    if len(days) < FEWEST_DAYS:
-        return None
-    exact = replace(config, update=replace(config.update, model_errors=()))
-    at = since_first(days)
-    states: States = {}
-    times: dict[str, float] = {}
-    for i, (day, t) in enumerate(zip(days, at, strict=True)):
-        for name, (data, factors) in _states(exact, day.records, labels, wind).items():
-            states[f"{i}: {name}"] = (data, factors or _usual(config, day, wind))
-            times[f"{i}: {name}"] = float(t)
-    growing = tuple(p.name for p in model.parameters if p.unit == STIFFNESS)
-    growth = Growth(growing, times, _WHOLE_SPAN / float(at[-1]))
-    errors = _model_errors(config, labels)
-    problem = tied_problem(config, model, states, errors=errors, growth=growth)
-    start = [days[-1].median.get(p.name, 1.0) for p in problem.parameters[:-1]]
-    return find_drift(problem, np.log(start))
+def _mean_time(span: TwinState, first: datetime) -> float:
+    """Return when the records of a span were taken, in days after the first day."""
+    times = [(day.time_utc, len(day.records)) for day in span.days.values()]
+    known = [(time, weight) for time, weight in times if time is not None]
+    at = since_first([first, *(time for time, _ in known)])[1:]
+    return float(np.average(at, weights=[weight for _, weight in known]))
 
 
-def _usual(config: TwinConfig, day: Day, wind: float | None) -> dict[str, float]:
-    """Return the dashpots' factors in a day's mean wind."""
-    winds = [s.wind_m_s for record in day.records for s in record.sightings.values()]
-    known = [v for v in winds if v is not None]
-    if wind is None or not known or len(known) < len(winds):
+def _usual(config: TwinConfig, said: Conditions, wind: float | None) -> dict[str, float]:
+    """Return the dashpots' factors in the mean wind of some records."""
+    if wind is None or said.wind_m_s is None:
         return {}
-    return {name: float(np.mean(known)) / wind for name in config.update.dashpots}
+    return {name: said.wind_m_s / wind for name in config.update.dashpots}
 
 
 def _model_errors(config: TwinConfig, labels: tuple[str, ...]) -> dict[str, float]:
@@ -270,8 +344,9 @@ def _model_errors(config: TwinConfig, labels: tuple[str, ...]) -> dict[str, floa
     return errors
 
 
-def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel, names: list[str]) -> None:
+def _agree(config: TwinConfig, prior: Followed, law: str, question: _Question) -> None:
     """Refuse a prior of another structure, law or set of parameters."""
+    model, names = question.support, list(question.units)
     same = abs(prior.reference_hz / model.reference_hz - 1.0) < 1e-6
     if not same or prior.law != law or list(prior.units) != names:
         raise InputError(
@@ -282,3 +357,7 @@ def _agree(config: TwinConfig, prior: Followed, law: str, model: SupportModel, n
             allowed=f"{law}: {', '.join(names)}; {model.reference_hz:.6g} Hz",
             remedy="follow all records anew, without the prior",
         )
+
+
+def _start(seen: Observation) -> float:
+    return float("-inf") if seen.start_utc is None else seen.start_utc.timestamp()

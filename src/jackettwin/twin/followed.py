@@ -1,17 +1,16 @@
-"""A twin followed through time: what is known after each day, and where the next one starts."""
+"""A twin followed through time: its state, what is known after each day, and whether it drifts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.sensors import Sensor
-from jackettwin.twin.config import GivenRelaxation
-from jackettwin.twin.measure import Sighting
+from jackettwin.twin.state import TwinState
+from jackettwin.twin.stored import StoredSchema
 from jackettwin.updating.drift import Drift
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,38 +19,36 @@ FEWEST_DAYS = 3
 """Days with data before a drift is looked for."""
 STIFFNESS = "N/m"
 """Unit of the parameters that may drift."""
+SECONDS_A_DAY = 86400.0
 
 
 @dataclass(frozen=True)
-class RecordModes:
-    """The model's modes and the real poles seen in one record; ``sensors`` are where its channels sit."""
-
-    name: str
-    time_utc: datetime
-    sightings: Mapping[int, Sighting]
-    sensors: tuple[Sensor, ...] = ()
-    relaxations: tuple[GivenRelaxation, ...] = ()
-
-
-@dataclass(frozen=True)
-class Day:
-    """Records of one day, and what all records up to then say.
+class Known:
+    """What all records up to the end of a day say of the parameters.
 
     Attributes
     ----------
+    date : str
+        UTC, ISO.
+    time_utc : datetime
+        The middle of the day's records.
+    records : int
+        Of the day.
+    evidence : str
+        Identity of the state it was estimated from: another one makes it out of date.
     median : {parameter: value}
     interval_90 : {parameter: (low, high)}
+    status : str
+        ``"ok"``, or why there is no posterior; then median and interval are Laplace's.
     """
 
-    records: tuple[RecordModes, ...]
+    date: str
+    time_utc: datetime
+    records: int
+    evidence: str
     median: Mapping[str, float]
     interval_90: Mapping[str, tuple[float, float]]
-
-    @property
-    def time_utc(self) -> datetime:
-        """The middle of its records."""
-        times = [record.time_utc for record in self.records]
-        return min(times) + 0.5 * (max(times) - min(times))
+    status: str = "ok"
 
 
 @dataclass(frozen=True)
@@ -60,6 +57,7 @@ class Followed:
 
     Attributes
     ----------
+    law : str
     reference_hz : float
         The first frequency on pinned feet: it tells a changed structure.
     wind_m_s : float or None
@@ -68,6 +66,8 @@ class Followed:
     days : in the order of time
     drift : Drift or None
         Of all stiffness together, from the first day on; None before the third day.
+    state : TwinState
+        Of all records.
     warnings : sentences
     """
 
@@ -76,9 +76,10 @@ class Followed:
     reference_hz: float
     wind_m_s: float | None
     units: Mapping[str, str]
-    days: tuple[Day, ...]
+    days: tuple[Known, ...]
     drift: Drift | None
-    warnings: tuple[str, ...]
+    state: TwinState
+    warnings: tuple[str, ...] = field(default=())
 
     @property
     def stiffness(self) -> tuple[str, ...]:
@@ -88,7 +89,7 @@ class Followed:
     @property
     def days_since_first(self) -> FloatArray:
         """Times of the days [d], (n_days,)."""
-        return since_first(self.days)
+        return since_first([day.time_utc for day in self.days])
 
     @property
     def statement(self) -> str:
@@ -104,6 +105,10 @@ class Followed:
         )
 
 
-def since_first(days: Sequence[Day]) -> FloatArray:
-    """Return the times of days after the first [d], (n_days,)."""
-    return np.array([(day.time_utc - days[0].time_utc).total_seconds() / 86400.0 for day in days])
+def since_first(times: Sequence[datetime]) -> FloatArray:
+    """Return times after the first [d], (n_times,)."""
+    return np.array([(time - times[0]).total_seconds() / SECONDS_A_DAY for time in times])
+
+
+FOLLOWED = StoredSchema("followed", Followed)
+"""``followed.json``."""

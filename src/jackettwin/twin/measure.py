@@ -1,4 +1,4 @@
-"""Records to measured modes that carry the model's numbers and labels."""
+"""The records of a twin, observed: what each shows, and the state they make together."""
 
 from __future__ import annotations
 
@@ -7,30 +7,20 @@ from dataclasses import dataclass
 from math import inf
 
 from jackettwin.errors import located
-from jackettwin.identification import Identification, ModalEstimate
-from jackettwin.identification.many_records.fusion import average
-from jackettwin.identification.many_records.sightings import sightings as columns
+from jackettwin.findings import Finding
+from jackettwin.identification import ModalEstimate
 from jackettwin.records import Record, read_record
 from jackettwin.response.sensors import Sensor
-from jackettwin.structure import Assembly
-from jackettwin.twin.config import GivenRelaxation, TwinConfig
+from jackettwin.twin.advance import advance_all
+from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.many import Failed, failure
-from jackettwin.twin.model import TwinModel, twin_model
+from jackettwin.twin.model import TwinModel
+from jackettwin.twin.observation import Observation
 from jackettwin.twin.observe import examined, observed
+from jackettwin.twin.state import TwinState, empty_state
+from jackettwin.twin.sums import ModeTotal, average
 from jackettwin.updating import Target
-from jackettwin.updating.pairing import Held
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """A model mode seen in one record; ``channels`` are those of its shape."""
-
-    estimate: ModalEstimate
-    mac: float
-    duration_s: float
-    wind_m_s: float | None = None
-    channels: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -40,73 +30,60 @@ class Measured:
     Attributes
     ----------
     observations : one a record
-    sensors : tuple of Sensor
-    sightings : {mode number from 1: its sightings, one a record at most}
-    numbers : for each record, the mode number of each identified mode; None if the model lacks it
-    relaxations : for each record, the real poles it shows
-    turned : what the model's shapes say against the signs of sensors
+    state : TwinState
+        Which all of them make.
+    examinations : one a record
+        For figures; empty where none are drawn.
+    findings : tuple of Finding
+        Of making the state: records that are known already, or overlap.
     failed : records that could not be identified, and why; the others go on without them
-    held : for each record, what each identified mode was held against in the model
     feet_stiffness_n_m : of the model's feet on which it is most like the measured modes; inf: as numbered
     """
 
-    observations: tuple[Examination, ...]
-    sensors: tuple[Sensor, ...]
-    sightings: dict[int, tuple[Sighting, ...]]
-    numbers: tuple[tuple[int | None, ...], ...]
-    relaxations: tuple[tuple[GivenRelaxation, ...], ...] = ()
-    turned: tuple[str, ...] = ()
+    observations: tuple[Observation, ...]
+    state: TwinState
+    examinations: tuple[Examination, ...] = ()
+    findings: tuple[Finding, ...] = ()
     failed: tuple[Failed, ...] = ()
-    held: tuple[tuple[Held, ...], ...] = ()
     feet_stiffness_n_m: float = inf
 
-    def of_record(self, i: int) -> dict[int, Sighting]:
-        """Return the modes seen in one record, {mode number: sighting}."""
-        own = {id(mode) for mode in self.observations[i].identification.modes}
-        return {m: s for m, seen in self.sightings.items() for s in seen if id(s.estimate) in own}
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Where the channels of the first record sit."""
+        return self.observations[0].sensors if self.observations else ()
+
+    def clearest(self, mode: int) -> tuple[ModalEstimate, float] | None:
+        """Return a mode as the record most like the model shows it, and the MAC; None if none does."""
+        shown = [one.modes[mode] for one in self.observations if mode in one.modes]
+        best = max(shown, key=lambda pair: pair[1].mac, default=None)
+        return None if best is None else (best[0], best[1].mac)
 
 
 def measure(
-    config: TwinConfig,
-    assembly: Assembly,
-    *,
-    compare: bool = False,
-    step: Callable[[str], None],
+    config: TwinConfig, model: TwinModel, *, compare: bool = False, step: Callable[[str], None]
 ) -> Measured:
-    """Return the measured modes of every record of a twin, paired with the numbered modes of its model.
+    """Return what every record of a twin shows, and the state that they make.
+
+    The modes of all records are recognised on the same feet, those most like all of them.
 
     Raises
     ------
     InputError
         If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
-    model = twin_model(config, assembly)
     records, examinations, failed = _examined(config, model, compare=compare, step=step)
     with located(file=config.path):
         feet = model.likest_feet(examinations)
         observations = [
             observed(record, seen, model, feet) for record, seen in zip(records, examinations, strict=True)
         ]
-    sightings: dict[int, list[Sighting]] = {}
-    for one in observations:
-        names = tuple(c.name for c in one.identification.channels)
-        for mode, (estimate, known) in one.modes.items():
-            sighting = Sighting(estimate, known.mac, one.duration_s, one.wind_m_s, names)
-            sightings.setdefault(mode, []).append(sighting)
+    state, findings = advance_all(empty_state(model), observations)
     return Measured(
+        tuple(observations),
+        state,
         tuple(examinations),
-        observations[0].sensors,
-        {mode: tuple(seen) for mode, seen in sorted(sightings.items())},
-        tuple(tuple(None if r is None else r.mode for r in one.recognised) for one in observations),
-        tuple(_relaxations(one.identification) for one in observations),
-        tuple(
-            f"{one.name}: {f}"
-            for one in observations
-            for f in one.findings
-            if f.code == "sensor_against_model"
-        ),
+        findings,
         failed,
-        tuple(one.held for one in observations),
         inf if feet is None else feet.stiffness_n_m,
     )
 
@@ -138,20 +115,8 @@ def _examined(
     return records, examinations, tuple(failed)
 
 
-def _relaxations(found: Identification) -> tuple[GivenRelaxation, ...]:
-    names = [channel.name for channel in found.channels]
-    return tuple(
-        GivenRelaxation(
-            pole.rate_rad_s,
-            pole.rate_std_rad_s,
-            dict(zip(names, map(complex, pole.mode_shape), strict=True)),
-        )
-        for pole in found.real_poles
-    )
-
-
-def fuse(mode: int, sightings: tuple[Sighting, ...]) -> Target:
-    """Return one mode over records as a target, averaged as ``identification.fuse`` does."""
-    mean = average(columns([s.estimate for s in sightings], [s.duration_s for s in sightings]))
+def mean_target(mode: int, total: ModeTotal) -> Target:
+    """Return the mean of one mode over all records as a target."""
+    mean = average(total)
     f, zeta = mean.frequency_hz, mean.damping_ratio
     return Target(mode, f, f * mean.log_std[0], zeta, zeta * mean.log_std[1], mean.correlation)

@@ -78,6 +78,20 @@ class TwinModel:
             }
         return digest(parts)
 
+    @property
+    def structure(self) -> Assembly:
+        """The assembled structure of a model that has one."""
+        if self.assembly is None:
+            raise ValueError("this model has no structure")
+        return self.assembly
+
+    @property
+    def modes(self) -> UndampedModes:
+        """The numbered modes of a model that has a structure."""
+        if self.numbered is None:
+            raise ValueError("this model has no structure")
+        return self.numbered
+
     def settings_hash(self, record: str) -> str:
         """Identity of how a record of this name is identified: settings and the picks that name it."""
         picks = [pick for pick in self.picks if pick.record in (None, record)]
@@ -95,11 +109,9 @@ class TwinModel:
         InputError
             If a sensor sits where the structure has no place.
         """
-        if self.assembly is None:
-            raise ValueError("a model without a structure has no motion")
         by_channel = {s.channel: s for s in placed_sensors(self.sensors, seen.record)}
         return observation_matrix(
-            self.assembly, tuple(by_channel[c.name] for c in seen.identification.channels)
+            self.structure, tuple(by_channel[c.name] for c in seen.identification.channels)
         )
 
     def likest_feet(self, examinations: Sequence[Examination]) -> Feet | None:

@@ -84,11 +84,18 @@ def cautions(
     lines = []
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
-        for seen in found.observations:
+        lines += [str(finding) for finding in found.findings]
+        for seen in found.examinations:
             name = seen.record.name
             lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
             lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        lines += [*found.turned, *_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
+        lines += [
+            f"{one.name}: {finding}"
+            for one in found.observations
+            for finding in one.findings
+            if finding.code == "sensor_against_model"
+        ]
+        lines += [*_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
         if u.best.locked_damper:
@@ -107,7 +114,7 @@ def cautions(
 
 
 def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[MeasuredMode, ...]) -> list[str]:
-    winds = [s.wind_m_s for seen in found.sightings.values() for s in seen if s.wind_m_s]
+    winds = [one.wind_m_s for one in found.observations if one.wind_m_s]
     fitted = [m.label for m in measured if m.fits_damping]
     if config.update.dashpots or not winds or not fitted:
         return []
@@ -153,9 +160,9 @@ def _dashpots(config: TwinConfig, u: Update) -> list[int]:
 def _strangers(found: Measured, labels: tuple[str, ...]) -> list[str]:
     """Return a line for every identified mode without a counterpart in the model, with the reason."""
     reasons = (
-        (seen.record.name, unpaired_finding(mode, against, labels))
-        for seen, held in zip(found.observations, found.held, strict=False)
-        for mode, against in zip(seen.identification.modes, held, strict=True)
+        (one.name, unpaired_finding(mode, against, labels))
+        for one in found.observations
+        for mode, against in zip(one.identification.modes, one.held, strict=True)
     )
     return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
 

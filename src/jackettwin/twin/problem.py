@@ -12,10 +12,10 @@ from jackettwin.soil.files import read_support
 from jackettwin.soil.support import Support
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.measure import Measured
-from jackettwin.twin.relaxations import relaxation_targets
+from jackettwin.twin.relaxations import placed, relaxation_targets
 from jackettwin.twin.result import MeasuredRelaxation
 from jackettwin.twin.rotor import RotorDamping, States
+from jackettwin.twin.state import ALL, TwinState
 from jackettwin.twin.water import in_the_records_sea, water_effects
 from jackettwin.updating import Problem, family, joint, support_model
 from jackettwin.updating.joint import Growth
@@ -33,7 +33,7 @@ class Evidence:
     Attributes
     ----------
     assembly : Assembly
-    found : Measured or None
+    state : TwinState or None
         What the records say; None if the twin file gives targets.
     states : {operating state: residuals and factors of the parameters}
     rotor : RotorDamping
@@ -41,7 +41,7 @@ class Evidence:
     """
 
     assembly: Assembly
-    found: Measured | None
+    state: TwinState | None
     states: States
     rotor: RotorDamping
     relaxations: tuple[MeasuredRelaxation, ...] = ()
@@ -64,7 +64,7 @@ def model_problem(config: TwinConfig, evidence: Evidence, model: SupportModel) -
         config,
         model,
         evidence.relaxations,
-        sensors=() if evidence.found is None else evidence.found.sensors,
+        sensors=() if evidence.state is None else placed(evidence.state),
         relative=any(residuals.relative for residuals, _ in evidence.states.values()),
     )
     shapes = measured_shapes(config, model, evidence)
@@ -106,8 +106,8 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
     """
     chosen, given, states = family(law), config.update, evidence.states
     with located(file=config.path):
-        records = () if evidence.found is None else [seen.record for seen in evidence.found.observations]
-        water = water_effects(in_the_records_sea(config.water, records), evidence.assembly, given.water)
+        waves = None if evidence.state is None else evidence.state.totals[ALL].conditions.waves
+        water = water_effects(in_the_records_sea(config.water, waves), evidence.assembly, given.water)
     nuisance = NuisanceParameters(
         given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water
     )
@@ -148,29 +148,18 @@ def _heads(config: TwinConfig) -> Support | None:
 
 def measured_shapes(config: TwinConfig, model: SupportModel, evidence: Evidence) -> tuple[ShapeTarget, ...]:
     """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
-    found = evidence.found
+    state = evidence.state
     first, _ = next(iter(evidence.states.values()))
-    if found is None:
+    if state is None:
         return _given_shapes(config, model, first)
     if config.update.mac_std is None or first.relative:
         return ()
-    by_channel = {sensor.channel: sensor for sensor in found.sensors}
-    shapes = []
-    for mode in first.modes:
-        best = max(found.sightings[mode], key=lambda seen: seen.mac)
-        places = tuple(by_channel[name] for name in best.channels if name in by_channel)
-        if places and len(places) == best.estimate.mode_shape.size:
-            shapes.append(
-                ShapeTarget.seen(
-                    model,
-                    mode,
-                    best.estimate.frequency_hz,
-                    places,
-                    best.estimate.mode_shape,
-                    config.update.mac_std,
-                )
-            )
-    return tuple(shapes)
+    std = config.update.mac_std
+    best = {mode: state.clearest[str(mode)] for mode in first.modes if str(mode) in state.clearest}
+    return tuple(
+        ShapeTarget.seen(model, mode, one.frequency_hz, one.sensors, one.shape, std)
+        for mode, one in best.items()
+    )
 
 
 def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> tuple[ShapeTarget, ...]:

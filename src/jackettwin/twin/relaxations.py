@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
@@ -13,28 +13,32 @@ from jackettwin.identification.mac import mac
 from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
-from jackettwin.twin.measure import Measured
 from jackettwin.twin.result import MeasuredRelaxation
+from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums, TwinState
+from jackettwin.twin.sums import UNIT
 from jackettwin.updating import SupportModel, family
 from jackettwin.updating.relaxations import RelaxationTarget
 
 _LEAST_SHARE = 0.5
 """A relaxation that fewer of the records show is left out."""
 
-Seen = dict[int, GivenRelaxation]
-"""One relaxation, {record: as it shows it}."""
 
-
-def measured_relaxations(config: TwinConfig, found: Measured | None) -> tuple[MeasuredRelaxation, ...]:
+def measured_relaxations(config: TwinConfig, state: TwinState | None) -> tuple[MeasuredRelaxation, ...]:
     """Return the relaxations of the twin file, or those that its records share; the slowest first."""
-    if found is None:
+    if state is None:
         fused = [_as_measured(given, records=0) for given in config.relaxations]
     else:
-        least = _LEAST_SHARE * len(found.relaxations)
-        groups = _distinct(found.relaxations)
-        fused = [_as_measured(_fused(seen), len(seen)) for seen in groups if len(seen) >= least]
+        total = state.totals.get(ALL, OperationTotal())
+        n = total.conditions.records
+        groups = _distinct(total.rates, state.clearest)
+        fused = [_fused(group, n) for group in groups if group.sums.n >= _LEAST_SHARE * n]
     ordered = sorted(fused, key=lambda one: one.rate_rad_s)
     return tuple(replace(one, name=f"a{i + 1}") for i, one in enumerate(ordered))
+
+
+def placed(state: TwinState) -> tuple[Sensor, ...]:
+    """Return where the channels of all shapes that a state keeps sit."""
+    return tuple({s.channel: s for shape in state.clearest.values() for s in shape.sensors}.values())
 
 
 def relaxation_targets(
@@ -78,42 +82,54 @@ def relaxing(config: TwinConfig, laws: tuple[str, ...]) -> tuple[str, ...]:
     return kept
 
 
-def _distinct(records: tuple[tuple[GivenRelaxation, ...], ...]) -> list[Seen]:
-    """Return the distinct relaxations of all records, each in one record once at most, the surest first."""
-    sightings = [(i, one) for i, shown in enumerate(records) for one in shown]
-    groups: list[Seen] = []
-    for record, one in sorted(sightings, key=lambda seen: _log_std(seen[1])):
-        apart = [np.inf if record in group else _apart(one, next(iter(group.values()))) for group in groups]
+@dataclass(frozen=True)
+class _Group:
+    """One relaxation over all records, and its clearest shape."""
+
+    sums: RateSums
+    shape: ClearShape | None
+
+
+def _distinct(rates: Mapping[str, RateSums], clearest: Mapping[str, ClearShape]) -> list[_Group]:
+    """Return the distinct relaxations: neighbouring rates of like shapes are one, the surest decides."""
+    groups: list[_Group] = []
+    for key, sums in sorted(rates.items(), key=lambda item: (-item[1].w, item[0])):
+        one = _Group(sums, clearest.get(f"a{key}"))
+        apart = [_apart(one, group) for group in groups]
         nearest = int(np.argmin(apart)) if groups else -1
         if groups and apart[nearest] < JOINED:
-            groups[nearest][record] = one
+            groups[nearest] = replace(groups[nearest], sums=groups[nearest].sums.plus(sums))
         else:
-            groups.append({record: one})
+            groups.append(one)
     return groups
 
 
-def _log_std(one: GivenRelaxation) -> float:
-    return (one.rate_std_rad_s or 0.0) / one.rate_rad_s
-
-
-def _apart(one: GivenRelaxation, other: GivenRelaxation) -> float:
+def _apart(one: _Group, other: _Group) -> float:
     """Return |Δ ln a| + 1 − MAC at the channels of both, as identification joins relaxations."""
-    common = [channel for channel in one.shape if channel in other.shape]
-    shapes = [np.array([given.shape[channel] for channel in common]) for given in (one, other)]
-    unlike = 1.0 - float(mac(*shapes)) if common else 0.0
-    return abs(float(np.log(one.rate_rad_s / other.rate_rad_s))) + unlike
+    unlike = 0.0
+    if one.shape is not None and other.shape is not None:
+        values = [dict(zip(_names(s), s.shape, strict=True)) for s in (one.shape, other.shape)]
+        common = [name for name in values[0] if name in values[1]]
+        shapes = [np.array([value[name] for name in common]) for value in values]
+        unlike = 1.0 - float(mac(*shapes)) if common else 0.0
+    return abs(one.sums.wx / one.sums.w - other.sums.wx / other.sums.w) + unlike
 
 
-def _fused(seen: Seen) -> GivenRelaxation:
+def _names(shape: ClearShape) -> tuple[str, ...]:
+    return tuple(sensor.channel for sensor in shape.sensors)
+
+
+def _fused(group: _Group, n_records: int) -> MeasuredRelaxation:
     """Return the mean of ln a weighted by precision, its scatter in the standard deviation (Birge 1932)."""
-    each = list(seen.values())
-    log_rate = np.log([one.rate_rad_s for one in each])
-    weight = np.array([_log_std(one) for one in each]) ** -2.0
-    mean = float(weight @ log_rate / weight.sum())
-    chi2 = float(weight @ (log_rate - mean) ** 2)
-    widened = max(1.0, chi2 / (len(each) - 1)) if len(each) > 1 else 1.0
-    rate = float(np.exp(mean))
-    return GivenRelaxation(rate, rate * float(np.sqrt(widened / weight.sum())), each[0].shape)
+    n, w, wx, wxx = group.sums
+    chi2 = (wxx * w - wx * wx) / w / UNIT
+    widened = max(1.0, chi2 / (n - 1)) if n > 1 else 1.0
+    rate = float(np.exp(wx / w))
+    std = rate * float(np.sqrt(widened * UNIT / w))
+    names, shape = (
+        ((), np.empty(0, complex)) if group.shape is None else (_names(group.shape), group.shape.shape)
+    )
+    return MeasuredRelaxation("", rate, std, names, shape, min(n, n_records))
 
 
 def _as_measured(one: GivenRelaxation, records: int) -> MeasuredRelaxation:

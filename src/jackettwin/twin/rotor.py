@@ -14,8 +14,9 @@ from jackettwin.loads.rotor import Rotor, linearise
 from jackettwin.response.modal import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.measure import Measured, Sighting, fuse
+from jackettwin.twin.measure import mean_target
 from jackettwin.twin.result import MeasuredMode
+from jackettwin.twin.state import ALL, OperationTotal, TwinState
 from jackettwin.updating import Residuals, Target
 from jackettwin.updating.nuisance_parameters import DASHPOTS
 
@@ -31,13 +32,12 @@ _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
 States = dict[str, tuple[Residuals, Mapping[str, float]]]
 
 
-def mean_wind(config: TwinConfig, found: Measured | None) -> float | None:
+def mean_wind(config: TwinConfig, state: TwinState | None) -> float | None:
     """Return the wind speed [m/s] that nacelle dashpots are stated at: the twin's, or the records' mean."""
     if config.update.wind_speed_m_s is not None:
         return config.update.wind_speed_m_s
-    winds = [] if found is None else [s.wind_m_s for seen in found.sightings.values() for s in seen]
-    known = [v for v in winds if v is not None]
-    return float(np.mean(known)) if known and len(known) == len(winds) else None
+    total = None if state is None else state.totals.get(ALL)
+    return None if total is None else total.conditions.wind_m_s
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def _per_wind(rotor: Rotor, shaft: str) -> FloatArray:
 def operating_states(
     config: TwinConfig,
     measured: tuple[MeasuredMode, ...],
-    found: Measured | None,
+    state: TwinState | None,
     residuals: Residuals,
     wind: float | None,
 ) -> States:
@@ -106,13 +106,14 @@ def operating_states(
     A parked rotor's damping is proportional to the wind (thin aerofoils at the same angle), so that one
     unknown serves every wind. The model's error stays where it is common to all winds: in the first state.
     """
-    if found is None or wind is None or residuals.relative or "c_side_side" not in config.update.dashpots:
+    if state is None or wind is None or residuals.relative or "c_side_side" not in config.update.dashpots:
         return {"": (residuals, {})}
     # fore-aft the rotor's drag is a small part: there its growth drowns in the records' scatter
     wanted = [m.mode for m in measured if m.fits_damping and m.label.startswith("side_side")]
     # a dashpot without the rotor's pattern touches the first modes alone
     touched = (1, 2) if config.update.rotor is None else (1, 2, 4, 5)
-    apart = [mode for mode in wanted if mode in touched and len(_winds(found.sightings[mode])) > 1]
+    winds = {name: (total, total.conditions.wind_m_s) for name, total in state.totals.items() if name != ALL}
+    apart = [mode for mode in wanted if mode in touched and _in_several_winds(mode, winds)]
     if not apart:
         return {"": (residuals, {})}
     common = tuple(
@@ -120,18 +121,19 @@ def operating_states(
         for t in residuals.targets
     )
     states: States = {"all winds": (Residuals(common, relative=False), {})}
-    for v in sorted({v for mode in apart for v in _winds(found.sightings[mode])}):
-        targets = []
-        for mode in apart:
-            seen = tuple(s for s in found.sightings[mode] if s.wind_m_s == v)
-            if seen:
-                targets.append(replace(fuse(mode, seen), frequency_hz=None, frequency_std_hz=None))
-        factors = {name: v / wind for name in config.update.dashpots}
-        states[f"{v:g} m/s"] = (Residuals(tuple(targets), relative=False), factors)
+    for name, (total, v) in sorted(winds.items(), key=lambda item: (item[1][1] or 0.0, item[0])):
+        targets = [
+            replace(mean_target(mode, total.modes[mode]), frequency_hz=None, frequency_std_hz=None)
+            for mode in apart
+            if mode in total.modes
+        ]
+        if targets and v is not None:
+            factors = {dashpot: v / wind for dashpot in config.update.dashpots}
+            states[name] = (Residuals(tuple(targets), relative=False), factors)
     return states
 
 
-def _winds(seen: tuple[Sighting, ...]) -> set[float]:
-    """Return the wind speeds of sightings; none if one is not known."""
-    winds = {s.wind_m_s for s in seen}
-    return set() if None in winds else {v for v in winds if v is not None}
+def _in_several_winds(mode: int, winds: Mapping[str, tuple[OperationTotal, float | None]]) -> bool:
+    """Tell whether a mode was seen in several states of operation, all of which say their wind."""
+    seen = [v for total, v in winds.values() if mode in total.modes]
+    return len(seen) > 1 and None not in seen

@@ -7,17 +7,16 @@ from collections.abc import Callable
 import numpy as np
 
 from jackettwin.errors import InputError
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.twin.assembled import assembled
-from jackettwin.twin.config import PAIRED_MODES, TwinConfig
+from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
 from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
-from jackettwin.updating import Update, numbered_modes, update
+from jackettwin.updating import Update, update
 
 
 def run_twin(
@@ -48,21 +47,20 @@ def run_twin(
         Or are out of the supports' reach.
     """
     step("assemble the structure")
-    assembly = assembled(config)
-    number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
-    numbered = numbered_modes(assembly, number)
-    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
-    found = measure(config, assembly, compare=compare, step=step) if config.records else None
+    model = twin_model(config)
+    assembly, numbered, labels = model.structure, model.modes, model.labels
+    found = measure(config, model, compare=compare, step=step) if config.records else None
+    state = None if found is None else found.state
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
         if found is None
-        else recorded_modes(config, found, labels)
+        else recorded_modes(config, found.state, labels, found.clearest)
     )
-    relaxations = measured_relaxations(config, found)
-    wind = mean_wind(config, found)
+    relaxations = measured_relaxations(config, state)
+    wind = mean_wind(config, state)
     fitted = residuals(config, measured, relaxations)
-    states = operating_states(config, measured, found, fitted, wind)
-    evidence = Evidence(assembly, found, states, rotor_damping(config, assembly, numbered, wind), relaxations)
+    states = operating_states(config, measured, state, fitted, wind)
+    evidence = Evidence(assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations)
     wanted = laws or config.update.laws
     updates = []
     for law in relaxing(config, wanted) if relaxations else wanted:
@@ -76,20 +74,22 @@ def run_twin(
         sensors=() if found is None else found.sensors,
         numbered=numbered,
         labels=labels,
-        observations=() if found is None else found.observations,
-        names=() if found is None else _names(found, labels),
+        observations=() if found is None else found.examinations,
+        names=() if found is None else _names(found),
         measured=measured,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
         assumptions=assumptions(config, measured, relaxations, wind),
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
-        held=() if found is None else found.held,
+        held=() if found is None else tuple(one.held for one in found.observations),
     )
 
 
-def _names(found: Measured, labels: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    return tuple(tuple("" if n is None else labels[n - 1] for n in numbers) for numbers in found.numbers)
+def _names(found: Measured) -> tuple[tuple[str, ...], ...]:
+    return tuple(
+        tuple("" if known is None else known.label for known in one.recognised) for one in found.observations
+    )
 
 
 def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:

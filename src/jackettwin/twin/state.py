@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from operator import add, neg
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,7 @@ import numpy.typing as npt
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.stored import StoredSchema, digest
-from jackettwin.twin.sums import ModeSums, ModeTotal, of_day
+from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -64,6 +64,13 @@ class Conditions(NamedTuple):
     def wind_m_s(self) -> float | None:
         """Mean wind speed, if every record says it."""
         return self.wind / self.windy if self.windy and self.windy == self.duration else None
+
+    @property
+    def waves(self) -> tuple[float, float] | None:
+        """Mean wave height [m] and period [s], if every record says them."""
+        if not self.waved or self.waved < self.records:
+            return None
+        return self.wave_height / UNIT / self.waved, self.wave_period / UNIT / self.waved
 
 
 class RateSums(NamedTuple):
@@ -112,7 +119,7 @@ class Operation:
 
     conditions: Conditions = Conditions()
     modes: Mapping[int, ModeSums] = field(default_factory=dict)
-    rates: Mapping[int, RateSums] = field(default_factory=dict)
+    rates: Mapping[str, RateSums] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -151,7 +158,7 @@ class OperationTotal:
 
     conditions: Conditions = Conditions()
     modes: Mapping[int, ModeTotal] = field(default_factory=dict)
-    rates: Mapping[int, RateSums] = field(default_factory=dict)
+    rates: Mapping[str, RateSums] = field(default_factory=dict)
 
     def plus(self, other: OperationTotal) -> OperationTotal:
         """Return the total of both; what became nothing is left out."""
@@ -287,7 +294,7 @@ def clearer(a: Mapping[str, ClearShape], b: Mapping[str, ClearShape]) -> dict[st
     }
 
 
-def _joined(a: Mapping[int, Sums], b: Mapping[int, Sums], none: Sums) -> dict[int, Sums]:
+def _joined(a: Mapping[Any, Sums], b: Mapping[Any, Sums], none: Sums) -> dict[Any, Sums]:
     return {key: a.get(key, none).plus(b.get(key, none)) for key in sorted({*a, *b})}
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.errors import InputError
@@ -14,7 +13,6 @@ from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.drag_damping import sea_drag_damping
 from jackettwin.loads.morison import MorisonPoints, morison_points
 from jackettwin.loads.water import Water, water_mass
-from jackettwin.records import Record
 from jackettwin.structure import Assembly
 
 _SPACING_M = 4.0
@@ -74,14 +72,11 @@ def water_effects(
     return effects
 
 
-def in_the_records_sea(water: WaterConfig | None, records: Sequence[Record]) -> WaterConfig | None:
-    """Return the water in the mean sea that all records state, unless the twin states one."""
-    seas = [(r.conditions.get("wave_height_m"), r.conditions.get("wave_period_s")) for r in records]
-    known = [(float(h), float(t)) for h, t in seas if h is not None and t is not None]
-    if water is None or water.sea is not None or not known or len(known) < len(seas):
+def in_the_records_sea(water: WaterConfig | None, waves: tuple[float, float] | None) -> WaterConfig | None:
+    """Return the water in the records' mean sea, (height [m], period [s]), unless the twin states one."""
+    if water is None or water.sea is not None or waves is None:
         return water
-    height, period = np.mean(known, axis=0)
-    return replace(water, sea=SeaState(float(height), float(period)))
+    return replace(water, sea=SeaState(*waves))
 
 
 def _points(water: WaterConfig, assembly: Assembly) -> MorisonPoints:

@@ -163,7 +163,7 @@ def update(
     if problem.weighted:
         if progress is not None:
             progress("posterior")
-        posterior, status = _posterior(problem, sampler, particles, seed)
+        posterior, status = posterior_or_status(problem, sampler=sampler, particles=particles, seed=seed)
         uncertainty = _uncertainty(problem, model, shown, best, posterior, status, seed)
     theta = _first(problem, np.log(best.theta)[None])[0]
     return Update(
@@ -229,8 +229,13 @@ def _uncertainty(
     )
 
 
-def _posterior(problem: Problem, sampler: Sampler, particles: int, seed: int) -> tuple[Posterior | None, str]:
-    """Return the posterior, with twice the draws if it or its evidence is not known with the first ones."""
+def posterior_or_status(
+    problem: Problem, *, sampler: Sampler = "smc", particles: int = 150, seed: int = 0
+) -> tuple[Posterior | None, str]:
+    """Return the posterior and ``"ok"``, or None and why it did not converge.
+
+    If it or its evidence is not known with the first draws, twice as many are tried.
+    """
     found, status = None, "ok"
     for n in (particles, 2 * particles):
         try:
