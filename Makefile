@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint types layers unit bench qualify docs lock clean
+.PHONY: help demo live test lint types layers security unit servers bench qualify docs lock clean
 
 help: ## list the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
@@ -31,7 +31,14 @@ $(VENV)/.dev: requirements-dev.lock $(VENV)/.core
 demo: $(VENV)/.core ## digital twin of a 15 MW jacket from an OpenFAST record: out/demo/report.html
 	$(BIN)/jackettwin run --out out/demo
 
-test: $(VENV)/.dev lint types layers unit ## everything CI checks
+live: $(VENV)/.live ## a foundation lives: http://127.0.0.1:8470/, its records arrive in fast motion
+	$(BIN)/jackettwin serve out/live --demo
+
+$(VENV)/.live: requirements-service.lock $(VENV)/.core
+	$(PIP) install -r requirements-service.lock
+	@touch $@
+
+test: $(VENV)/.dev lint types layers security unit ## everything CI checks
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
@@ -43,8 +50,15 @@ types: $(VENV)/.dev
 layers: $(VENV)/.dev
 	$(BIN)/lint-imports
 
-unit: $(VENV)/.dev
+unit: $(VENV)/.dev servers
 	$(BIN)/pytest -n 2
+
+servers: # PostgreSQL, mosquitto, Chromium for tests that use the real ones; skipped where they cannot be installed
+	@scripts/install-servers
+
+security: $(VENV)/.dev # known holes of what we install, where the index can be asked; habits of our own code
+	$(BIN)/bandit -q -r src/jackettwin/service src/jackettwin/store -ll
+	@timeout 60 $(BIN)/pip-audit --timeout 5 -r requirements-service.lock --no-deps --disable-pip --progress-spinner off || echo "pip-audit: the index of known holes cannot be asked, or names one (above)"
 
 bench: $(VENV)/.dev ## speed, on this machine
 	@for file in benchmarks/bench_*.py; do echo "$$file"; $(BIN)/python $$file || exit 1; done
@@ -55,7 +69,8 @@ qualify: $(VENV)/.dev ## statistics at full size, to docs/verification (takes ho
 lock: | $(BIN)/python ## refresh the lock files from pyproject.toml
 	$(PIP) install pip-tools
 	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.lock pyproject.toml
-	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra dev --extra docs --extra bench --constraint requirements.lock --output-file requirements-dev.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra service --extra postgresql --constraint requirements.lock --output-file requirements-service.lock pyproject.toml
+	$(BIN)/pip-compile -q --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --extra service --extra postgresql --extra dev --extra docs --extra bench --constraint requirements.lock --output-file requirements-dev.lock pyproject.toml
 
 docs: $(VENV)/.dev ## the documentation, to site/
 	$(BIN)/mkdocs build --quiet --strict

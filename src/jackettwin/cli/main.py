@@ -30,6 +30,14 @@ COMMANDS = {
     "loads": "Wave and wind loads of SCENARIO on an asset that stands still, about still water and about the "
     "bed.",
     "view": "Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record.",
+    "serve": "Serve the living twin in STORE: records in, answers out; STORE is made if it is not there.",
+    "asset": "Turbines of a living twin: add, list, show, adopt.",
+    "intake": "Take records from PATHS, files or folders, into a store; a server observes them.",
+    "rebuild": "Make the states again from stored observations, or with --observe from raw records.",
+    "backup": "Write everything of STORE into FILE, while it is served or not; whole or not at all.",
+    "restore": "Fill the empty STORE from a backup FILE; whole or not at all.",
+    "user": "Users of a server; with the first one, everybody must log in.",
+    "token": "Tokens with which machines log in.",
 }
 """What ``--help`` says of every command, the first sentence of its docstring, without reading the command.
 

@@ -1,0 +1,115 @@
+"""``jackettwin asset``: the turbines of a store and their twins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.table import Table
+
+from jackettwin.cli.console import output, print_json
+from jackettwin.cli.store_options import opened, store_options
+
+
+@click.group("asset")
+def asset_command() -> None:
+    """Turbines of a living twin: add, list, show, adopt."""
+
+
+@asset_command.command("add")
+@click.argument("name")
+@click.argument("twin", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option("--comment", default="", help="What this version changes.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def add(name: str, twin: Path, comment: str, as_json: bool, store: Path, database: str | None) -> None:
+    """Add the turbine NAME with its twin file, and copy in every file that this one names.
+
+    For a NAME that is there already, a new version is added; it counts once it is adopted.
+    """
+    engine = opened(store, database, make=True)
+    from jackettwin.service import add_twin
+
+    document = add_twin(engine, store, name, twin, comment)
+    if as_json:
+        print_json(document)
+    else:
+        output.print(f"{name}: version {document['version']}, model {document['model_hash'][:12]}")
+
+
+@asset_command.command("list")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def list_(as_json: bool, store: Path, database: str | None) -> None:
+    """List the turbines with their status, records and findings."""
+    engine = opened(store, database)
+    from jackettwin.service.catalogue import overview
+    from jackettwin.store import reading
+
+    with reading(engine) as connection:
+        found = [asset.model_dump(mode="json") for asset in overview(connection)]
+    if as_json:
+        print_json({"assets": found})
+        return
+    table = Table("asset", "status", "version", "records", "findings", "latest record (UTC)", box=None)
+    for asset in found:
+        table.add_row(*(str(v) for v in _row(asset)))
+    output.print(table if found else "no asset yet: jackettwin asset add NAME TWIN --store STORE")
+
+
+@asset_command.command("show")
+@click.argument("name")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def show(name: str, as_json: bool, store: Path, database: str | None) -> None:
+    """Show one turbine and the versions of its twin."""
+    engine = opened(store, database)
+    from jackettwin.service.catalogue import one, version_out
+    from jackettwin.store import reading
+    from jackettwin.store.assets import all_versions, found_version
+
+    with reading(engine) as connection:
+        found_version(connection, name)
+        document = one(connection, name).model_dump(mode="json")
+        versions = [
+            version_out(connection, v).model_dump(mode="json") for v in all_versions(connection, name)
+        ]
+    if as_json:
+        print_json({**document, "versions": versions})
+        return
+    output.print(
+        f"{name}: {document['status']}, records {document['records']}, findings {document['findings']}"
+    )
+    table = Table("version", "adopted", "observations", "created (UTC)", "by", "comment", box=None)
+    for v in versions:
+        row = (
+            v["version"],
+            "yes" if v["adopted"] else "",
+            v["observations"],
+            v["created_utc"][:16],
+            v["created_by"],
+        )
+        table.add_row(*map(str, row), v["comment"])
+    output.print(table)
+
+
+@asset_command.command("adopt")
+@click.argument("name")
+@click.argument("version", type=click.IntRange(1))
+@store_options
+def adopt(name: str, version: int, store: Path, database: str | None) -> None:
+    """Make a VERSION of the turbine NAME the one whose answers count."""
+    engine = opened(store, database)
+    from jackettwin.store import assets, writing
+
+    with writing(engine) as connection:
+        assets.adopt(connection, name, version)
+    output.print(f"{name}: version {version} is adopted")
+
+
+def _row(asset: dict[str, Any]) -> tuple[Any, ...]:
+    counts = ", ".join(f"{n} {status}" for status, n in asset["records"].items()) or "none"
+    said = ", ".join(f"{n} {severity}" for severity, n in asset["findings"].items()) or "none"
+    last = asset["last_record_utc"] or "–"
+    return asset["name"], asset["status"], asset["version"], counts, said, last[:16]

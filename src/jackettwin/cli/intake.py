@@ -1,0 +1,50 @@
+"""``jackettwin intake``: files and folders into a store."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.store_options import opened, store_options
+
+
+@click.command("intake")
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True))
+@click.option("--asset", required=True, help="Whose records these are.")
+@click.option("--watch", is_flag=True, help="Go on taking what appears, until Ctrl-C.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def intake_command(
+    paths: tuple[Path, ...], asset: str, watch: bool, as_json: bool, store: Path, database: str | None
+) -> None:
+    """Take records from PATHS, files or folders, into a store; a server observes them."""
+    engine = opened(store, database)
+    from jackettwin.service import Accepted, record_files, take_here, watch_folders
+
+    def take(path: Path) -> Accepted:
+        took = take_here(engine, store, asset, path)
+        if took.problem is not None:
+            messages.print(
+                f"{path.name}: refused: {took.problem['detail']}; {took.problem.get('remedy') or ''}"
+            )
+        elif not as_json:
+            output.print(f"{path.name}: {took.record_id} {'taken' if took.new else 'known already'}")
+        return took
+
+    if watch:
+        messages.print(f"watching {', '.join(map(str, paths))}; Ctrl-C ends")
+        watch_folders(paths, take)
+        return
+    took = [(path, take(path)) for path in record_files(paths)]
+    rows = [
+        {"file": p.name, "record_id": t.record_id, "new": t.new, "job_id": t.job_id, "problem": t.problem}
+        for p, t in took
+    ]
+    if as_json:
+        print_json({"asset": asset, "files": rows})
+    refused = sum(t.problem is not None for _, t in took)
+    if refused:
+        messages.print(f"{refused} of {len(took)} files were refused")
+        raise SystemExit(2)

@@ -1,0 +1,47 @@
+"""``jackettwin serve``: the living twin."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import Any
+
+import click
+
+from jackettwin.cli.console import messages
+from jackettwin.cli.store_options import needs_service
+
+
+@click.command("serve")
+@click.argument("store", type=click.Path(path_type=Path, file_okay=False))
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
+@click.option("--port", default=8470, show_default=True, type=click.IntRange(1, 65535))
+@click.option("--database", envvar="JACKETTWIN_DATABASE", help="URL of PostgreSQL; default: SQLite in STORE.")
+@click.option("--scheduler", help="Address of a Dask scheduler; default: workers of its own.")
+@click.option("--workers", default=2, show_default=True, type=click.IntRange(1, 256), help="Of its own.")
+@click.option("--mqtt", help="mqtt[s]://[USER:PASSWORD@]HOST[:PORT] of a broker to listen to.")
+@click.option("--tls-certificate", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option("--tls-key", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+@click.option("--behind-proxy", is_flag=True, help="A proxy in front ends TLS.")
+@click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
+@click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")
+def serve_command(store: Path, demo: bool, **options: Any) -> None:
+    """Serve the living twin in STORE: records in, answers out; STORE is made if it is not there.
+
+    Open the address that is printed. Nothing else has to be set up.
+    """
+    needs_service()
+    from jackettwin.service import Service, ServiceSettings, demonstrate, serve
+
+    logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")
+    messages.print(f"starting {options['workers']} workers and the server …")
+
+    def ready(service: Service) -> None:
+        scheme = "https" if service.settings.tls_certificate else "http"
+        messages.print(f"jackettwin serves {store} at {scheme}://{options['host']}:{options['port']}/")
+        messages.print(f"records: {store}/inbox/ASSET/, POST /api/v1/assets/ASSET/records, Ctrl-C ends")
+        if demo:
+            demonstrate(service)
+
+    serve(ServiceSettings(store=store, **options), ready)
+    messages.print("stopped; what was under way goes on at the next start")

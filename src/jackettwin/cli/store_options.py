@@ -1,0 +1,68 @@
+"""Options that every command on a store shares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from jackettwin.errors import InputError, MissingExtra
+
+if TYPE_CHECKING:
+    from sqlalchemy import Engine
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+database_option = click.option(
+    "--database", envvar="JACKETTWIN_DATABASE", help="URL of PostgreSQL; default: SQLite in the store."
+)
+"""Where the database of a store is, if not in it."""
+
+
+def store_options(function: F) -> F:
+    """Add ``--store`` and ``--database``."""
+    function = database_option(function)
+    return click.option(
+        "--store",
+        required=True,
+        envvar="JACKETTWIN_STORE",
+        type=click.Path(path_type=Path, file_okay=False),
+        help="Folder of the living twin.",
+    )(function)
+
+
+def opened(store: Path, database: str | None, *, make: bool = False) -> Engine:
+    """Return the database of a store.
+
+    Raises
+    ------
+    InputError
+        If there is no store.
+    """
+    needs_service()
+    from jackettwin.store import open_database, sqlite_url
+
+    if not make and not store.is_dir():
+        raise InputError(
+            "there is no store",
+            field="store",
+            value=store,
+            remedy="begin with `jackettwin asset add NAME TWIN --store STORE` or `jackettwin serve STORE`",
+        )
+    store.mkdir(parents=True, exist_ok=True)
+    return open_database(database or sqlite_url(store))
+
+
+def needs_service() -> None:
+    """Refuse to go on without the extra ``service``."""
+    try:
+        import distributed  # noqa: F401
+        import fastapi  # noqa: F401
+        import sqlalchemy  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(
+            f"the living twin needs {error.name}", remedy="pip install 'jackettwin[service]'"
+        ) from None

@@ -1,0 +1,41 @@
+"""``jackettwin user``: who may use a server."""
+
+from __future__ import annotations
+
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from jackettwin.cli.console import output
+from jackettwin.cli.store_options import opened, store_options
+
+
+@click.group("user")
+def user_command() -> None:
+    """Users of a server; with the first one, everybody must log in."""
+
+
+@user_command.command("add")
+@click.argument("name")
+@click.option("--role", required=True, type=click.Choice(["viewer", "engineer", "admin"]))
+@click.option("--password-stdin", is_flag=True, help="Read the password from standard input.")
+@store_options
+def add_user(name: str, role: str, password_stdin: bool, store: Path, database: str | None) -> None:
+    """Add the user NAME, or give one another role and password."""
+    engine = opened(store, database, make=True)
+    from jackettwin.service.auth import hashed
+    from jackettwin.store import writing
+    from jackettwin.store.people import User
+    from jackettwin.store.people import add_user as keep
+
+    password = (
+        sys.stdin.readline().rstrip("\n")
+        if password_stdin
+        else click.prompt("password", hide_input=True, confirmation_prompt=True)
+    )
+    user = User(name, role, hashed(password), datetime.now(UTC))
+    with writing(engine) as connection:
+        keep(connection, user)
+    output.print(f"{name} is {role}; from now on everybody logs in")

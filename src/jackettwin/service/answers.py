@@ -1,0 +1,138 @@
+"""What the store knows, in the words of the API."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+from fastapi import Path
+from sqlalchemy import Connection, select
+
+from jackettwin.errors import InputError
+from jackettwin.service import engine
+from jackettwin.service.consequences import twin_folder
+from jackettwin.service.schemas import AlarmOut, FindingOut, ModeOut, Page, TwinOut
+from jackettwin.store import assets, results, tables
+from jackettwin.store.records import read_cursor, write_cursor
+from jackettwin.version import __version__
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
+
+RowNumber = Path(ge=1, le=2**53)
+"""A row's number, as JavaScript can hold it."""
+
+
+def _row(cursor: str | None) -> int | None:
+    if cursor is None:
+        return None
+    place = read_cursor(cursor)
+    if len(place) != 1 or not isinstance(place[0], int) or not 0 <= place[0] < 2**53:
+        raise InputError("not a cursor of this list", field="cursor", value=cursor[:40])
+    return place[0]
+
+
+def modes(
+    connection: Connection,
+    version: assets.Version,
+    label: str | None,
+    since: datetime | None,
+    until: datetime | None,
+    cursor: str | None,
+    limit: int,
+) -> Page[ModeOut]:
+    """Return a page of modes through time."""
+    rows = results.list_modes(
+        connection,
+        version.asset,
+        version.model_hash,
+        label=label,
+        since=since,
+        until=until,
+        after=_row(cursor),
+        limit=limit + 1,
+    )
+    items = [_mode_out(row) for row in rows[:limit]]
+    return Page(items=items, next_cursor=write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None)
+
+
+def _mode_out(row: Mapping[str, Any]) -> ModeOut:
+    low, high = row["damping_ratio_low_95"], row["damping_ratio_high_95"]
+    known = {name: row[name] for name in ModeOut.model_fields if name in row}
+    return ModeOut(**known, damping_ratio_interval_95=None if low is None or high is None else (low, high))
+
+
+def findings(
+    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
+) -> Page[FindingOut]:
+    """Return a page of findings, newest first."""
+    rows = results.list_findings(
+        connection, version.asset, version.model_hash, severity=severity, before=_row(cursor), limit=limit + 1
+    )
+    items = [FindingOut(**{k: row[k] for k in FindingOut.model_fields}) for row in rows[:limit]]
+    return Page(items=items, next_cursor=write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None)
+
+
+def alarms(connection: Connection, version: assets.Version, cursor: str | None, limit: int) -> Page[AlarmOut]:
+    """Return a page of alarms with who took note of them."""
+    rows = results.list_findings(
+        connection, version.asset, version.model_hash, severity="alarm", before=_row(cursor), limit=limit + 1
+    )
+    notes = results.acknowledgements_of(connection, version.asset)
+    more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
+    return Page(items=[alarm_out(row, notes) for row in rows[:limit]], next_cursor=more)
+
+
+def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) -> AlarmOut:
+    """Return an alarm as the API speaks of it."""
+    note = notes.get(results.alarm_key(row), {})
+    known = {name: row[name] for name in FindingOut.model_fields}
+    return AlarmOut(
+        **known,
+        acknowledged_by=note.get("by"),
+        acknowledged_utc=note.get("time_utc"),
+        comment=note.get("comment"),
+    )
+
+
+def twin(
+    connection: Connection, service: Place, version: assets.Version, at: datetime | None = None
+) -> TwinOut:
+    """Return what the twin knows at a time, from the states of its days."""
+    last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
+    days = {
+        s.day: s.document for s in results.states_until(connection, version.asset, version.model_hash, last)
+    }
+    model = engine.load_model(twin_folder(connection, service, version.asset, version.version))
+    state = engine.state_of(model, days)
+    known = engine.knowledge(model, state)
+    return TwinOut(
+        asset=version.asset,
+        version=version.version,
+        model_hash=version.model_hash,
+        code_version=__version__,
+        state_hash=state.state_hash,
+        days=len(days),
+        **known,
+    )
+
+
+def as_parquet(connection: Connection, name: str) -> bytes:
+    """Return a table as a Parquet file; times are UTC, nested values JSON."""
+    table = tables.metadata.tables[name]
+    rows = [dict(row._mapping) for row in connection.execute(select(table))]
+    columns = {
+        column.name: [
+            json.dumps(row[column.name]) if isinstance(row[column.name], dict | list) else row[column.name]
+            for row in rows
+        ]
+        for column in table.columns
+    }
+    buffer = io.BytesIO()
+    pq.write_table(pa.table(columns), buffer)
+    return buffer.getvalue()

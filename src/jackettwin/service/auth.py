@@ -1,0 +1,189 @@
+"""Who may do what: passwords, sessions, tokens, roles, forged requests, guessing."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from threading import Lock
+from urllib.parse import urlsplit
+
+from argon2 import PasswordHasher
+from argon2.exceptions import InvalidHashError, VerificationError
+from fastapi import Depends, Request
+from sqlalchemy import Connection, Engine
+
+from jackettwin.errors import InputError
+from jackettwin.service.problems import ApiError
+from jackettwin.service.settings import ServiceSettings, is_loopback
+from jackettwin.store import people, reading
+
+COOKIE = "jackettwin_session"
+SESSION = timedelta(hours=12)
+TOKEN = timedelta(days=365)
+SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
+SHORTEST_PASSWORD = 12
+"""Characters; NIST SP 800-63B asks for 8 and advises more."""
+
+_hasher = PasswordHasher()  # argon2id with the parameters of RFC 9106, second recommended choice
+_NOBODY = _hasher.hash(secrets.token_hex())
+"""Verified where there is no such user, so that the time to answer tells nothing."""
+
+
+@dataclass(frozen=True)
+class Who:
+    """Somebody who may do what a role may; ``kind`` is how we know."""
+
+    name: str
+    role: str
+    kind: str
+    csrf: str = ""
+
+    def may(self, role: str) -> bool:
+        """Tell whether this role includes another one."""
+        return people.ROLES.index(self.role) >= people.ROLES.index(role)
+
+
+@dataclass
+class Guesses:
+    """Failed logins of late, by who was tried from where: too many are refused for a while."""
+
+    most: int = 5
+    within_s: float = 60.0
+    _failed: dict[str, list[float]] = field(default_factory=dict)
+    _lock: Lock = field(default_factory=Lock)
+
+    def wait_s(self, key: str) -> float:
+        """Return how long to wait before the next try, 0 if it may be tried now."""
+        with self._lock:
+            now = time.monotonic()
+            recent = [t for t in self._failed.get(key, []) if now - t < self.within_s]
+            if recent:
+                self._failed[key] = recent
+            else:
+                self._failed.pop(key, None)
+            return recent[-self.most] + self.within_s - now if len(recent) >= self.most else 0.0
+
+    def failed(self, key: str) -> None:
+        """Count a failure."""
+        with self._lock:
+            if len(self._failed) > 10_000:  # a flood of names must not fill the memory
+                self._failed.clear()
+            self._failed.setdefault(key, []).append(time.monotonic())
+
+
+def hashed(password: str) -> str:
+    """Return the argon2id hash of a password.
+
+    Raises
+    ------
+    InputError
+        If it is too short.
+    """
+    if len(password) < SHORTEST_PASSWORD:
+        raise InputError(
+            "the password is too short",
+            field="password",
+            allowed=f"{SHORTEST_PASSWORD} characters or more",
+            remedy="take a few words that do not belong together",
+        )
+    return _hasher.hash(password)
+
+
+def checked_login(connection: Connection, name: str, password: str) -> people.User | None:
+    """Return the user whose password this is, or None; it takes as long for unknown names."""
+    user = people.find_user(connection, name)
+    try:
+        _hasher.verify(_NOBODY if user is None else user.password_hash, password)
+    except (VerificationError, InvalidHashError):
+        return None
+    return None if user is None or user.disabled else user
+
+
+def new_grant(
+    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
+) -> tuple[str, str]:
+    """Return the secret of a new session or token, and its CSRF token."""
+    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+    people.grant(
+        connection, secret, kind=kind, user=user, label=label, csrf=csrf, now=now, expires=now + lasts
+    )
+    return secret, csrf
+
+
+def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
+    """Return who sent a request.
+
+    By bearer token, session, trusted proxy, or on an open loopback server anyone.
+    """
+    with reading(database) as connection:
+        if not people.any_user(connection):
+            return Who("local", "admin", "open") if settings.loopback and _from_here(request) else None
+        scheme, _, secret = request.headers.get("authorization", "").partition(" ")
+        if scheme.lower() == "bearer":
+            found = people.find_grant(connection, secret.strip(), now)
+            return Who(found.user, found.role, "token") if found and found.kind == "token" else None
+        cookie = request.cookies.get(COOKIE)
+        if cookie:
+            found = people.find_grant(connection, cookie, now)
+            return (
+                Who(found.user, found.role, "session", found.csrf)
+                if found and found.kind == "session"
+                else None
+            )
+        if settings.trusted_header and settings.behind_proxy:
+            user = people.find_user(connection, request.headers.get(settings.trusted_header, ""))
+            return Who(user.name, user.role, "proxy") if user and not user.disabled else None
+    return None
+
+
+def allowed(role: str) -> Callable[..., Awaitable[Who]]:
+    """Return the dependency of a route that asks for a role."""
+
+    async def check(request: Request) -> Who:
+        who: Who | None = request.state.who
+        if who is None:
+            raise ApiError(401, "log in, or send a token", headers={"WWW-Authenticate": "Bearer"})
+        if not who.may(role):
+            raise ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
+        return who
+
+    check.role = role  # type: ignore[attr-defined]  # read by the test that walks over all routes
+    return check
+
+
+def refuse_forged(request: Request, who: Who | None) -> None:
+    """Refuse what another page had a browser send: no CSRF token, or another origin.
+
+    Raises
+    ------
+    ApiError
+        403.
+    """
+    if request.method in SAFE_METHODS:
+        return
+    origin = request.headers.get("origin")
+    if origin and urlsplit(origin).netloc != request.headers.get("host"):
+        raise ApiError(403, "sent from another page")
+    if who is not None and who.kind == "session":
+        given = request.headers.get("x-csrf-token", "")
+        if not secrets.compare_digest(given.encode(), who.csrf.encode()):
+            raise ApiError(403, "the header X-CSRF-Token is missing or wrong; GET /api/v1/me tells it")
+
+
+def _from_here(request: Request) -> bool:
+    """Tell whether an open server was asked by its own name.
+
+    A page elsewhere may point its name at 127.0.0.1.
+    """
+    host = (
+        request.headers.get("host", "").rsplit(":", 1)[0]
+        if ":" in request.headers.get("host", "")
+        else (request.headers.get("host", ""))
+    )
+    return is_loopback(host)
+
+
+VIEWER, ENGINEER, ADMIN = (Depends(allowed(role)) for role in people.ROLES)

@@ -1,0 +1,150 @@
+"""Assets as the API and the command line speak of them."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sqlalchemy import Connection, func, select
+
+from jackettwin.errors import InputError
+from jackettwin.service import engine
+from jackettwin.service.intake.files import queue
+from jackettwin.service.schemas import AssetOut, VersionOut
+from jackettwin.store import assets, journal, people, records, results
+from jackettwin.store.tables import observations
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
+
+_PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
+"""What a part of a file's name may be: no client reaches our file system by it."""
+
+
+def add_text_version(
+    connection: Connection,
+    service: Place,
+    name: str,
+    twin: str,
+    files: Mapping[str, str],
+    by: str,
+    comment: str = "",
+) -> assets.Version:
+    """Add a version of a twin given as text; see :func:`add_version`."""
+    contents = {engine.TWIN_FILE: twin.encode(), **{path: text.encode() for path, text in files.items()}}
+    return add_version(connection, service, name, contents, by, comment)
+
+
+def add_version(
+    connection: Connection,
+    service: Place,
+    name: str,
+    contents: Mapping[str, bytes],
+    by: str,
+    comment: str = "",
+) -> assets.Version:
+    """Check a twin and add it as a version; records that are there are observed by it when there is time.
+
+    Raises
+    ------
+    InputError
+        If the twin cannot be read, or a file's name could lead out of its folder.
+    """
+    for path in contents:
+        if not all(_PART.fullmatch(part) for part in path.split("/")):
+            raise InputError(
+                "a file cannot be called so",
+                field="files",
+                value=path[:100],
+                allowed="relative paths of letters, digits, ., _ and -",
+                remedy="rename it, here and in the twin file",
+            )
+    model_hash, settings_hash = _identity(contents)
+    version = assets.add_version(
+        connection,
+        name,
+        contents,
+        model_hash=model_hash,
+        settings_hash=settings_hash,
+        by=by,
+        now=service.now(),
+        comment=comment,
+    )
+    for record in records.all_with_samples(connection, name):
+        queue(connection, version, record.record_id, service.now())
+    people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
+    journal.tell(connection, "asset", name, {"version": version.version}, service.now())
+    return version
+
+
+def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
+    with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
+        for path, content in contents.items():
+            target = Path(folder) / path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
+        try:
+            return engine.identity(engine.load_model.__wrapped__(Path(folder)))
+        except InputError as error:
+            error.file = engine.TWIN_FILE
+            raise
+
+
+def overview(connection: Connection) -> list[AssetOut]:
+    """Return every asset with its status."""
+    counts, said = records.count_by_status(connection), results.count_findings(connection)
+    return [
+        _asset(connection, name, counts.get(name, {}), said.get(name, {}))
+        for name in assets.asset_names(connection)
+    ]
+
+
+def one(connection: Connection, name: str) -> AssetOut:
+    """Return an asset with its status."""
+    counts, said = records.count_by_status(connection), results.count_findings(connection)
+    return _asset(connection, name, counts.get(name, {}), said.get(name, {}))
+
+
+def version_out(connection: Connection, version: assets.Version) -> VersionOut:
+    """Return a version as the API speaks of it."""
+    same = (observations.c.asset == version.asset, observations.c.model_hash == version.model_hash)
+    seen = connection.scalar(select(func.count()).select_from(observations).where(*same))
+    adopted = assets.found_version(connection, version.asset).version
+    return VersionOut(
+        version=version.version,
+        model_hash=version.model_hash,
+        settings_hash=version.settings_hash,
+        created_utc=version.created_utc,
+        created_by=version.created_by,
+        comment=version.comment,
+        adopted=version.version == adopted,
+        observations=seen or 0,
+    )
+
+
+def _asset(connection: Connection, name: str, counts: dict[str, int], said: dict[str, int]) -> AssetOut:
+    version = assets.found_version(connection, name)
+    first = assets.all_versions(connection, name)[0]
+    last = records.last_start(connection, name)
+    unseen = results.unacknowledged_alarms(connection, name, version.model_hash)
+    if last is None:
+        status = "no data"
+    elif unseen:
+        status = "alarm"
+    elif counts.get("set_aside") or counts.get("refused"):
+        status = "warning"
+    else:
+        status = "ok"
+    return AssetOut(
+        name=name,
+        version=version.version,
+        model_hash=version.model_hash,
+        created_utc=first.created_utc,
+        last_record_utc=last,
+        records=counts,
+        findings=said,
+        status=status,  # type: ignore[arg-type]
+    )

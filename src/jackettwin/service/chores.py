@@ -1,0 +1,51 @@
+"""What is done now and then: old samples pruned by the store's policy, old events and uploads forgotten."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from datetime import timedelta
+from typing import TYPE_CHECKING
+
+from jackettwin.store import journal, records, settings, writing
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
+
+_EVERY_S = 600.0
+_STALE_S = 3600.0
+"""Age of an upload that was left behind by a server that died over it."""
+
+
+class Housekeeping:
+    """Keeps the store within its policy."""
+
+    def __init__(self, service: Service) -> None:
+        self._service = service
+        self._next = 0.0
+
+    def turn(self) -> None:
+        """Tidy up if it is time to."""
+        if time.monotonic() < self._next:
+            return
+        self._next = time.monotonic() + _EVERY_S
+        prune(self._service)
+        for folder in self._service.settings.spool.iterdir():
+            if folder.is_dir() and time.time() - folder.stat().st_mtime > _STALE_S:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def prune(service: Service) -> int:
+    """Delete the samples of observed records older than the policy says; return how many."""
+    now = service.now()
+    with writing(service.database) as connection:
+        journal.forget_events(connection, now)
+        days = settings.get(connection, settings.RAW_DAYS)
+        if days is None:
+            return 0
+        old = records.with_samples_before(connection, now - timedelta(days=float(days)))
+        for record in old:
+            records.forget_samples(connection, record)
+    for record in old:
+        (service.settings.store / str(record.waveform)).unlink(missing_ok=True)
+    return len(old)

@@ -1,0 +1,204 @@
+"""What follows from a result, in the same transaction.
+
+Modes, findings, the state of the day and of those after.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import Connection, select
+
+from jackettwin.service import engine
+from jackettwin.service.tasks import Outcome, Task
+from jackettwin.store import assets, journal, records, results, streams, tables, work
+from jackettwin.store.results import StoredObservation, StoredState
+
+if TYPE_CHECKING:
+    from jackettwin.records import Channel
+    from jackettwin.service.context import Place, Service
+
+
+def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
+    """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is None or record.waveform is None:
+        raise LookupError(f"record {job.record_id} of {job.asset} has no samples")
+    end = record.start_utc + timedelta(seconds=record.duration_s)
+    site = streams.conditions_between(connection, job.asset, record.start_utc, end)
+    return Task(
+        waveform=str(service.settings.store / record.waveform),
+        twin_folder=str(twin_folder(connection, service, job.asset, job.version)),
+        asset=job.asset,
+        version=job.version,
+        conditions={**site, **record.conditions},
+        picks=record.picks,
+    )
+
+
+def twin_folder(connection: Connection, service: Place, asset: str, version: int) -> Path:
+    """Return the folder in which a version's files stand."""
+    found = assets.found_version(connection, asset, version)
+    place = service.settings.models / found.bundle_hash
+    if place.is_dir():
+        return place
+    bundle = assets.bundle_of(connection, asset, version)
+    return assets.laid_out(bundle, found.bundle_hash, service.settings.models)
+
+
+def channels_of(connection: Connection, service: Place, asset: str) -> dict[str, Channel]:
+    """Return what the adopted twin says of its channels, {name: channel}."""
+    version = assets.found_version(connection, asset)
+    return engine.channels(twin_folder(connection, service, asset, version.version))
+
+
+def observing(connection: Connection, service: Service, job: work.Job) -> None:
+    """Say that a record is being observed, unless it has been by the adopted version."""
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is not None and record.status == "received":
+        records.set_status(connection, job.asset, job.record_id, "observing")
+        journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "leased"}, service.now())
+
+
+def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+    """Keep the outcome of a piece of work and everything that follows from it.
+
+    Nothing, if it is not ours any more.
+    """
+    now, me = service.now(), service.server_id
+    adopted = assets.found_version(connection, job.asset)
+    if outcome.document is None:
+        if work.finish(connection, job, me, "failed", now, outcome.problem):
+            _refuse(connection, job, outcome.problem or {}, now)
+        return
+    lock(connection, job.asset)
+    if not work.finish(connection, job, me, "done", now):
+        return
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is None or record.status == "set_aside":
+        return
+    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": job.record_id}
+    again = results.find_observation(connection, job.asset, job.record_id, job.model_hash) is not None
+    observation = StoredObservation(
+        settings_hash=job.settings_hash,
+        start_utc=record.start_utc,
+        code_version=job.code_version,
+        document=outcome.document,
+        **key,
+    )
+    day = f"{record.start_utc:%Y-%m-%d}"
+    results.put_observation(
+        connection,
+        observation,
+        [
+            {**mode, **key, "model_version": job.version, "time_utc": record.start_utc}
+            for mode in outcome.modes
+        ],
+        [_finding_row(f, key, record.start_utc, day, "observe") for f in outcome.findings],
+    )
+    records.set_status(connection, job.asset, job.record_id, "observed")
+    fold(connection, service, job.asset, job.version, observation, anew=again)
+    journal.tell(
+        connection,
+        "observation",
+        job.asset,
+        {
+            "record_id": job.record_id,
+            "version": job.version,
+            "modes": len(outcome.modes),
+            "adopted": adopted.version,
+        },
+        now,
+    )
+    for finding in [f for f in outcome.findings if f["severity"] != "info"]:
+        journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
+    journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
+
+
+def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
+    """Put work back that its worker did not survive, or set its record aside after the last try."""
+    problem = {"detail": reason, "field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
+    state = work.put_back(connection, job, service.server_id, problem)
+    if state == "set_aside":
+        records.set_status(connection, job.asset, job.record_id, "set_aside", problem)
+        payload = {"record_id": job.record_id, "status": "set_aside", "detail": reason}
+        journal.tell(connection, "record", job.asset, payload, service.now())
+
+
+def supersede(connection: Connection, service: Place, asset: str, old: str, new: str) -> None:
+    """Take a record's consequences back, since another one holds its samples and more."""
+    record = records.find_record(connection, asset, old)
+    if record is None:
+        return
+    lock(connection, asset)
+    for job in work.jobs_of(connection, asset, old):
+        work.cancel(connection, job.id, service.now())
+    problem = {"detail": f"superseded by {new}, which has packets that came late", "field": "record"}
+    records.set_status(connection, asset, old, "set_aside", problem)
+    for version in assets.all_versions(connection, asset):
+        gone = results.find_observation(connection, asset, old, version.model_hash)
+        if gone is not None:
+            results.drop_observation(connection, asset, version.model_hash, old)
+            fold(connection, service, asset, version.version, gone, anew=True)
+
+
+def fold(
+    connection: Connection,
+    service: Place,
+    asset: str,
+    version: int,
+    changed: StoredObservation,
+    *,
+    anew: bool = False,
+) -> None:
+    """Bring the state of a day up to date.
+
+    A day is a sum over its records that does not depend on their order. A record that is new to it is added;
+    one that was observed again, or taken out, makes the day be summed anew.
+    """
+    day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
+    stored = None if anew else results.find_state(connection, asset, model_hash, day)
+    if stored is None:
+        start = datetime.fromisoformat(day).replace(tzinfo=UTC)
+        todo = list(
+            results.observations_between(connection, asset, model_hash, start, start + timedelta(days=1))
+        )
+        results.drop_state(connection, asset, model_hash, day)
+    else:
+        todo = [changed]
+    if not todo:
+        return
+    model = engine.load_model(twin_folder(connection, service, asset, version))
+    folded = engine.advance_day(model, day, stored.document if stored else None, [o.document for o in todo])
+    results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
+    key = {"asset": asset, "model_hash": model_hash}
+    rows = [
+        _finding_row(
+            finding, {**key, "record_id": observation.record_id}, observation.start_utc, day, "advance"
+        )
+        for observation, found in zip(todo, folded.findings, strict=True)
+        for finding in found
+    ]
+    results.put_findings(connection, rows)
+
+
+def lock(connection: Connection, asset: str) -> None:
+    """Hold an asset until the transaction ends: two servers fold one after the other."""
+    connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
+
+
+def _refuse(connection: Connection, job: work.Job, problem: Mapping[str, Any], now: datetime) -> None:
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is not None and record.status in ("received", "observing"):
+        records.set_status(connection, job.asset, job.record_id, "refused", problem)
+        payload = {"record_id": job.record_id, "status": "refused", "detail": problem.get("detail", "")}
+        journal.tell(connection, "record", job.asset, payload, now)
+
+
+def _finding_row(
+    finding: Mapping[str, Any], key: Mapping[str, Any], time: datetime, day: str, origin: str
+) -> dict[str, Any]:
+    return {**finding, **key, "time_utc": time, "day": day, "origin": origin}

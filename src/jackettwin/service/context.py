@@ -1,0 +1,100 @@
+"""A server's parts, handed to whoever needs them."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
+from typing import Any, Protocol
+
+from sqlalchemy import Engine
+
+from jackettwin.service.auth import Guesses
+from jackettwin.service.compute import Compute
+from jackettwin.service.feed import Feed
+from jackettwin.service.settings import ServiceSettings
+from jackettwin.store import open_database
+from jackettwin.version import __version__
+
+
+class Place(Protocol):
+    """What keeping results needs: where the store is, its database, and the time."""
+
+    @property
+    def settings(self) -> ServiceSettings:
+        """Where things are."""
+
+    @property
+    def database(self) -> Engine:
+        """The database."""
+
+    @property
+    def now(self) -> Callable[[], datetime]:
+        """The clock."""
+
+
+class Chore(Protocol):
+    """Something the dispatcher does now and then besides: windows of streams, old files, old events."""
+
+    def turn(self) -> None:
+        """Do what is due."""
+
+
+def _now() -> datetime:
+    return datetime.now(UTC)
+
+
+@dataclass(frozen=True)
+class Desk:
+    """A place without workers: the command line beside a server, or without one."""
+
+    settings: ServiceSettings
+    database: Engine
+    now: Callable[[], datetime] = _now
+
+
+@dataclass
+class Service:
+    """Everything a running server consists of."""
+
+    settings: ServiceSettings
+    database: Engine
+    compute: Compute
+    server_id: str
+    now: Callable[[], datetime] = _now
+    guesses: Guesses = field(default_factory=Guesses)
+    chores: list[Chore] = field(default_factory=list)
+    wake: Callable[[], None] = lambda: None
+    turning: Callable[[], bool] = lambda: True
+    broker_connected: Callable[[], bool | None] = lambda: None
+
+    @cached_property
+    def feed(self) -> Feed:
+        """The events, for readers of this server."""
+        return Feed(self.database)
+
+    def about(self) -> dict[str, Any]:
+        """What other servers may know of this one."""
+        return {"version": __version__, "pid": os.getpid()}
+
+    def free_bytes(self) -> int:
+        """Room left where the store is."""
+        return shutil.disk_usage(self.settings.store).free
+
+
+def open_service(settings: ServiceSettings) -> Service:
+    """Open the database and start the workers.
+
+    Raises
+    ------
+    InputError
+        If the database cannot be opened.
+    """
+    for folder in (settings.store, settings.spool, settings.models):
+        folder.mkdir(parents=True, exist_ok=True)
+    database = open_database(settings.database_url)
+    return Service(settings, database, Compute(settings), f"{os.getpid()}-{secrets.token_hex(4)}")

@@ -1,0 +1,110 @@
+"""What the command line does with a store, beside a server or without one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, select
+
+from jackettwin.service import consequences
+from jackettwin.service.bundles import bundle
+from jackettwin.service.catalogue import add_version
+from jackettwin.service.context import Desk
+from jackettwin.service.intake.files import Accepted, queue, take_file
+from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.tasks import Parsed, read_file
+from jackettwin.store import assets, reading, records, work, writing
+from jackettwin.store.results import StoredObservation
+from jackettwin.store.tables import observations
+
+
+def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str = "") -> dict[str, Any]:
+    """Add an asset or a version of it from a twin file on this machine; return what was added.
+
+    Raises
+    ------
+    InputError
+        If the twin or a file it names cannot be read.
+    """
+    assets.check_name(name)
+    contents = bundle(twin)
+    desk = Desk(ServiceSettings(store), database)
+    with writing(database) as connection:
+        version = add_version(connection, desk, name, contents, "command line", comment)
+    return {
+        "asset": name,
+        "version": version.version,
+        "model_hash": version.model_hash,
+        "settings_hash": version.settings_hash,
+        "files": sorted(contents),
+    }
+
+
+def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
+    """Read a file in this process and keep its record for a server to observe.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    settings = ServiceSettings(store)
+    with reading(database) as connection:
+        assets.found_version(connection, asset)
+
+    def parse(file: Path, whose: str) -> Parsed:
+        return read_file(str(file), whose, str(store), settings.samples_limit)
+
+    return take_file(database, Desk(settings, database).now, parse, asset, path, path.name)
+
+
+def rebuild(
+    database: Engine,
+    store: Path,
+    asset: str | None,
+    since: datetime | None,
+    *,
+    observe: bool = False,
+    progress: Callable[[str], None] = lambda _: None,
+) -> dict[str, Any]:
+    """Make states again from stored observations, and queue raw records to be observed again if asked to."""
+    desk = Desk(ServiceSettings(store), database)
+    start = datetime(1900, 1, 1, tzinfo=UTC) if since is None else since.replace(tzinfo=UTC)
+    with reading(database) as connection:
+        if asset is not None:
+            assets.found_version(connection, asset)
+        names = assets.asset_names(connection) if asset is None else [asset]
+    days = queued = 0
+    for name in names:
+        progress(f"rebuild {name} …")
+        with writing(database) as connection:
+            consequences.lock(connection, name)
+            for version in assets.all_versions(connection, name):
+                for first in _first_of_days(connection, name, version.model_hash, start):
+                    consequences.fold(connection, desk, name, version.version, first, anew=True)
+                    days += 1
+                if observe:
+                    queued += _queue_all(connection, desk, version, start)
+    return {"assets": names, "days": days, "queued": queued}
+
+
+def _first_of_days(connection: Any, asset: str, model_hash: str, start: datetime) -> list[StoredObservation]:
+    """Return one observation of each UTC day that has any."""
+    where = (observations.c.asset == asset, observations.c.model_hash == model_hash)
+    query = select(observations).where(*where, observations.c.start_utc >= start)
+    first: dict[str, StoredObservation] = {}
+    for row in connection.execute(query.order_by(observations.c.start_utc)):
+        first.setdefault(f"{row.start_utc:%Y-%m-%d}", StoredObservation(**row._mapping))
+    return list(first.values())
+
+
+def _queue_all(connection: Any, desk: Desk, version: assets.Version, start: datetime) -> int:
+    count = 0
+    for record in records.all_with_samples(connection, version.asset):
+        if record.start_utc >= start:
+            number = queue(connection, version, record.record_id, desk.now())
+            count += work.try_again(connection, number)
+    return count

@@ -1,0 +1,178 @@
+"""The heart of a server.
+
+Leases work, has it done, keeps results with their consequences, takes over from the dead.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import dataclass
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from jackettwin.service import consequences
+from jackettwin.service.tasks import Outcome, observe_stored
+from jackettwin.store import reading, work, writing
+
+if TYPE_CHECKING:
+    from distributed import Future
+
+    from jackettwin.service.context import Service
+
+log = logging.getLogger(__name__)
+
+_BEAT_S = 2.0
+DEAD_AFTER_S = 15.0
+"""A server whose beat stood still for so long, by the stopwatch of another, is dead."""
+_TURN_S = 0.25
+_AHEAD = 2
+"""Tasks a worker has before it, so that none waits for the next lease."""
+
+
+@dataclass
+class _Running:
+    job: work.Job
+    future: Future
+    since: float
+
+
+class Dispatcher(Thread):
+    """A thread that turns until it is told to stop.
+
+    Whatever it was doing then is leased again by the next.
+    """
+
+    def __init__(self, service: Service) -> None:
+        super().__init__(name="dispatcher", daemon=True)
+        self.service = service
+        self.wake = Event()
+        self._stop_asked = Event()
+        self._running: dict[int, _Running] = {}
+        self._seen: dict[str, tuple[int, float]] = {}
+        self._last_beat = -_BEAT_S
+        self.turns = 0
+
+    @property
+    def in_flight(self) -> int:
+        """How many pieces of work are with workers."""
+        return len(self._running)
+
+    def run(self) -> None:
+        """Turn; a database that is away for a while is waited for."""
+        waited = 0.0
+        while not self._stop_asked.is_set():
+            try:
+                self._turn()
+                waited = 0.0
+            except (SQLAlchemyError, OSError) as error:
+                waited = min(waited + 1.0, 10.0)
+                log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
+                self._stop_asked.wait(waited)
+            except Exception:
+                log.exception("dispatcher goes on after a fault of ours")
+                self._stop_asked.wait(1.0)
+            self.wake.wait(_TURN_S)
+            self.wake.clear()
+
+    def stop(self) -> None:
+        """Stop, and leave the list of servers so that others take over at once."""
+        self._stop_asked.set()
+        self.wake.set()
+        self.join(timeout=10.0)
+        try:
+            with writing(self.service.database) as connection:
+                work.bury(connection, self.service.server_id)
+        except SQLAlchemyError:
+            log.warning("could not leave the list of servers; others notice by the beat")
+
+    def _turn(self) -> None:
+        self.turns += 1
+        self._beat()
+        self._collect()
+        self._end_overrun()
+        self._lease()
+        for chore in self.service.chores:
+            chore.turn()
+
+    def _beat(self) -> None:
+        """Count our beat up, bury those whose beat stands still, come back if we were buried ourselves."""
+        if time.monotonic() - self._last_beat < _BEAT_S:
+            return
+        self._last_beat = time.monotonic()
+        me, now = self.service.server_id, self.service.now()
+        with writing(self.service.database) as connection:
+            if not work.beat(connection, me):
+                work.join(connection, me, self.service.about(), now)
+            seen = {}
+            for server, count in work.beats(connection).items():
+                before = self._seen.get(server)
+                if before is None or before[0] != count:
+                    seen[server] = (count, time.monotonic())
+                elif server != me and time.monotonic() - before[1] > DEAD_AFTER_S:
+                    freed = work.bury(connection, server, count)
+                    log.warning(
+                        "server %s is dead, %d pieces of work go back to the queue", server, len(freed)
+                    )
+                else:
+                    seen[server] = before
+            self._seen = seen
+            work.take_back_orphans(connection)
+
+    def _lease(self) -> None:
+        free = _AHEAD * max(self.service.compute.workers, 1) - len(self._running)
+        if free <= 0:
+            return
+        with reading(self.service.database) as connection:
+            if not work.queue_sizes(connection).get("queued"):
+                return
+        with writing(self.service.database) as connection:
+            jobs = work.lease(connection, self.service.server_id, free, self.service.now())
+            tasks = [(job, consequences.task_of(connection, self.service, job)) for job in jobs]
+            for job in jobs:
+                consequences.observing(connection, self.service, job)
+        for job, task in tasks:
+            future = self.service.compute.submit(observe_stored, task, priority=job.priority)
+            future.add_done_callback(lambda _: self.wake.set())
+            self._running[job.id] = _Running(job, future, time.monotonic())
+
+    def _collect(self) -> None:
+        for number, running in list(self._running.items()):
+            if running.future.done():
+                self._keep(running)
+                del self._running[number]
+
+    def _keep(self, running: _Running) -> None:
+        if running.future.status == "finished":
+            outcome: Outcome = running.future.result()
+            with writing(self.service.database) as connection:
+                consequences.keep(connection, self.service, running.job, outcome)
+        else:
+            reason = _reason(running.future)
+            with writing(self.service.database) as connection:
+                consequences.failed(connection, self.service, running.job, reason)
+
+    def _end_overrun(self) -> None:
+        limit = self.service.settings.observe_limit_s
+        for running in list(self._running.values()):
+            started = time.monotonic() - running.since
+            if started > limit * _AHEAD and not running.future.done():
+                reason = f"took longer than {limit:g} s"
+                self.service.compute.end(running.future)
+                with writing(self.service.database) as connection:
+                    consequences.failed(connection, self.service, running.job, reason)
+                del self._running[running.job.id]
+
+
+def _reason(future: Future) -> str:
+    """Return in a sentence why a task has no result."""
+    try:
+        error = future.exception(timeout=1)
+    except Exception as lost:
+        error = lost
+    name = type(error).__name__
+    if name in ("KilledWorker", "CancelledError", "FutureCancelledError"):
+        return "the worker that observed it ended, out of memory or killed"
+    return f"{name}: {error}"[:500]

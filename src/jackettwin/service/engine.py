@@ -1,0 +1,159 @@
+"""The seam to the engine: documents in, documents out.
+
+Nothing below it knows of a store, nothing above it of a model.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from jackettwin.records import Channel
+from jackettwin.service.tasks import Outcome, Task
+from jackettwin.store import read_waveform
+from jackettwin.twin import TwinModel, TwinState, advance, observe, read_twin, twin_model
+from jackettwin.twin.observation import OBSERVATION
+from jackettwin.twin.state import ALL, Day, empty_state
+from jackettwin.twin.stored import StoredSchema, digest
+from jackettwin.twin.sums import average
+
+TWIN_FILE = "twin.yaml"
+DAY = StoredSchema("twin_day", Day)
+"""How the state of one day is kept."""
+
+
+@dataclass(frozen=True)
+class FoldedDay:
+    """The state of a day as a document, how many records it holds, and what each new one gave rise to."""
+
+    document: str
+    n_records: int
+    findings: tuple[tuple[dict[str, Any], ...], ...]
+
+
+@lru_cache(maxsize=256)
+def load_model(folder: Path) -> TwinModel:
+    """Return the model of a twin whose files stand in a folder, kept: a version never changes."""
+    return twin_model(read_twin(folder / TWIN_FILE, records_follow=True))
+
+
+def identity(model: TwinModel) -> tuple[str, str]:
+    """Return the hashes of a model and of the settings it observes with."""
+    settings = model.settings_hash("")
+    return digest([model.model_hash, settings]), settings
+
+
+def channels(folder: Path) -> dict[str, Channel]:
+    """Return what a twin says of its channels, {name: channel}."""
+    config = read_twin(folder / TWIN_FILE, records_follow=True)
+    return {
+        s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
+        for s in config.sensors
+    }
+
+
+def observed(model: TwinModel, task: Task) -> Outcome:
+    """Return the observation of a stored record as a document, with its modes and findings as rows."""
+    record = read_waveform(Path(task.waveform))
+    record = replace(record, conditions={**task.conditions, **record.conditions})
+    seen = observe(record, model)
+    rows = []
+    for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
+        low, high = mode.damping_ratio_interval_95 or (None, None)
+        rows.append(
+            {
+                "label": "" if known is None else known.label,
+                "frequency_hz": mode.frequency_hz,
+                "frequency_std_hz": mode.frequency_std_hz,
+                "damping_ratio": mode.damping_ratio,
+                "damping_ratio_std": mode.damping_ratio_std,
+                "damping_ratio_low_95": low,
+                "damping_ratio_high_95": high,
+                "status": str(mode.status)[:255],
+            }
+        )
+    document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
+    return Outcome(document, tuple(rows), tuple(_finding(f) for f in seen.findings))
+
+
+def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:
+    """Return the state of a day that knows some more observations of it."""
+    days = {} if stored is None else {day: DAY.load(json.loads(stored))}
+    state = replace(empty_state(model), days=days)
+    found = []
+    for document in observations:
+        state, findings = advance(state, OBSERVATION.load(json.loads(document)))
+        found.append(tuple(_finding(f) for f in findings if f.code != "record_late"))
+    known = state.days[day]
+    text = json.dumps(DAY.dump(known), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
+    return FoldedDay(text, len(known.records), tuple(found))
+
+
+def state_of(model: TwinModel, days: Mapping[str, str]) -> TwinState:
+    """Return the state of a twin whose days are these documents."""
+    state = empty_state(model)
+    for day, document in days.items():
+        state = state.with_day(day, DAY.load(json.loads(document)))
+    return state
+
+
+def _finding(finding: Any) -> dict[str, Any]:
+    return {
+        "code": finding.code,
+        "severity": finding.severity,
+        "subject": finding.subject,
+        "params": dict(finding.params),
+        "text": str(finding),
+    }
+
+
+def knowledge(model: TwinModel, state: TwinState) -> dict[str, Any]:
+    """Return what a state says.
+
+    The mean of every mode with its standard deviations, and from when to when.
+    """
+    days = [day for day in state.days.values() if day.records]
+    total = state.totals.get(ALL)
+    modes = []
+    for number, sums in sorted(total.modes.items()) if total is not None else ():
+        mean = average(sums)
+        modes.append(
+            {
+                "mode": number,
+                "label": model.labels[number - 1] if number <= len(model.labels) else "",
+                "frequency_hz": mean.frequency_hz,
+                "frequency_std_hz": mean.frequency_hz * mean.log_std[0],
+                "damping_ratio": mean.damping_ratio,
+                "damping_ratio_std": mean.damping_ratio * mean.log_std[1],
+                "records": sums.sums.n,
+            }
+        )
+    first = min((day.first for day in days if day.first is not None), default=None)
+    last = max((day.last for day in days if day.last is not None), default=None)
+    return {
+        "records": sum(len(day.records) for day in days),
+        "first_utc": first,
+        "last_utc": last,
+        "modes": modes,
+        "parameters": {},
+        "status": "ok" if modes else "no mode of the model has been seen",
+    }
+
+
+def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
+    """Return the poles of every model order of a stored record."""
+    from jackettwin.twin.observe import examined
+
+    model, record = load_model(Path(folder)), read_waveform(Path(waveform))
+    poles = examined(record, model).identification.stabilisation
+    return {
+        "order": poles.order.tolist(),
+        "frequency_hz": poles.frequency_hz.tolist(),
+        "damping_ratio": poles.damping_ratio.tolist(),
+        "stable": poles.stable.tolist(),
+        "mode": poles.cluster.tolist(),
+    }

@@ -1,0 +1,4 @@
+"""How records come in: uploads, folders, streams.
+
+Every way ends in :func:`jackettwin.service.intake.files.accept`.
+"""

@@ -1,0 +1,177 @@
+"""Files to records of the store: read by a worker, kept by content, queued for every version that lives."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import Connection
+
+from jackettwin.service.tasks import Parsed, read_file
+from jackettwin.store import assets, journal, records, work, writing
+from jackettwin.version import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from jackettwin.service.context import Service
+
+LIVE = 10
+"""Priority of records as they arrive; what is observed anew waits behind them."""
+_SUFFIXES = 60
+"""Longest file name that is kept of a client's: enough for its ending, which names the format."""
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """What became of a file: its record, the work on it, and whether it was new."""
+
+    record_id: str
+    job_id: int | None
+    new: bool
+    problem: dict[str, Any] | None = None
+
+
+def spooled(spool: Path, name: str, pieces: Iterator[bytes], description: bytes | None) -> Path:
+    """Write an upload into a folder of its own and return its path; only the name's last part is used."""
+    folder = spool / secrets.token_hex(8)
+    folder.mkdir(parents=True)
+    path = folder / safe_name(name)
+    try:
+        with path.open("wb") as stream:
+            for piece in pieces:
+                stream.write(piece)
+        if description is not None:
+            path.with_suffix(".json").write_bytes(description)
+    except BaseException:
+        discard(path)
+        raise
+    return path
+
+
+def safe_name(name: str) -> str:
+    """Return a file name without anything that a file system could take for a path."""
+    last = name.replace("\\", "/").rsplit("/", 1)[-1]
+    kept = "".join(c if c.isalnum() or c in "._-" else "_" for c in last).lstrip(".")
+    return kept[-_SUFFIXES:] or "record"
+
+
+def discard(path: Path) -> None:
+    """Remove an upload's folder."""
+    shutil.rmtree(path.parent, ignore_errors=True)
+
+
+def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
+    """Return the reader that uses the server's workers; one that takes too long is ended."""
+
+    def parse(path: Path, asset: str) -> Parsed:
+        settings = service.settings
+        arguments = (str(path), asset, str(settings.store), settings.samples_limit)
+        future = service.compute.submit(read_file, *arguments, priority=100)
+        try:
+            found: Parsed = future.result(timeout=settings.parse_limit_s)
+        except TimeoutError:
+            service.compute.end(future)
+            return Parsed("", problem={"detail": "the file could not be read in time", "field": "file"})
+        except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
+            detail = f"the file could not be read ({type(error).__name__})"
+            return Parsed(
+                "", problem={"detail": detail, "field": "file", "remedy": "see which program wrote it"}
+            )
+        return found
+
+    return parse
+
+
+def accept(
+    service_now: datetime, connection: Connection, asset: str, parsed: Parsed, source_name: str
+) -> Accepted:
+    """Keep a record that was read, and queue it; the same content again changes nothing."""
+    adopted = assets.found_version(connection, asset)
+    about = parsed.about
+    record = records.StoredRecord(
+        asset=asset,
+        record_id=parsed.record_id,
+        status="received",
+        start_utc=datetime.fromisoformat(about["start_utc"]),
+        duration_s=about["duration_s"],
+        sample_rate_hz=about["sample_rate_hz"],
+        channels=about["channels"],
+        conditions=about["conditions"],
+        source_name=source_name,
+        received_utc=service_now,
+        waveform=parsed.waveform,
+        size_bytes=parsed.size_bytes,
+    )
+    new = records.add_record(connection, record)
+    number = None
+    for version in living(connection, asset, adopted):
+        urgent = LIVE if version.version == adopted.version else 0
+        asked = queue(connection, version, parsed.record_id, service_now, priority=urgent)
+        number = asked if version.version == adopted.version else number
+    if new:
+        journal.tell(
+            connection, "record", asset, {"record_id": parsed.record_id, "status": "received"}, service_now
+        )
+    return Accepted(parsed.record_id, number, new)
+
+
+def living(connection: Connection, asset: str, adopted: assets.Version) -> list[assets.Version]:
+    """Return the versions that observe new records.
+
+    The adopted one and those after it, which wait for a person.
+    """
+    return [v for v in assets.all_versions(connection, asset) if v.version >= adopted.version]
+
+
+def queue(
+    connection: Connection, version: assets.Version, record_id: str, now: datetime, *, priority: int = 0
+) -> int:
+    """Ask for a record to be observed by a version of a twin."""
+    return work.enqueue(
+        connection,
+        kind="observe",
+        asset=version.asset,
+        record_id=record_id,
+        version=version.version,
+        model_hash=version.model_hash,
+        settings_hash=version.settings_hash,
+        code_version=__version__,
+        now=now,
+        priority=priority,
+    )
+
+
+def take_file(
+    service_database: Any,
+    now: Callable[[], datetime],
+    parse: Callable[[Path, str], Parsed],
+    asset: str,
+    path: Path,
+    source_name: str,
+) -> Accepted:
+    """Read a file and keep its record."""
+    parsed = parse(path, asset)
+    if parsed.problem is not None:
+        return Accepted(parsed.record_id, None, False, parsed.problem)
+    with writing(service_database) as connection:
+        return accept(now(), connection, asset, parsed, source_name)
+
+
+def as_json(description: bytes) -> dict[str, Any]:
+    """Return a description as a mapping.
+
+    Raises
+    ------
+    ValueError
+        If it is not JSON.
+    """
+    found = json.loads(description)
+    if not isinstance(found, dict):
+        raise ValueError("a description is a JSON object")
+    return found

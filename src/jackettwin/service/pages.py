@@ -1,0 +1,59 @@
+"""The pages a browser sees without the application: the list of assets, and each one's newest report."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import Literal
+
+from fastapi import APIRouter, Request
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from jackettwin.service import auth, catalogue
+from jackettwin.service.problems import answers
+from jackettwin.service.routes.common import AssetName, Reads, known_asset
+
+router = APIRouter(include_in_schema=False)
+
+_templates = Environment(
+    loader=PackageLoader("jackettwin.service", "templates"), autoescape=True, undefined=StrictUndefined
+)
+
+
+@router.get("/")
+def home(request: Request, connection: Reads) -> Response:
+    """The list of assets, or the login."""
+    if request.state.who is None:
+        return RedirectResponse("/login")
+    page = _templates.get_template("home.html.j2")
+    who = request.state.who
+    return HTMLResponse(page.render(assets=catalogue.overview(connection), who=who))
+
+
+@router.get("/login")
+def login() -> HTMLResponse:
+    """Ask for name and password."""
+    return HTMLResponse(_templates.get_template("login.html.j2").render())
+
+
+@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404))
+def asset_page(asset: AssetName, connection: Reads) -> HTMLResponse:
+    """One turbine: what it does, what changed, how sure."""
+    known_asset(connection, asset)
+    page = _templates.get_template("asset.html.j2")
+    return HTMLResponse(page.render(asset=catalogue.one(connection, asset)))
+
+
+@router.get("/static/{name}")
+def static(name: Literal["style.css", "home.js", "asset.js", "login.js"]) -> Response:
+    """What our pages consist of besides their text."""
+    content = (files("jackettwin.service") / "static" / name).read_bytes()
+    kind = "text/css" if name.endswith(".css") else "text/javascript"
+    return Response(content, media_type=kind, headers={"Cache-Control": "public, max-age=60"})
+
+
+@router.get("/library/plotly.js")
+def plotly() -> Response:
+    """The drawing library, from the package that we install anyway."""
+    script = (files("plotly") / "package_data" / "plotly.min.js").read_bytes()
+    return Response(script, media_type="text/javascript", headers={"Cache-Control": "public, max-age=604800"})

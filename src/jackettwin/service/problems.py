@@ -1,0 +1,141 @@
+"""Errors as problem documents, RFC 9457."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel, ConfigDict
+from starlette.exceptions import HTTPException as StarletteHTTPException
+
+from jackettwin.errors import InputError
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class Problem(BaseModel):
+    """What was wrong, where, and what to do."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "type": "about:blank",
+                "title": "Unprocessable Content",
+                "status": 422,
+                "detail": "sample rate must be a positive number",
+                "field": "sample_rate_hz",
+                "value": "0",
+                "allowed": "1e-09 to 1e+09",
+                "remedy": "state the logger's rate in Hz",
+            }
+        }
+    )
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    field: str | None = None
+    value: str | None = None
+    allowed: str | None = None
+    remedy: str | None = None
+
+
+TITLES = {
+    400: "Bad Request",
+    401: "Unauthorized",
+    403: "Forbidden",
+    404: "Not Found",
+    405: "Method Not Allowed",
+    409: "Conflict",
+    413: "Content Too Large",
+    415: "Unsupported Media Type",
+    422: "Unprocessable Content",
+    429: "Too Many Requests",
+    503: "Service Unavailable",
+    507: "Insufficient Storage",
+}
+
+
+class ApiError(Exception):
+    """Answer a request with a problem document."""
+
+    def __init__(
+        self, status: int, detail: str, *, headers: dict[str, str] | None = None, **members: Any
+    ) -> None:
+        super().__init__(detail)
+        self.problem = Problem(title=TITLES[status], status=status, detail=detail, **members)
+        self.headers = headers
+
+
+def as_problem(error: InputError, status: int = 422) -> Problem:
+    """Return an error of the user's input as a problem document; paths of ours are left out."""
+    return Problem(
+        title=TITLES[status],
+        status=status,
+        detail=error.problem,
+        field=error.field,
+        value=None if error.value is None else str(error.value)[:200],
+        allowed=error.allowed,
+        remedy=error.remedy,
+    )
+
+
+def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the declaration of the problems a route may answer with."""
+    return {
+        status: {
+            "description": TITLES[status],
+            "content": {MEDIA_TYPE: {"schema": Problem.model_json_schema()}},
+        }
+        for status in statuses
+    }
+
+
+def register(app: FastAPI) -> None:
+    """Have every error of an application answered by a problem document."""
+    app.add_exception_handler(ApiError, _api_error)
+    app.add_exception_handler(InputError, _input_error)
+    app.add_exception_handler(StarletteHTTPException, _http_error)
+    app.add_exception_handler(RequestValidationError, _invalid_request)
+
+
+def _answer(problem: Problem, headers: dict[str, str] | None = None) -> JSONResponse:
+    content = problem.model_dump(exclude_none=True)
+    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
+
+
+async def _api_error(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, ApiError)
+    return _answer(error.problem, error.headers)
+
+
+async def _input_error(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, InputError)
+    return _answer(as_problem(error))
+
+
+async def _http_error(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, HTTPException | StarletteHTTPException)
+    title = TITLES.get(error.status_code, "Error")
+    headers = dict(error.headers) if error.headers else None
+    return _answer(Problem(title=title, status=error.status_code, detail=str(error.detail)), headers)
+
+
+async def _invalid_request(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    place = ".".join(str(part) for part in first["loc"] if part not in ("body", "query", "path", "header"))
+    value = first.get("input")
+    return _answer(
+        Problem(
+            title=TITLES[422],
+            status=422,
+            detail=first["msg"],
+            field=place or None,
+            value=None if value is None else str(value)[:200],
+            remedy="see /api/v1/openapi.json for what is allowed",
+        )
+    )

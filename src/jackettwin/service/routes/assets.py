@@ -1,0 +1,92 @@
+"""Assets and the versions of their twins."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path
+
+from jackettwin.service import auth, catalogue
+from jackettwin.service.problems import ApiError, answers
+from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Writes, known_asset
+from jackettwin.service.schemas import AssetOut, ConditionsIn, Count, NewAsset, NewVersion, Page, VersionOut
+from jackettwin.store import assets, people, streams
+
+router = APIRouter(tags=["assets"])
+
+
+@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401))
+def list_assets(connection: Reads) -> Page[AssetOut]:
+    """List the assets with their status, last data and findings."""
+    return Page(items=catalogue.overview(connection))
+
+
+@router.post(
+    "/assets", status_code=201, dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 409, 422)
+)
+def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
+    """Add an asset with its twin file and the files that this one names."""
+    if body.name in assets.asset_names(connection):
+        raise ApiError(409, "there is such an asset already", field="name", value=body.name)
+    catalogue.add_text_version(connection, parts, body.name, body.twin, body.files, who.name, body.comment)
+    return catalogue.one(connection, body.name)
+
+
+@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def get_asset(asset: AssetName, connection: Reads) -> AssetOut:
+    """Return one asset."""
+    known_asset(connection, asset)
+    return catalogue.one(connection, asset)
+
+
+@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422))
+def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, connection: Writes) -> VersionOut:
+    """Add a version; records are observed by it too, and it counts once it is adopted."""
+    known_asset(connection, asset)
+    version = catalogue.add_text_version(
+        connection, parts, asset, body.twin, body.files, who.name, body.comment
+    )
+    return catalogue.version_out(connection, version)
+
+
+@router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def versions(asset: AssetName, connection: Reads) -> Page[VersionOut]:
+    """List the versions of an asset's twin, oldest first."""
+    known_asset(connection, asset)
+    return Page(items=[catalogue.version_out(connection, v) for v in assets.all_versions(connection, asset)])
+
+
+@router.post(
+    "/assets/{asset}/versions/{version}/adopt",
+    dependencies=[auth.ENGINEER],
+    responses=answers(401, 403, 404, 422),
+)
+def adopt(
+    asset: AssetName,
+    version: Annotated[int, Path(ge=1, le=1_000_000)],
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> VersionOut:
+    """Make a version the one whose answers count."""
+    known_asset(connection, asset)
+    if version not in [v.version for v in assets.all_versions(connection, asset)]:
+        raise ApiError(404, "no such version", field="version", value=str(version))
+    assets.adopt(connection, asset, version)
+    people.note_down(connection, who.name, "adopt", f"{asset}/{version}", "ok", parts.now())
+    return catalogue.version_out(connection, assets.found_version(connection, asset, version))
+
+
+@router.post(
+    "/assets/{asset}/conditions", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+)
+def add_conditions(asset: AssetName, body: ConditionsIn, connection: Writes) -> Count:
+    """Add conditions of the site through time; records that begin later are joined with them."""
+    known_asset(connection, asset)
+    for name, values in body.values.items():
+        if len(values) != len(body.time_utc):
+            raise ApiError(422, "times and values differ in number", field=f"values.{name}"[:200])
+        if any(time.tzinfo is None for time in body.time_utc):
+            raise ApiError(422, "a time has no zone", field="time_utc", remedy="write ...Z")
+        streams.put_conditions(connection, asset, name[:64], dict(zip(body.time_utc, values, strict=True)))
+    return Count(count=len(body.time_utc) * len(body.values))

@@ -1,0 +1,111 @@
+"""What the twin says: modes, state, findings, alarms."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Response
+
+from jackettwin.service import answers as said
+from jackettwin.service import auth, signals
+from jackettwin.service.problems import ApiError, answers
+from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Writes, known_asset
+from jackettwin.service.schemas import Acknowledgement, AlarmOut, FindingOut, ModeOut, Page, TwinOut
+from jackettwin.store import journal, people, results
+
+router = APIRouter(tags=["answers"])
+
+Cursor = Annotated[str | None, Query(max_length=500)]
+Limit = Annotated[int, Query(ge=1, le=10_000)]
+When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
+
+
+@router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def modes(
+    asset: AssetName,
+    connection: Reads,
+    label: Annotated[str | None, Query(max_length=64)] = None,
+    since: Annotated[datetime | None, Query(alias="from")] = None,
+    until: Annotated[datetime | None, Query(alias="to")] = None,
+    cursor: Cursor = None,
+    limit: Limit = 1000,
+) -> Page[ModeOut]:
+    """List the modes of every record, in the order in which they were found."""
+    version = known_asset(connection, asset)
+    window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
+    return said.modes(connection, version, label, *window, cursor, limit)
+
+
+@router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def twin(asset: AssetName, parts: Parts, connection: Reads, at: When = None) -> TwinOut:
+    """Return what the twin knows at a time: mean modes and parameters with their intervals."""
+    return said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
+
+
+@router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def damping_budget(
+    asset: AssetName, parts: Parts, connection: Reads, at: When = None
+) -> Page[dict[str, object]]:
+    """Return whose damping it is, mode by mode."""
+    found = said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
+    return Page(items=found.parameters.get("budget", []))
+
+
+@router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def life(asset: AssetName, connection: Reads) -> Page[dict[str, object]]:
+    """Return the life at every joint; empty until the twin computes fatigue."""
+    known_asset(connection, asset)
+    return Page(items=[])
+
+
+@router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def findings(
+    asset: AssetName,
+    connection: Reads,
+    severity: Literal["info", "warning", "alarm"] | None = None,
+    cursor: Cursor = None,
+    limit: Limit = 100,
+) -> Page[FindingOut]:
+    """List what was worth saying, newest first."""
+    return said.findings(connection, known_asset(connection, asset), severity, cursor, limit)
+
+
+@router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def alarms(asset: AssetName, connection: Reads, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
+    """List the findings that ask for a person, newest first, and who took note."""
+    return said.alarms(connection, known_asset(connection, asset), cursor, limit)
+
+
+@router.post(
+    "/alarms/{alarm_id}/acknowledge", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+)
+def acknowledge(
+    alarm_id: Annotated[int, said.RowNumber],
+    body: Acknowledgement,
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> AlarmOut:
+    """Note that somebody took note of an alarm."""
+    row = results.find_finding(connection, alarm_id)
+    if row is None or row["severity"] != "alarm":
+        raise ApiError(404, "no such alarm", field="alarm_id", value=str(alarm_id))
+    results.acknowledge(connection, row, who.name, body.comment, parts.now())
+    people.note_down(connection, who.name, "acknowledge", results.alarm_key(row), "ok", parts.now())
+    journal.tell(
+        connection, "finding", row["asset"], {"id": alarm_id, "acknowledged_by": who.name}, parts.now()
+    )
+    return said.alarm_out(row, results.acknowledgements_of(connection, row["asset"]))
+
+
+@router.get(
+    "/export.parquet",
+    tags=["answers"],
+    dependencies=[auth.VIEWER],
+    response_class=Response,
+    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
+)
+def export(connection: Reads, table: Literal["modes", "findings", "records"] = "modes") -> Response:
+    """Return a whole table as Parquet."""
+    return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")

@@ -1,0 +1,277 @@
+"""What the API answers with."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Generic, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field
+
+T = TypeVar("T")
+
+
+class Page(BaseModel, Generic[T]):
+    """Part of a list, and where the next part begins."""
+
+    items: list[T]
+    next_cursor: str | None = None
+
+
+class Login(BaseModel):
+    """Name and password."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"example": {"name": "anna", "password": "correct horse battery"}}
+    )
+
+    name: str = Field(max_length=64)
+    password: str = Field(max_length=1024)
+
+
+class Me(BaseModel):
+    """Who you are, and the token that a browser sends back with what it changes."""
+
+    name: str
+    role: Literal["viewer", "engineer", "admin"]
+    csrf_token: str | None = None
+
+
+class NewUser(BaseModel):
+    """A user to add."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$")
+    role: Literal["viewer", "engineer", "admin"]
+    password: str = Field(min_length=12, max_length=1024)
+
+
+class UserOut(BaseModel):
+    """A user."""
+
+    name: str
+    role: Literal["viewer", "engineer", "admin"]
+    created_utc: datetime
+    disabled: bool
+
+
+class NewToken(BaseModel):
+    """A token to make for a machine."""
+
+    label: str = Field(default="", max_length=128)
+    days: int = Field(default=365, ge=1, le=3650)
+
+
+class Token(BaseModel):
+    """A token; it is shown this once."""
+
+    token: str
+    expires_utc: datetime
+
+
+class AssetOut(BaseModel):
+    """A turbine and how it is."""
+
+    name: str
+    version: int
+    model_hash: str
+    created_utc: datetime
+    last_record_utc: datetime | None
+    records: dict[str, int] = Field(description="How many records have each status.")
+    findings: dict[str, int] = Field(description="How many findings there are of each severity.")
+    status: Literal["ok", "warning", "alarm", "no data"]
+
+
+class NewAsset(BaseModel):
+    """A twin file and the files it names, as text."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {"name": "wtg_01", "twin": "structure: jacket15\nrecords: []\n", "files": {}}
+        }
+    )
+
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
+    twin: str = Field(max_length=1_000_000)
+    files: dict[str, str] = Field(default_factory=dict, max_length=100)
+    comment: str = Field(default="", max_length=1000)
+
+
+class NewVersion(BaseModel):
+    """Another twin file for an asset."""
+
+    twin: str = Field(max_length=1_000_000)
+    files: dict[str, str] = Field(default_factory=dict, max_length=100)
+    comment: str = Field(default="", max_length=1000)
+
+
+class VersionOut(BaseModel):
+    """A version of an asset's twin."""
+
+    version: int
+    model_hash: str
+    settings_hash: str
+    created_utc: datetime
+    created_by: str
+    comment: str
+    adopted: bool
+    observations: int
+
+
+class RecordAccepted(BaseModel):
+    """A record that was taken, and the work on it."""
+
+    record_id: str
+    job_id: int | None
+
+
+class RecordOut(BaseModel):
+    """A record and how far it got."""
+
+    record_id: str
+    asset: str
+    status: Literal["received", "observing", "observed", "refused", "set_aside"]
+    start_utc: datetime
+    duration_s: float
+    sample_rate_hz: float
+    channels: list[dict[str, Any]]
+    conditions: dict[str, Any]
+    source_name: str
+    received_utc: datetime
+    size_bytes: int
+    raw_kept: bool
+    problem: dict[str, Any] | None
+    picks: dict[str, Any] | None
+
+
+class Signal(BaseModel):
+    """Extremes of a channel in equal bins of time."""
+
+    sample_rate_hz: float
+    start_utc: datetime
+    time_s: list[float]
+    channels: dict[str, dict[str, list[float | None]]]
+
+
+class Spectra(BaseModel):
+    """Power spectral densities by Welch's method."""
+
+    frequency_hz: list[float]
+    channels: dict[str, list[float]]
+    units: dict[str, str]
+
+
+class PickIn(BaseModel):
+    """A pole chosen by hand: the nearest one to this frequency, of this order or any."""
+
+    frequency_hz: float = Field(gt=0.0, le=1e6)
+    order: int | None = Field(default=None, ge=1, le=1000)
+
+
+class PicksIn(BaseModel):
+    """The poles to take instead of the automatic choice; none returns to it."""
+
+    picks: list[PickIn] = Field(max_length=200)
+
+
+class ModeOut(BaseModel):
+    """A mode in one record; 95 % interval on the logarithm of the damping ratio."""
+
+    record_id: str
+    time_utc: datetime
+    label: str
+    frequency_hz: float
+    frequency_std_hz: float | None
+    damping_ratio: float | None
+    damping_ratio_std: float | None
+    damping_ratio_interval_95: tuple[float, float] | None
+    status: str
+    model_version: int
+
+
+class FindingOut(BaseModel):
+    """Something worth saying; its sentence is made of code and params."""
+
+    id: int
+    record_id: str
+    time_utc: datetime
+    code: str
+    severity: Literal["info", "warning", "alarm"]
+    subject: str | None
+    params: dict[str, Any]
+    text: str
+
+
+class AlarmOut(FindingOut):
+    """A finding that asks for a person, and who took note of it."""
+
+    acknowledged_by: str | None = None
+    acknowledged_utc: datetime | None = None
+    comment: str | None = None
+
+
+class Acknowledgement(BaseModel):
+    """What is to be said of an alarm."""
+
+    comment: str = Field(min_length=1, max_length=2000)
+
+
+class JobOut(BaseModel):
+    """A piece of work."""
+
+    id: int
+    kind: str
+    asset: str
+    record_id: str
+    version: int
+    state: Literal["queued", "leased", "done", "failed", "set_aside", "cancelled"]
+    tries: int
+    created_utc: datetime
+    started_utc: datetime | None
+    ended_utc: datetime | None
+    reason: dict[str, Any] | None
+
+
+class ConditionsIn(BaseModel):
+    """Conditions of the site through time: names with units, as in records."""
+
+    time_utc: list[datetime] = Field(max_length=100_000)
+    values: dict[str, list[float | str | None]] = Field(max_length=50)
+
+
+class Count(BaseModel):
+    """How many there were."""
+
+    count: int
+
+
+class TwinOut(BaseModel):
+    """What the twin knows at a time: per mode and parameter, with intervals, and of which records."""
+
+    asset: str
+    version: int
+    model_hash: str
+    code_version: str
+    state_hash: str
+    days: int
+    records: int
+    first_utc: datetime | None
+    last_utc: datetime | None
+    modes: list[dict[str, Any]]
+    parameters: dict[str, Any]
+    status: str
+
+
+class Health(BaseModel):
+    """Whether the server turns."""
+
+    status: Literal["ok", "degraded"]
+    version: str
+
+
+class Ready(BaseModel):
+    """Whether records can be taken and observed now."""
+
+    ready: bool
+    database: bool
+    workers: int
+    broker: bool | None
+    free_bytes: int

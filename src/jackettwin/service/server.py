@@ -1,0 +1,115 @@
+"""Start a server and stop it well."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event, Thread
+
+import uvicorn
+
+from jackettwin.service.app import create_app
+from jackettwin.service.chores import Housekeeping
+from jackettwin.service.context import Service, open_service
+from jackettwin.service.dispatch import Dispatcher
+from jackettwin.service.intake.files import Accepted, parse_here, take_file
+from jackettwin.service.intake.folder import watch_folders
+from jackettwin.service.intake.mqtt import MqttIntake
+from jackettwin.service.settings import ServiceSettings, refuse_exposed
+from jackettwin.store import assets, people, reading
+
+log = logging.getLogger(__name__)
+
+INBOX = "inbox"
+"""Folder of the store whose folders, named like assets, take records."""
+
+
+@contextmanager
+def running(settings: ServiceSettings) -> Iterator[Service]:
+    """Run everything of a server but its web application: workers, dispatcher, intake.
+
+    Raises
+    ------
+    InputError
+        If the database cannot be opened, or others could reach a server without users or TLS.
+    """
+    service = open_service(settings)
+    try:
+        with reading(service.database) as connection:
+            refuse_exposed(settings, people.any_user(connection))
+        mqtt = None if settings.mqtt is None else MqttIntake(service, settings.mqtt)
+        service.chores.append(Housekeeping(service))
+        if mqtt is not None:
+            service.chores.append(mqtt)
+            service.broker_connected = lambda: mqtt.connected
+            mqtt.start()
+        dispatcher, stop = Dispatcher(service), Event()
+        service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
+        dispatcher.start()
+        inbox = Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True)
+        inbox.start()
+        yield service
+        stop.set()
+        if mqtt is not None:
+            mqtt.stop()
+        dispatcher.stop()
+    finally:
+        service.compute.close()
+        service.database.dispose()
+
+
+def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _: None) -> None:
+    """Serve until told to stop; requests under way are answered, work under way is leased again later."""
+    with running(settings) as service:
+        config = uvicorn.Config(
+            create_app(service),
+            host=settings.host,
+            port=settings.port,
+            log_level="warning",
+            access_log=False,
+            proxy_headers=settings.behind_proxy,
+            forwarded_allow_ips="*" if settings.behind_proxy else None,
+            ssl_certfile=settings.tls_certificate,
+            ssl_keyfile=settings.tls_key,
+            timeout_graceful_shutdown=3,
+            server_header=False,
+        )
+        server = uvicorn.Server(config)
+
+        async def main() -> None:
+            task = asyncio.create_task(server.serve())
+            while not server.started and not task.done():
+                await asyncio.sleep(0.02)
+            if server.started:
+                ready(service)
+            await task
+
+        asyncio.run(main())
+
+
+def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
+    folder = service.settings.store / INBOX
+    folder.mkdir(exist_ok=True)
+
+    def take(path: Path) -> Accepted:
+        return take_from_inbox(service, folder, path)
+
+    watch_folders([folder], take, stop)
+
+
+def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted:
+    """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it."""
+    asset = path.relative_to(inbox).parts[0]
+    with reading(service.database) as connection:
+        known = asset in assets.asset_names(connection)
+    if not known:
+        return Accepted("", None, False, {"detail": f"there is no asset {asset}"})
+    taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
+    if taken.problem is None:
+        path.unlink(missing_ok=True)
+        path.with_suffix(".json").unlink(missing_ok=True)
+        service.wake()
+    return taken

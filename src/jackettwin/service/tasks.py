@@ -1,0 +1,143 @@
+"""What workers do: read a file into the store, observe a stored record. Plain values in, plain values out."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jackettwin.errors import InputError, JackettwinError
+
+if TYPE_CHECKING:
+    from jackettwin.records import Record
+
+
+@dataclass(frozen=True)
+class Task:
+    """A stored record to observe, by a version of an asset's twin."""
+
+    waveform: str
+    twin_folder: str
+    asset: str
+    version: int
+    conditions: Mapping[str, Any]
+    picks: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a task: a document, or a problem (field, value, remedy) of the record itself."""
+
+    document: str | None
+    modes: tuple[dict[str, Any], ...] = ()
+    findings: tuple[dict[str, Any], ...] = ()
+    problem: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Parsed:
+    """A file that is now a waveform in the store, or the problem with it."""
+
+    record_id: str
+    waveform: str | None = None
+    size_bytes: int = 0
+    about: dict[str, Any] = field(default_factory=dict)
+    problem: dict[str, Any] | None = None
+
+
+def problem_of(error: InputError) -> dict[str, Any]:
+    """Return what is wrong with a user's input; where it lies on our disk is nobody's business."""
+    return {
+        "detail": error.problem,
+        "field": error.field,
+        "value": None if error.value is None else str(error.value)[:200],
+        "allowed": error.allowed,
+        "remedy": error.remedy,
+    }
+
+
+def limit_memory(most_bytes: int) -> None:
+    """Let this process take no more address space than so much on top of what it has.
+
+    Where the system can say so.
+    """
+    try:
+        import resource
+
+        own = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        resource.setrlimit(resource.RLIMIT_AS, (own + most_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    except (ImportError, OSError, ValueError):
+        return
+
+
+def about(record: Record) -> dict[str, Any]:
+    """Return what is searched of a record."""
+    assert record.start_utc is not None
+    return {
+        "start_utc": record.start_utc.isoformat(),
+        "duration_s": record.duration_s,
+        "sample_rate_hz": record.sample_rate_hz,
+        "channels": [
+            {"name": c.name, "quantity": c.quantity, "unit": c.unit, "height_m": c.height_m, "node": c.node}
+            for c in record.channels
+        ],
+        "conditions": json.loads(json.dumps(dict(record.conditions), default=str)),
+    }
+
+
+def file_hash(path: Path) -> str:
+    """Return the content hash of a file, what an unreadable record is known by."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def read_file(path: str, asset: str, store: str, samples_limit: int) -> Parsed:
+    """Read a file of any known format and keep its samples in the store."""
+    from jackettwin.records import read_record
+    from jackettwin.records.identity import record_id
+    from jackettwin.store import waveform_path, write_waveform
+
+    source = Path(path)
+    try:
+        record = read_record(source)
+        if record.data.size > samples_limit:
+            raise InputError(
+                "the file expands to too many samples",
+                field="file",
+                value=record.data.size,
+                allowed=f"up to {samples_limit}",
+                remedy="send it in pieces of an hour",
+            )
+        if record.start_utc is None:
+            raise InputError(
+                "a record without a start cannot be placed in time",
+                field="start_utc",
+                remedy="give start_utc in the description beside it, or a time column with a date",
+            )
+        number = record_id(record)
+        place = waveform_path(asset, record.start_utc, number)
+        size = write_waveform(record, Path(store) / place)
+    except InputError as error:
+        return Parsed(file_hash(source), problem=problem_of(error))
+    except MemoryError:
+        return Parsed(
+            file_hash(source),
+            problem={"detail": "the file needs more memory than a worker has", "field": "file"},
+        )
+    return Parsed(number, place, size, about(record))
+
+
+def observe_stored(task: Task) -> Outcome:
+    """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
+    from jackettwin.service.engine import load_model, observed
+
+    try:
+        return observed(load_model(Path(task.twin_folder)), task)
+    except InputError as error:
+        return Outcome(None, problem=problem_of(error))
+    except JackettwinError as error:
+        return Outcome(None, problem={"detail": str(error)})

@@ -1,0 +1,106 @@
+"""Records that arrive over HTTP, and work that is asked for over it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from sqlalchemy import Connection
+
+from jackettwin.service import engine
+from jackettwin.service.consequences import twin_folder
+from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
+from jackettwin.service.problems import ApiError
+from jackettwin.service.routes.common import known_asset
+from jackettwin.service.schemas import PicksIn
+from jackettwin.store import assets, people, reading, records, work
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
+
+_PIECE = 1 << 20
+_ROOM_BYTES = 256 * 2**20
+"""Room that must be left on the disk after an upload: the database needs it to finish what it began."""
+
+
+def refuse_unknown(service: Service, asset: str) -> None:
+    """Answer 404 if there is no such asset."""
+    with reading(service.database) as connection:
+        known_asset(connection, asset)
+
+
+def take(service: Service, asset: str, name: str, stream: BinaryIO, description: str | None) -> Accepted:
+    """Read an upload and keep its record; nothing of it is left behind if that fails."""
+    if description is not None:
+        _check(description)
+    if service.free_bytes() < _ROOM_BYTES:
+        raise ApiError(507, "the disk of the store is full", remedy="make room, or prune old samples")
+    path = spooled(
+        service.settings.spool,
+        name,
+        _limited(stream, service.settings.upload_limit_bytes),
+        None if description is None else description.encode(),
+    )
+    try:
+        taken = take_file(service.database, service.now, parse_here(service), asset, path, name[:255])
+    finally:
+        discard(path)
+    if taken.problem is not None:
+        raise ApiError(422, **_members(taken.problem))
+    return taken
+
+
+def pick(
+    connection: Connection, service: Service, record: records.StoredRecord, body: PicksIn, who: str
+) -> int:
+    """Keep poles that were chosen by hand, and queue the record to be identified with them."""
+    chosen = {"poles": [p.model_dump() for p in body.picks], "by": who, "time_utc": service.now().isoformat()}
+    records.set_picks(connection, record.asset, record.record_id, chosen if body.picks else None)
+    people.note_down(connection, who, "picks", f"{record.asset}/{record.record_id}", "ok", service.now())
+    number = 0
+    for version in assets.all_versions(connection, record.asset):
+        number = queue(connection, version, record.record_id, service.now(), priority=20)
+        work.try_again(connection, number)
+    return number
+
+
+def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> dict[str, Any]:
+    """Return the poles of every model order of a record."""
+    if record.waveform is None:
+        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+    version = assets.found_version(connection, record.asset)
+    folder = twin_folder(connection, service, record.asset, version.version)
+    waveform = str(service.settings.store / record.waveform)
+    future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
+    try:
+        found: dict[str, Any] = future.result(timeout=service.settings.observe_limit_s)
+    except TimeoutError:
+        service.compute.end(future)
+        raise ApiError(503, "the identification takes too long") from None
+    return found
+
+
+def _limited(stream: BinaryIO, most: int) -> Iterator[bytes]:
+    size = 0
+    while piece := stream.read(_PIECE):
+        size += len(piece)
+        if size > most:
+            raise ApiError(413, "the file is too large", field="file", allowed=f"up to {most} bytes")
+        yield piece
+
+
+def _check(description: str) -> None:
+    try:
+        if not isinstance(json.loads(description), dict):
+            raise ValueError("not an object")
+    except ValueError as error:
+        raise ApiError(
+            422, "the description is not a JSON object", field="description", value=str(error)[:100]
+        ) from None
+
+
+def _members(problem: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: problem[key] for key in ("detail", "field", "value", "allowed", "remedy") if problem.get(key)
+    }

@@ -1,0 +1,164 @@
+"""Assets and the versions of their twins."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import re
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, func, insert, select, update
+
+from jackettwin.errors import InputError
+from jackettwin.files import atomic_folder
+from jackettwin.store.tables import assets, versions
+
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
+"""What an asset may be called: its name becomes part of paths and topics."""
+_FIXED_TIME = (1980, 1, 1, 0, 0, 0)
+
+
+@dataclass(frozen=True)
+class Version:
+    """One version of an asset's twin, without its files."""
+
+    asset: str
+    version: int
+    model_hash: str
+    settings_hash: str
+    created_utc: datetime
+    created_by: str
+    bundle_hash: str
+    comment: str
+
+
+def check_name(name: str) -> str:
+    """Return a name that an asset may have.
+
+    Raises
+    ------
+    InputError
+        If it has other characters than letters, digits, ``_`` and ``-``, or more than 64.
+    """
+    if NAME.fullmatch(name) is None:
+        raise InputError(
+            "an asset cannot be called so",
+            field="name",
+            value=name[:80],
+            allowed="1 to 64 letters, digits, _ and -, a letter or digit first",
+            remedy="choose a short name such as wtg_01",
+        )
+    return name
+
+
+def pack(files: Mapping[str, bytes]) -> bytes:
+    """Return files as one archive whose bytes depend on nothing but the files."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in sorted(files):
+            archive.writestr(zipfile.ZipInfo(name, _FIXED_TIME), files[name], zipfile.ZIP_DEFLATED)
+    return buffer.getvalue()
+
+
+def unpack(bundle: bytes) -> dict[str, bytes]:
+    """Return the files of an archive that :func:`pack` made."""
+    with zipfile.ZipFile(io.BytesIO(bundle)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def laid_out(bundle: bytes, bundle_hash: str, folder: Path) -> Path:
+    """Return the folder in which the files of a bundle stand, laid out if they do not yet."""
+    place = folder / bundle_hash
+    if not place.is_dir():
+        with atomic_folder(place) as temporary:
+            for name, content in unpack(bundle).items():
+                (temporary / name).parent.mkdir(parents=True, exist_ok=True)
+                (temporary / name).write_bytes(content)
+            temporary.rename(place)
+            temporary.mkdir()
+    return place
+
+
+def add_version(
+    connection: Connection,
+    name: str,
+    files: Mapping[str, bytes],
+    *,
+    model_hash: str,
+    settings_hash: str,
+    by: str,
+    now: datetime,
+    comment: str = "",
+) -> Version:
+    """Add an asset, or a version to it; the first version is adopted, later ones wait for a person."""
+    check_name(name)
+    bundle = pack(files)
+    last = connection.scalar(select(func.max(versions.c.version)).where(versions.c.asset == name))
+    number = 1 if last is None else last + 1
+    if last is None:
+        connection.execute(insert(assets).values(name=name, created_utc=now, adopted_version=1))
+    row: dict[str, Any] = {
+        "asset": name,
+        "version": number,
+        "model_hash": model_hash,
+        "settings_hash": settings_hash,
+        "created_utc": now,
+        "created_by": by,
+        "bundle_hash": hashlib.sha256(bundle).hexdigest(),
+        "comment": comment,
+    }
+    connection.execute(insert(versions).values(**row, bundle=bundle))
+    return Version(**row)
+
+
+def adopt(connection: Connection, name: str, version: int) -> None:
+    """Make a version the one whose answers count."""
+    found_version(connection, name, version)
+    connection.execute(update(assets).where(assets.c.name == name).values(adopted_version=version))
+
+
+def asset_names(connection: Connection) -> list[str]:
+    """Return the names of all assets, sorted."""
+    return list(connection.scalars(select(assets.c.name).order_by(assets.c.name)))
+
+
+def found_version(connection: Connection, name: str, version: int | None = None) -> Version:
+    """Return a version of an asset, by default the adopted one.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset or version.
+    """
+    columns = [column for column in versions.c if column.name != "bundle"]
+    query = select(*columns).join(assets, assets.c.name == versions.c.asset).where(versions.c.asset == name)
+    wanted = assets.c.adopted_version if version is None else version
+    row = connection.execute(query.where(versions.c.version == wanted)).one_or_none()
+    if row is None:
+        known = asset_names(connection)
+        raise InputError(
+            "no such asset" if name not in known else "no such version of the asset",
+            field="asset" if name not in known else "version",
+            value=name if name not in known else version,
+            allowed=", ".join(known[:20]) or "none yet",
+            remedy="add it with `jackettwin asset add NAME TWIN --store STORE`",
+        )
+    return Version(**row._mapping)
+
+
+def all_versions(connection: Connection, name: str) -> list[Version]:
+    """Return every version of an asset, oldest first."""
+    columns = [column for column in versions.c if column.name != "bundle"]
+    rows = connection.execute(select(*columns).where(versions.c.asset == name).order_by(versions.c.version))
+    return [Version(**row._mapping) for row in rows]
+
+
+def bundle_of(connection: Connection, name: str, version: int) -> bytes:
+    """Return the archive of a version's files."""
+    query = select(versions.c.bundle).where(versions.c.asset == name, versions.c.version == version)
+    return bytes(connection.execute(query).scalar_one())

@@ -1,0 +1,159 @@
+"""A whole store in one file, and back: every table as lines of JSON, every waveform, one manifest.
+
+The form is the same for SQLite and PostgreSQL, so that a backup of one restores into the other.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import tarfile
+from collections.abc import Iterator, Mapping
+from datetime import datetime
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from sqlalchemy import Connection, Engine, LargeBinary, Table, func, insert, select, text
+
+from jackettwin.errors import InputError
+from jackettwin.files import atomic_path
+from jackettwin.store import tables
+from jackettwin.store.database import writing
+from jackettwin.store.tables import SCHEMA_VERSION, Utc
+
+_LEFT_OUT = ("servers",)
+"""Who serves is not part of what is kept; leases are given back when a restored store is opened."""
+_ROWS = 500
+"""Rows that are inserted at once."""
+
+
+def backup(database: Engine, store: Path, target: Path) -> dict[str, int]:
+    """Write a store to a file, whole or not at all; return how many rows each table has.
+
+    Tables are read in one transaction, while the store may be served. A waveform is never changed once it is
+    written, so those that the tables name are as they were.
+    """
+    counts: dict[str, int] = {}
+    with (
+        atomic_path(target) as temporary,
+        database.connect() as connection,
+        tarfile.open(temporary, "w:gz") as out,
+    ):
+        if connection.dialect.name == "postgresql":
+            connection.execution_options(isolation_level="REPEATABLE READ")
+        for table in _tables():
+            rows = b"".join(_lines(connection, table))
+            counts[table.name] = rows.count(b"\n")
+            _add(out, f"tables/{table.name}.jsonl", rows)
+        for (place,) in connection.execute(select(tables.records.c.waveform)).all():
+            if place is not None and (store / place).exists():
+                out.add(store / place, arcname=place, recursive=False)
+        manifest = {"schema_version": SCHEMA_VERSION, "tables": counts}
+        _add(out, "manifest.json", json.dumps(manifest).encode())
+    return counts
+
+
+def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
+    """Fill an empty store from a backup, whole or not at all; return how many rows each table got.
+
+    Raises
+    ------
+    InputError
+        If the file is no backup, of another schema, damaged, or the store holds something already.
+    """
+    counts: dict[str, int] = {}
+    with writing(database) as connection:
+        if connection.scalar(select(func.count()).select_from(tables.assets)):
+            raise InputError(
+                "the store is not empty", field="store", value=store, remedy="restore into a new folder"
+            )
+        try:
+            with tarfile.open(source, "r:gz") as archive:
+                _check(archive, source)
+                for table in _tables():
+                    counts[table.name] = _insert(connection, table, archive)
+                for member in archive:
+                    if member.name.startswith("records/"):
+                        _extract(archive, member, store)
+        except (tarfile.TarError, EOFError, OSError, KeyError, ValueError) as error:
+            raise InputError(
+                "not a whole backup", file=source, value=str(error)[:200], remedy="take another backup"
+            ) from None
+        _count_on(connection)
+    return counts
+
+
+def _tables() -> list[Table]:
+    return [table for table in tables.metadata.sorted_tables if table.name not in _LEFT_OUT]
+
+
+def _lines(connection: Connection, table: Table) -> Iterator[bytes]:
+    order = list(table.primary_key.columns)
+    for row in connection.execute(select(table).order_by(*order)):
+        plain = {name: _plain(value) for name, value in row._mapping.items()}
+        yield json.dumps(plain, ensure_ascii=False).encode() + b"\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    return base64.b64encode(value).decode() if isinstance(value, bytes) else value
+
+
+def _value(table: Table, name: str, plain: Any) -> Any:
+    kind = table.c[name].type
+    if plain is not None and isinstance(kind, Utc):
+        return datetime.fromisoformat(plain)
+    return base64.b64decode(plain) if plain is not None and isinstance(kind, LargeBinary) else plain
+
+
+def _add(archive: tarfile.TarFile, name: str, content: bytes) -> None:
+    member = tarfile.TarInfo(name)
+    member.size = len(content)
+    archive.addfile(member, io.BytesIO(content))
+
+
+def _check(archive: tarfile.TarFile, source: Path) -> None:
+    stream = archive.extractfile("manifest.json")
+    manifest: Mapping[str, Any] = json.load(stream) if stream is not None else {}
+    if manifest.get("schema_version") != SCHEMA_VERSION:
+        raise InputError(
+            "the backup is of another schema",
+            file=source,
+            field="schema_version",
+            value=manifest.get("schema_version"),
+            allowed=SCHEMA_VERSION,
+            remedy="restore it with the version that wrote it, then upgrade",
+        )
+
+
+def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> int:
+    stream = archive.extractfile(f"tables/{table.name}.jsonl")
+    rows = [json.loads(line) for line in stream] if stream is not None else []
+    for i in range(0, len(rows), _ROWS):
+        part = [{k: _value(table, k, v) for k, v in row.items()} for row in rows[i : i + _ROWS]]
+        connection.execute(insert(table), part)
+    return len(rows)
+
+
+def _extract(archive: tarfile.TarFile, member: tarfile.TarInfo, store: Path) -> None:
+    """Write one waveform; a name that leads elsewhere is refused."""
+    place = PurePosixPath(member.name)
+    if not member.isfile() or place.is_absolute() or ".." in place.parts:
+        raise ValueError(f"{member.name} does not belong into a backup")
+    stream = archive.extractfile(member)
+    assert stream is not None
+    with atomic_path(store / place) as temporary:
+        temporary.write_bytes(stream.read())
+
+
+def _count_on(connection: Connection) -> None:
+    """Have row numbers go on after the restored ones, where the database keeps a counter of its own."""
+    if connection.dialect.name != "postgresql":
+        return
+    for table in _tables():
+        if "id" in table.c and table.c.id.primary_key:
+            last = connection.scalar(select(func.max(table.c.id))) or 0
+            sequence = f"select setval(pg_get_serial_sequence('{table.name}', 'id'), :last, :called)"
+            connection.execute(text(sequence), {"last": max(last, 1), "called": last > 0})

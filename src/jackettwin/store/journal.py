@@ -1,0 +1,54 @@
+"""Events in the order in which they were committed, for all servers of one database."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import Connection, delete, func, insert, select, text
+
+from jackettwin.store.tables import events
+
+KINDS = ("record", "observation", "state", "finding", "job", "asset")
+KEPT = timedelta(days=2)
+"""How long a reader may be away and still get every event."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened to an asset."""
+
+    id: int
+    time_utc: datetime
+    kind: str
+    asset: str
+    payload: dict[str, Any]
+
+
+def tell(connection: Connection, kind: str, asset: str, payload: Mapping[str, Any], now: datetime) -> None:
+    """Add an event, with the transaction in which it happened.
+
+    On PostgreSQL numbers are drawn before transactions end: a lock lets them become visible in order, so that
+    no reader who goes on from the last number misses one.
+    """
+    if connection.dialect.name == "postgresql":
+        connection.execute(text("select pg_advisory_xact_lock(740114)"))
+    connection.execute(insert(events).values(time_utc=now, kind=kind, asset=asset, payload=dict(payload)))
+
+
+def events_after(connection: Connection, last: int, limit: int = 500) -> list[Event]:
+    """Return the events after a number, oldest first."""
+    rows = connection.execute(select(events).where(events.c.id > last).order_by(events.c.id).limit(limit))
+    return [Event(**row._mapping) for row in rows]
+
+
+def last_event(connection: Connection) -> int:
+    """Return the number of the newest event, 0 before the first."""
+    return connection.scalar(select(func.max(events.c.id))) or 0
+
+
+def forget_events(connection: Connection, now: datetime) -> None:
+    """Delete what no reader can be waiting for."""
+    connection.execute(delete(events).where(events.c.time_utc < now - KEPT))

@@ -1,0 +1,121 @@
+"""Who may: users, sessions of browsers, tokens of machines, and the audit log."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Connection, delete, func, insert, select
+
+from jackettwin.store.tables import audit, tokens, users
+
+ROLES = ("viewer", "engineer", "admin")
+"""Each may what those before it may."""
+
+
+@dataclass(frozen=True)
+class User:
+    """Who somebody is, and the hash of the password."""
+
+    name: str
+    role: str
+    password_hash: str
+    created_utc: datetime
+    disabled: bool = False
+
+
+@dataclass(frozen=True)
+class Grant:
+    """A session or token, with its user's name and role; ``csrf`` must come with what a session changes."""
+
+    user: str
+    role: str
+    kind: str
+    csrf: str
+    expires_utc: datetime
+
+
+def secret_hash(secret: str) -> str:
+    """Return what is kept of a random secret of 256 bits: no salt is needed against guessing."""
+    return hashlib.sha256(secret.encode()).hexdigest()
+
+
+def any_user(connection: Connection) -> bool:
+    """Tell whether a user is defined."""
+    return bool(connection.scalar(select(func.count()).select_from(users)))
+
+
+def add_user(connection: Connection, user: User) -> None:
+    """Add a user, or replace who has the name; open sessions and tokens of the old one end."""
+    connection.execute(delete(tokens).where(tokens.c.user == user.name))
+    connection.execute(delete(users).where(users.c.name == user.name))
+    connection.execute(insert(users).values(**vars(user)))
+
+
+def find_user(connection: Connection, name: str) -> User | None:
+    """Return a user, or None."""
+    row = connection.execute(select(users).where(users.c.name == name)).one_or_none()
+    return None if row is None else User(**row._mapping)
+
+
+def list_users(connection: Connection) -> list[User]:
+    """Return all users by name."""
+    return [User(**row._mapping) for row in connection.execute(select(users).order_by(users.c.name))]
+
+
+def grant(
+    connection: Connection,
+    secret: str,
+    *,
+    kind: str,
+    user: str,
+    label: str,
+    csrf: str,
+    now: datetime,
+    expires: datetime,
+) -> None:
+    """Keep a session or token, as a hash."""
+    connection.execute(delete(tokens).where(tokens.c.expires_utc < now))
+    connection.execute(
+        insert(tokens).values(
+            hash=secret_hash(secret),
+            kind=kind,
+            user=user,
+            label=label,
+            csrf=csrf,
+            created_utc=now,
+            expires_utc=expires,
+        )
+    )
+
+
+def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | None:
+    """Return whose session or token a secret is; None if it is nobody's, expired, or its user is disabled."""
+    query = (
+        select(tokens.c.user, users.c.role, tokens.c.kind, tokens.c.csrf, tokens.c.expires_utc)
+        .join(users, users.c.name == tokens.c.user)
+        .where(tokens.c.hash == secret_hash(secret), users.c.disabled.is_(False))
+    )
+    row = connection.execute(query).one_or_none()
+    found = None if row is None else Grant(**row._mapping)
+    return found if found is not None and found.expires_utc > now else None
+
+
+def revoke(connection: Connection, secret: str) -> None:
+    """End a session or token."""
+    connection.execute(delete(tokens).where(tokens.c.hash == secret_hash(secret)))
+
+
+def note_down(
+    connection: Connection, who: str, action: str, subject: str, outcome: str, now: datetime
+) -> None:
+    """Write a line into the audit log."""
+    row = {
+        "time_utc": now,
+        "who": who[:64],
+        "action": action[:64],
+        "subject": subject[:255],
+        "outcome": outcome[:64],
+    }
+    connection.execute(insert(audit).values(**row))

@@ -1,0 +1,178 @@
+"""Records by content: what arrived, from when to when, and how far it got."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, and_, func, insert, or_, select, update
+
+from jackettwin.errors import InputError
+from jackettwin.store.tables import records
+
+STATUSES = ("received", "observing", "observed", "refused", "set_aside")
+
+
+@dataclass(frozen=True)
+class StoredRecord:
+    """A row of the table of records."""
+
+    asset: str
+    record_id: str
+    status: str
+    start_utc: datetime
+    duration_s: float
+    sample_rate_hz: float
+    channels: list[dict[str, Any]]
+    conditions: dict[str, Any]
+    source_name: str
+    received_utc: datetime
+    waveform: str | None
+    size_bytes: int
+    problem: dict[str, Any] | None = None
+    picks: dict[str, Any] | None = None
+
+
+def add_record(connection: Connection, record: StoredRecord) -> bool:
+    """Keep a record unless its content is known; return whether it is new."""
+    if find_record(connection, record.asset, record.record_id) is not None:
+        return False
+    connection.execute(insert(records).values(**vars(record)))
+    return True
+
+
+def find_record(connection: Connection, asset: str, record_id: str) -> StoredRecord | None:
+    """Return a record of an asset, or None."""
+    query = select(records).where(records.c.asset == asset, records.c.record_id == record_id)
+    row = connection.execute(query).one_or_none()
+    return None if row is None else StoredRecord(**row._mapping)
+
+
+def records_with_id(connection: Connection, record_id: str) -> list[StoredRecord]:
+    """Return the records of any asset that have this content."""
+    rows = connection.execute(select(records).where(records.c.record_id == record_id))
+    return [StoredRecord(**row._mapping) for row in rows]
+
+
+def set_status(
+    connection: Connection, asset: str, record_id: str, status: str, problem: Mapping[str, Any] | None = None
+) -> None:
+    """Say how far a record got, and why no further."""
+    if status not in STATUSES:
+        raise ValueError(f"no record has the status {status!r}")
+    where = and_(records.c.asset == asset, records.c.record_id == record_id)
+    connection.execute(update(records).where(where).values(status=status, problem=problem))
+
+
+def set_picks(connection: Connection, asset: str, record_id: str, picks: Mapping[str, Any] | None) -> None:
+    """Keep the poles that a person chose, who and when among them."""
+    where = and_(records.c.asset == asset, records.c.record_id == record_id)
+    connection.execute(update(records).where(where).values(picks=picks))
+
+
+def list_records(
+    connection: Connection,
+    asset: str,
+    *,
+    since: datetime | None = None,
+    until: datetime | None = None,
+    status: str | None = None,
+    cursor: str | None = None,
+    limit: int = 100,
+) -> tuple[list[StoredRecord], str | None]:
+    """Return a page of records, latest first, and the cursor of the next page."""
+    where = [records.c.asset == asset]
+    if since is not None:
+        where.append(records.c.start_utc >= since)
+    if until is not None:
+        where.append(records.c.start_utc < until)
+    if status is not None:
+        where.append(records.c.status == status)
+    if cursor is not None:
+        start, record_id = read_cursor(cursor)
+        at = datetime.fromisoformat(str(start))
+        where.append(
+            or_(
+                records.c.start_utc < at,
+                and_(records.c.start_utc == at, records.c.record_id < str(record_id)),
+            )
+        )
+    order = (records.c.start_utc.desc(), records.c.record_id.desc())
+    rows = connection.execute(select(records).where(*where).order_by(*order).limit(limit + 1)).all()
+    found = [StoredRecord(**row._mapping) for row in rows[:limit]]
+    more = len(rows) > limit
+    return found, write_cursor(found[-1].start_utc.isoformat(), found[-1].record_id) if more else None
+
+
+def all_with_samples(connection: Connection, asset: str) -> list[StoredRecord]:
+    """Return the records of an asset whose samples are kept and that count, oldest first."""
+    where = (records.c.asset == asset, records.c.waveform.is_not(None), records.c.status != "set_aside")
+    rows = connection.execute(
+        select(records).where(*where).order_by(records.c.start_utc, records.c.record_id)
+    )
+    return [StoredRecord(**row._mapping) for row in rows]
+
+
+def with_samples_before(connection: Connection, time: datetime) -> list[StoredRecord]:
+    """Return the observed records that began before a time and whose samples are kept."""
+    where = (records.c.start_utc < time, records.c.waveform.is_not(None), records.c.status == "observed")
+    return [StoredRecord(**row._mapping) for row in connection.execute(select(records).where(*where))]
+
+
+def forget_samples(connection: Connection, record: StoredRecord) -> None:
+    """Say that the samples of a record are not kept any more."""
+    where = and_(records.c.asset == record.asset, records.c.record_id == record.record_id)
+    connection.execute(update(records).where(where).values(waveform=None))
+
+
+def count_by_status(connection: Connection) -> dict[str, dict[str, int]]:
+    """Return how many records of each asset have each status."""
+    query = select(records.c.asset, records.c.status, func.count()).group_by(
+        records.c.asset, records.c.status
+    )
+    counts: dict[str, dict[str, int]] = {}
+    for asset, status, n in connection.execute(query):
+        counts.setdefault(asset, {})[status] = n
+    return counts
+
+
+def last_start(connection: Connection, asset: str) -> datetime | None:
+    """Return when the latest record of an asset began."""
+    found: datetime | None = connection.scalar(
+        select(func.max(records.c.start_utc, type_=records.c.start_utc.type)).where(records.c.asset == asset)
+    )
+    return found
+
+
+def write_cursor(*place: str | int) -> str:
+    """Return a place in a list as an opaque word."""
+    return base64.urlsafe_b64encode(json.dumps(place).encode()).decode()
+
+
+def read_cursor(cursor: str) -> list[str | int]:
+    """Return the place that a cursor stands for.
+
+    Raises
+    ------
+    InputError
+        If it is not a cursor that we gave.
+    """
+    try:
+        place = json.loads(base64.urlsafe_b64decode(cursor.encode()))
+        if not isinstance(place, list) or not all(isinstance(p, str | int) for p in place) or not place:
+            raise ValueError
+        if len(place) == 2:
+            datetime.fromisoformat(str(place[0]))
+    except ValueError:
+        raise InputError(
+            "not a cursor",
+            field="cursor",
+            value=cursor[:40],
+            allowed="the next_cursor of the page before",
+            remedy="leave it out to begin at the first page",
+        ) from None
+    return place

@@ -1,0 +1,229 @@
+"""What the engine said: observations, modes, findings and the states of days."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, and_, delete, func, insert, select
+
+from jackettwin.store.tables import acknowledgements, findings, modes, observations, states
+
+
+@dataclass(frozen=True)
+class StoredObservation:
+    """An observation as a document, with what it is found by."""
+
+    asset: str
+    model_hash: str
+    settings_hash: str
+    record_id: str
+    start_utc: datetime
+    code_version: str
+    document: str
+
+
+@dataclass(frozen=True)
+class StoredState:
+    """What the records of one UTC day say together."""
+
+    asset: str
+    model_hash: str
+    day: str
+    n_records: int
+    document: str
+
+    @property
+    def document_hash(self) -> str:
+        """Content hash: two states are equal if theirs are."""
+        return hashlib.sha256(self.document.encode()).hexdigest()
+
+
+def put_observation(
+    connection: Connection,
+    observation: StoredObservation,
+    mode_rows: Iterable[Mapping[str, Any]],
+    finding_rows: Iterable[Mapping[str, Any]],
+) -> None:
+    """Keep an observation, its modes and its findings in place of what the same record said before."""
+    drop_observation(connection, observation.asset, observation.model_hash, observation.record_id)
+    connection.execute(insert(observations).values(**vars(observation)))
+    if mode_rows := list(mode_rows):
+        connection.execute(insert(modes), mode_rows)
+    if finding_rows := list(finding_rows):
+        connection.execute(insert(findings), finding_rows)
+
+
+def drop_observation(connection: Connection, asset: str, model_hash: str, record_id: str) -> None:
+    """Forget what a record said under a model."""
+    for table in (observations, modes):
+        same = and_(table.c.asset == asset, table.c.model_hash == model_hash, table.c.record_id == record_id)
+        connection.execute(delete(table).where(same))
+    own = and_(
+        findings.c.asset == asset, findings.c.model_hash == model_hash, findings.c.record_id == record_id
+    )
+    connection.execute(delete(findings).where(own, findings.c.origin == "observe"))
+
+
+def observations_between(
+    connection: Connection, asset: str, model_hash: str, start: datetime, end: datetime
+) -> Iterator[StoredObservation]:
+    """Yield the observations of records that began in an interval, by start, then by record."""
+    where = [observations.c.asset == asset, observations.c.model_hash == model_hash]
+    where += [observations.c.start_utc >= start, observations.c.start_utc < end]
+    order = (observations.c.start_utc, observations.c.record_id)
+    for row in connection.execute(select(observations).where(*where).order_by(*order)):
+        yield StoredObservation(**row._mapping)
+
+
+def find_observation(
+    connection: Connection, asset: str, record_id: str, model_hash: str
+) -> StoredObservation | None:
+    """Return what a record said under a model, or None."""
+    same = and_(
+        observations.c.asset == asset,
+        observations.c.record_id == record_id,
+        observations.c.model_hash == model_hash,
+    )
+    row = connection.execute(select(observations).where(same)).first()
+    return None if row is None else StoredObservation(**row._mapping)
+
+
+def put_state(connection: Connection, state: StoredState) -> None:
+    """Keep the state of a day in place of the one before."""
+    same = and_(
+        states.c.asset == state.asset, states.c.model_hash == state.model_hash, states.c.day == state.day
+    )
+    connection.execute(delete(states).where(same))
+    connection.execute(insert(states).values(**vars(state), document_hash=state.document_hash))
+
+
+def find_state(connection: Connection, asset: str, model_hash: str, day: str) -> StoredState | None:
+    """Return the state of a day, or None."""
+    same = and_(states.c.asset == asset, states.c.model_hash == model_hash, states.c.day == day)
+    row = connection.execute(select(states).where(same)).one_or_none()
+    return None if row is None else _state(dict(row._mapping))
+
+
+def states_until(
+    connection: Connection, asset: str, model_hash: str, day: str | None = None
+) -> list[StoredState]:
+    """Return the states of all days, or of those up to a day, in their order."""
+    where = [states.c.asset == asset, states.c.model_hash == model_hash]
+    if day is not None:
+        where.append(states.c.day <= day)
+    rows = connection.execute(select(states).where(*where).order_by(states.c.day))
+    return [_state(dict(row._mapping)) for row in rows]
+
+
+def state_hashes(connection: Connection, asset: str, model_hash: str) -> dict[str, str]:
+    """Return the content hash of every day's state."""
+    query = select(states.c.day, states.c.document_hash)
+    query = query.where(states.c.asset == asset, states.c.model_hash == model_hash).order_by(states.c.day)
+    return {day: found for day, found in connection.execute(query)}
+
+
+def drop_state(connection: Connection, asset: str, model_hash: str, day: str) -> None:
+    """Forget the state of a day, with the findings that advancing made there."""
+    for table in (states, findings):
+        same = and_(table.c.asset == asset, table.c.model_hash == model_hash, table.c.day == day)
+        only = same if table is states else and_(same, findings.c.origin == "advance")
+        connection.execute(delete(table).where(only))
+
+
+def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Add findings."""
+    if rows:
+        connection.execute(insert(findings), list(rows))
+
+
+def list_modes(
+    connection: Connection,
+    asset: str,
+    model_hash: str,
+    *,
+    label: str | None = None,
+    since: datetime | None = None,
+    until: datetime | None = None,
+    after: int | None = None,
+    limit: int | None = 1000,
+) -> list[Mapping[str, Any]]:
+    """Return modes through time, in the order in which they were found."""
+    where = [modes.c.asset == asset, modes.c.model_hash == model_hash]
+    if label is not None:
+        where.append(modes.c.label == label)
+    if since is not None:
+        where.append(modes.c.time_utc >= since)
+    if until is not None:
+        where.append(modes.c.time_utc < until)
+    if after is not None:
+        where.append(modes.c.id > after)
+    rows = connection.execute(select(modes).where(*where).order_by(modes.c.id).limit(limit))
+    return [dict(row._mapping) for row in rows]
+
+
+def list_findings(
+    connection: Connection,
+    asset: str,
+    model_hash: str,
+    *,
+    severity: str | None = None,
+    before: int | None = None,
+    limit: int = 100,
+) -> list[Mapping[str, Any]]:
+    """Return findings, newest first."""
+    where = [findings.c.asset == asset, findings.c.model_hash == model_hash]
+    if severity is not None:
+        where.append(findings.c.severity == severity)
+    if before is not None:
+        where.append(findings.c.id < before)
+    rows = connection.execute(select(findings).where(*where).order_by(findings.c.id.desc()).limit(limit))
+    return [dict(row._mapping) for row in rows]
+
+
+def alarm_key(row: Mapping[str, Any]) -> str:
+    """Return what an alarm is known by: it keeps its acknowledgement when its day is advanced anew."""
+    return f"{row['asset']}/{row['day']}/{row['code']}/{row['subject'] or ''}"
+
+
+def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment: str, now: datetime) -> None:
+    """Note that somebody took note of an alarm; a second time replaces the first."""
+    key = alarm_key(row)
+    connection.execute(delete(acknowledgements).where(acknowledgements.c.alarm_key == key))
+    note = {"asset": row["asset"], "alarm_key": key, "by": by, "time_utc": now, "comment": comment}
+    connection.execute(insert(acknowledgements).values(**note))
+
+
+def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping[str, Any]]:
+    """Return who took note of which alarm, {alarm key: note}."""
+    rows = connection.execute(select(acknowledgements).where(acknowledgements.c.asset == asset))
+    return {row.alarm_key: dict(row._mapping) for row in rows}
+
+
+def unacknowledged_alarms(connection: Connection, asset: str, model_hash: str) -> int:
+    """Return how many alarms nobody took note of."""
+    rows = list_findings(connection, asset, model_hash, severity="alarm", limit=1000)
+    noted = acknowledgements_of(connection, asset)
+    return sum(alarm_key(row) not in noted for row in rows)
+
+
+def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:
+    """Return a finding by its number, or None."""
+    row = connection.execute(select(findings).where(findings.c.id == finding_id)).one_or_none()
+    return None if row is None else dict(row._mapping)
+
+
+def count_findings(connection: Connection) -> dict[str, dict[str, int]]:
+    """Return how many findings of each severity each asset has."""
+    query = select(findings.c.asset, findings.c.severity, func.count())
+    counts: dict[str, dict[str, int]] = {}
+    for asset, severity, n in connection.execute(query.group_by(findings.c.asset, findings.c.severity)):
+        counts.setdefault(asset, {})[severity] = n
+    return counts
+
+
+def _state(row: Mapping[str, Any]) -> StoredState:
+    return StoredState(**{name: row[name] for name in StoredState.__dataclass_fields__})

@@ -1,0 +1,24 @@
+"""What holds for a whole store, whoever serves it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy import Connection, delete, insert, select
+
+from jackettwin.store.tables import settings
+
+RAW_DAYS = "raw_days"
+"""How many days raw samples of observed records are kept; without it, for ever."""
+
+
+def get(connection: Connection, name: str) -> Any:
+    """Return a setting, or None."""
+    return connection.scalar(select(settings.c.value).where(settings.c.name == name))
+
+
+def put(connection: Connection, name: str, value: Any) -> None:
+    """Keep a setting; None takes it away."""
+    connection.execute(delete(settings).where(settings.c.name == name))
+    if value is not None:
+        connection.execute(insert(settings).values(name=name, value=value))

@@ -1,0 +1,166 @@
+"""Packets of streams and conditions of the site, kept until records are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from sqlalchemy import Connection, delete, func, insert, select, update
+
+from jackettwin.store.tables import conditions, packets, windows
+
+FloatArray = npt.NDArray[np.float64]
+
+WINDOW = timedelta(minutes=10)
+"""Streams become records of ten minutes on UTC boundaries, the field's habit."""
+KEPT = timedelta(days=2)
+"""How late a packet may come and still be put into its record."""
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+
+
+@dataclass(frozen=True)
+class Packet:
+    """Samples of one channel of one asset from ``t0_utc`` on."""
+
+    asset: str
+    channel: str
+    t0_utc: datetime
+    rate_hz: float
+    samples: FloatArray
+
+
+def add_packets(connection: Connection, new: Iterable[Packet]) -> int:
+    """Keep packets that are not known yet, by asset, channel and start; return how many were new.
+
+    One that begins :data:`KEPT` before the newest of its asset is left out: its window's other packets are
+    gone.
+    """
+    added = 0
+    newest: dict[str, datetime | None] = {}
+    for packet in new:
+        if packet.asset not in newest:
+            newest[packet.asset] = newest_packet(connection, packet.asset)
+        clock = newest[packet.asset]
+        if clock is not None and packet.t0_utc < clock - KEPT:
+            continue
+        same = (
+            packets.c.asset == packet.asset,
+            packets.c.channel == packet.channel,
+            packets.c.t0_utc == packet.t0_utc,
+        )
+        if connection.scalar(select(packets.c.id).where(*same)) is not None:
+            continue
+        connection.execute(
+            insert(packets).values(
+                asset=packet.asset,
+                channel=packet.channel,
+                t0_utc=packet.t0_utc,
+                window_utc=window_start(packet.t0_utc),
+                rate_hz=packet.rate_hz,
+                samples=np.asarray(packet.samples, dtype="<f8").tobytes(),
+            )
+        )
+        added += 1
+    return added
+
+
+@dataclass(frozen=True)
+class OpenWindow:
+    """A window whose packets are more than those its record was made of."""
+
+    asset: str
+    window_utc: datetime
+    n_packets: int
+    record_id: str | None
+
+
+def window_start(time: datetime) -> datetime:
+    """Return the start of the window that a time lies in."""
+    return _EPOCH + (time - _EPOCH) // WINDOW * WINDOW
+
+
+def open_windows(connection: Connection) -> list[OpenWindow]:
+    """Return the windows that have packets no record contains yet, oldest first."""
+    counted = (
+        select(packets.c.asset, packets.c.window_utc, func.count().label("n"))
+        .group_by(packets.c.asset, packets.c.window_utc)
+        .subquery()
+    )
+    same = (windows.c.asset == counted.c.asset) & (windows.c.window_utc == counted.c.window_utc)
+    query = select(
+        counted.c.asset, counted.c.window_utc, counted.c.n, windows.c.record_id, windows.c.n_packets
+    )
+    rows = connection.execute(query.outerjoin(windows, same).order_by(counted.c.window_utc, counted.c.asset))
+    return [OpenWindow(*row[:4]) for row in rows if row[4] != row[2]]
+
+
+def newest_packet(connection: Connection, asset: str) -> datetime | None:
+    """Return the start of the newest packet of an asset: the stream's own clock."""
+    newest: datetime | None = connection.scalar(
+        select(func.max(packets.c.t0_utc, type_=packets.c.t0_utc.type)).where(packets.c.asset == asset)
+    )
+    return newest
+
+
+def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list[Packet]:
+    """Return every packet that may reach into a window, by channel and time."""
+    near = (packets.c.window_utc == window_utc) | (packets.c.window_utc == window_utc - WINDOW)
+    order = (packets.c.channel, packets.c.t0_utc)
+    rows = connection.execute(select(packets).where(packets.c.asset == asset, near).order_by(*order))
+    return [
+        Packet(row.asset, row.channel, row.t0_utc, row.rate_hz, np.frombuffer(row.samples, dtype="<f8"))
+        for row in rows
+    ]
+
+
+def close_window(connection: Connection, window: OpenWindow, record_id: str | None) -> None:
+    """Say of which record, made of how many packets, a window's samples are."""
+    same = (windows.c.asset == window.asset, windows.c.window_utc == window.window_utc)
+    connection.execute(delete(windows).where(*same))
+    row = {"asset": window.asset, "window_utc": window.window_utc, "n_packets": window.n_packets}
+    connection.execute(insert(windows).values(**row, record_id=record_id))
+
+
+def forget_packets(connection: Connection, asset: str, before: datetime) -> None:
+    """Delete the packets and windows of an asset that begin before a time."""
+    for table in (packets, windows):
+        connection.execute(delete(table).where(table.c.asset == asset, table.c.window_utc < before))
+
+
+def put_conditions(
+    connection: Connection, asset: str, name: str, values: Mapping[datetime, float | str | None]
+) -> None:
+    """Keep a condition of the site through time, in place of what was known at the same times."""
+    for time, value in values.items():
+        key = (conditions.c.asset == asset, conditions.c.name == name, conditions.c.time_utc == time)
+        row: dict[str, Any] = {"value": None, "text": None}
+        row["text" if isinstance(value, str) else "value"] = value
+        if connection.execute(update(conditions).where(*key).values(**row)).rowcount == 0:
+            connection.execute(insert(conditions).values(asset=asset, name=name, time_utc=time, **row))
+
+
+def conditions_between(
+    connection: Connection, asset: str, start: datetime, end: datetime
+) -> dict[str, float | str]:
+    """Return each condition over an interval: the mean of numbers, the one that a text keeps throughout.
+
+    A condition that is not known in the interval, or a text that changes in it, is left out.
+    """
+    where = (conditions.c.asset == asset, conditions.c.time_utc >= start, conditions.c.time_utc < end)
+    seen: dict[str, list[float | str]] = {}
+    for row in connection.execute(select(conditions).where(*where).order_by(conditions.c.time_utc)):
+        value = row.text if row.text is not None else row.value
+        if value is not None:
+            seen.setdefault(row.name, []).append(value)
+    known: dict[str, float | str] = {}
+    for name, values in seen.items():
+        numbers = [v for v in values if isinstance(v, float)]
+        if len(numbers) == len(values):
+            known[name] = float(np.mean(numbers))
+        elif len(set(values)) == 1:
+            known[name] = values[0]
+    return known

@@ -1,0 +1,308 @@
+"""The tables of the living twin, one definition for SQLite and PostgreSQL.
+
+What the engine produced is kept as the documents of :mod:`jackettwin.twin.stored`; columns beside them exist
+only to be searched. Every time is UTC.
+"""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    Boolean,
+    Column,
+    DateTime,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+    UniqueConstraint,
+)
+from sqlalchemy.engine import Dialect
+from sqlalchemy.types import TypeDecorator
+
+SCHEMA_VERSION = "0001"
+"""Newest migration; a database of an older one is migrated when it is opened, a newer one is refused."""
+
+
+class Utc(TypeDecorator[datetime]):
+    """A time in UTC: SQLite drops time zones, so they are dropped and set at the border."""
+
+    impl = DateTime(timezone=False)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """Return the naive UTC time that the database keeps."""
+        if value is None:
+            return None
+        if value.tzinfo is None:
+            raise ValueError("a time without a zone cannot be stored")
+        return value.astimezone(UTC).replace(tzinfo=None)
+
+    def process_result_value(self, value: Any, dialect: Dialect) -> datetime | None:
+        """Return the time with its zone."""
+        return None if value is None else value.replace(tzinfo=UTC)
+
+
+BigId = BigInteger().with_variant(Integer, "sqlite")
+"""A row number: SQLite counts up by itself only in a column of type INTEGER."""
+
+metadata = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+assets = Table(
+    "assets",
+    metadata,
+    Column("name", String(64), primary_key=True),
+    Column("created_utc", Utc, nullable=False),
+    Column("adopted_version", Integer, nullable=False),
+)
+
+versions = Table(
+    "versions",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("model_hash", String(64), nullable=False),
+    Column("settings_hash", String(64), nullable=False),
+    Column("created_utc", Utc, nullable=False),
+    Column("created_by", String(64), nullable=False),
+    Column("bundle_hash", String(64), nullable=False),
+    Column("bundle", LargeBinary, nullable=False),
+    Column("comment", Text, nullable=False, default=""),
+)
+"""Versions of an asset's twin: the twin file and every file it names, as one archive."""
+
+records = Table(
+    "records",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("record_id", String(64), primary_key=True),
+    Column("status", String(16), nullable=False),
+    Column("start_utc", Utc, nullable=False),
+    Column("duration_s", Float, nullable=False),
+    Column("sample_rate_hz", Float, nullable=False),
+    Column("channels", JSON, nullable=False),
+    Column("conditions", JSON, nullable=False),
+    Column("source_name", String(255), nullable=False),
+    Column("received_utc", Utc, nullable=False),
+    Column("waveform", String(255)),
+    Column("size_bytes", BigInteger, nullable=False),
+    Column("problem", JSON),
+    Column("picks", JSON),
+    Index("ix_records_time", "asset", "start_utc", "record_id"),
+    Index("ix_records_status", "asset", "status"),
+)
+"""``status``: received, observing, observed, refused (with a problem) or set_aside (with a reason)."""
+
+work = Table(
+    "work",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("kind", String(16), nullable=False),
+    Column("asset", ForeignKey("assets.name"), nullable=False),
+    Column("record_id", String(64), nullable=False),
+    Column("version", Integer, nullable=False),
+    Column("model_hash", String(64), nullable=False),
+    Column("settings_hash", String(64), nullable=False),
+    Column("code_version", String(32), nullable=False),
+    Column("state", String(16), nullable=False),
+    Column("priority", Integer, nullable=False, default=0),
+    Column("tries", Integer, nullable=False, default=0),
+    Column("owner", String(64)),
+    Column("created_utc", Utc, nullable=False),
+    Column("started_utc", Utc),
+    Column("ended_utc", Utc),
+    Column("reason", JSON),
+    UniqueConstraint("asset", "record_id", "model_hash", "settings_hash", "code_version", "kind"),
+    Index("ix_work_queue", "state", "priority", "id"),
+)
+"""What is to be done, once for each key. ``state``: queued, leased, done, failed, set_aside or cancelled."""
+
+servers = Table(
+    "servers",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("beat", BigInteger, nullable=False),
+    Column("started_utc", Utc, nullable=False),
+    Column("about", JSON, nullable=False),
+)
+"""Who leases work. A server whose beat stands still is dead, whatever the clocks say."""
+
+observations = Table(
+    "observations",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("model_hash", String(64), primary_key=True),
+    Column("settings_hash", String(64), primary_key=True),
+    Column("record_id", String(64), primary_key=True),
+    Column("start_utc", Utc, nullable=False),
+    Column("code_version", String(32), nullable=False),
+    Column("document", Text, nullable=False),
+    Index("ix_observations_time", "asset", "model_hash", "start_utc", "record_id"),
+)
+
+modes = Table(
+    "modes",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("asset", ForeignKey("assets.name"), nullable=False),
+    Column("model_hash", String(64), nullable=False),
+    Column("model_version", Integer, nullable=False),
+    Column("record_id", String(64), nullable=False),
+    Column("time_utc", Utc, nullable=False),
+    Column("label", String(64), nullable=False),
+    Column("frequency_hz", Float, nullable=False),
+    Column("frequency_std_hz", Float),
+    Column("damping_ratio", Float),
+    Column("damping_ratio_std", Float),
+    Column("damping_ratio_low_95", Float),
+    Column("damping_ratio_high_95", Float),
+    Column("status", String(255), nullable=False),
+    Index("ix_modes_label", "asset", "label", "time_utc"),
+    Index("ix_modes_record", "asset", "record_id"),
+)
+
+states = Table(
+    "states",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("model_hash", String(64), primary_key=True),
+    Column("day", String(10), primary_key=True),
+    Column("n_records", Integer, nullable=False),
+    Column("document", Text, nullable=False),
+    Column("document_hash", String(64), nullable=False),
+)
+"""What the records of each UTC day say together: a state of the twin is the sum of its days."""
+
+findings = Table(
+    "findings",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("asset", ForeignKey("assets.name"), nullable=False),
+    Column("model_hash", String(64), nullable=False),
+    Column("record_id", String(64), nullable=False),
+    Column("origin", String(16), nullable=False),
+    Column("time_utc", Utc, nullable=False),
+    Column("day", String(10), nullable=False),
+    Column("code", String(64), nullable=False),
+    Column("severity", String(8), nullable=False),
+    Column("subject", String(255)),
+    Column("params", JSON, nullable=False),
+    Column("text", Text, nullable=False),
+    Index("ix_findings_time", "asset", "time_utc"),
+    Index("ix_findings_record", "asset", "record_id"),
+)
+"""``origin``: observe or advance. Those of advance are written anew when a day is advanced anew."""
+
+acknowledgements = Table(
+    "acknowledgements",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("asset", ForeignKey("assets.name"), nullable=False),
+    Column("alarm_key", String(255), nullable=False, unique=True),
+    Column("by", String(64), nullable=False),
+    Column("time_utc", Utc, nullable=False),
+    Column("comment", Text, nullable=False),
+)
+"""Who took note of an alarm; an alarm is a finding of severity alarm, known by its content."""
+
+conditions = Table(
+    "conditions",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("name", String(64), primary_key=True),
+    Column("time_utc", Utc, primary_key=True),
+    Column("value", Float),
+    Column("text", String(64)),
+)
+
+packets = Table(
+    "packets",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("asset", String(64), nullable=False),
+    Column("channel", String(128), nullable=False),
+    Column("t0_utc", Utc, nullable=False),
+    Column("window_utc", Utc, nullable=False),
+    Column("rate_hz", Float, nullable=False),
+    Column("samples", LargeBinary, nullable=False),
+    UniqueConstraint("asset", "channel", "t0_utc"),
+    Index("ix_packets_window", "asset", "window_utc"),
+)
+"""Samples of a stream, kept until their window's record is final."""
+
+windows = Table(
+    "windows",
+    metadata,
+    Column("asset", String(64), primary_key=True),
+    Column("window_utc", Utc, primary_key=True),
+    Column("n_packets", Integer, nullable=False),
+    Column("record_id", String(64)),
+)
+"""The record that was made of a window's packets, and of how many."""
+
+users = Table(
+    "users",
+    metadata,
+    Column("name", String(64), primary_key=True),
+    Column("role", String(16), nullable=False),
+    Column("password_hash", String(255), nullable=False),
+    Column("created_utc", Utc, nullable=False),
+    Column("disabled", Boolean, nullable=False, default=False),
+)
+
+tokens = Table(
+    "tokens",
+    metadata,
+    Column("hash", String(64), primary_key=True),
+    Column("kind", String(16), nullable=False),
+    Column("user", ForeignKey("users.name", ondelete="CASCADE"), nullable=False),
+    Column("label", String(128), nullable=False),
+    Column("csrf", String(64), nullable=False),
+    Column("created_utc", Utc, nullable=False),
+    Column("expires_utc", Utc, nullable=False),
+)
+"""Sessions of browsers and tokens of machines; only hashes are kept."""
+
+audit = Table(
+    "audit",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("time_utc", Utc, nullable=False),
+    Column("who", String(64), nullable=False),
+    Column("action", String(64), nullable=False),
+    Column("subject", String(255), nullable=False),
+    Column("outcome", String(64), nullable=False),
+)
+
+events = Table(
+    "events",
+    metadata,
+    Column("id", BigId, primary_key=True, autoincrement=True),
+    Column("time_utc", Utc, nullable=False),
+    Column("kind", String(16), nullable=False),
+    Column("asset", String(64), nullable=False),
+    Column("payload", JSON, nullable=False),
+)
+
+settings = Table(
+    "settings",
+    metadata,
+    Column("name", String(64), primary_key=True),
+    Column("value", JSON, nullable=False),
+)

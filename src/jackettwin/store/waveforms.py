@@ -1,0 +1,107 @@
+"""Raw samples as Parquet files by asset and day, int16 with a scale where that loses nothing."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from datetime import datetime
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from jackettwin.files import atomic_path
+from jackettwin.records import Channel, Record
+
+FloatArray = npt.NDArray[np.float64]
+
+SCHEMA_VERSION = 1
+_MISSING = -32768
+"""Stands for a missing sample."""
+_LARGEST = 32767
+_FINEST = 10**8
+"""Largest denominator of a step: loggers write eight decimals at most."""
+
+
+def waveform_path(asset: str, start_utc: datetime, record_id: str) -> str:
+    """Return where a record's samples lie, relative to the store."""
+    return f"records/{asset}/{start_utc:%Y-%m-%d}/{record_id}.parquet"
+
+
+def write_waveform(record: Record, path: Path) -> int:
+    """Write the samples of a record and all that describes it; return the file's size in bytes."""
+    arrays, steps = [], []
+    for row in record.data:
+        packed, step = packed_samples(row)
+        arrays.append(pa.array(packed))
+        steps.append(step)
+    described = {
+        "schema_version": SCHEMA_VERSION,
+        "name": record.name,
+        "sample_rate_hz": record.sample_rate_hz,
+        "start_utc": None if record.start_utc is None else record.start_utc.isoformat(),
+        "channels": [asdict(channel) for channel in record.channels],
+        "conditions": dict(record.conditions),
+        "metadata": dict(record.metadata),
+        "steps": steps,
+    }
+    table = pa.Table.from_arrays(arrays, names=[f"c{i}" for i in range(len(arrays))])
+    about = json.dumps(described, default=str).encode()
+    with atomic_path(path) as temporary:
+        pq.write_table(table.replace_schema_metadata({b"jackettwin": about}), temporary, compression="zstd")
+    return path.stat().st_size
+
+
+def read_waveform(path: Path) -> Record:
+    """Return the record that :func:`write_waveform` wrote, equal to the last bit."""
+    table = pq.read_table(path)
+    about: dict[str, Any] = json.loads(table.schema.metadata[b"jackettwin"])
+    data = np.empty((table.num_columns, table.num_rows))
+    for i, step in enumerate(about["steps"]):
+        data[i] = _unpacked(table.column(i).to_numpy(), step)
+    start = about["start_utc"]
+    return Record(
+        data,
+        about["sample_rate_hz"],
+        tuple(Channel(**{**c, "direction": tuple(c["direction"])}) for c in about["channels"]),
+        None if start is None else datetime.fromisoformat(start),
+        about["conditions"],
+        about["metadata"],
+        about["name"],
+    )
+
+
+def packed_samples(x: FloatArray) -> tuple[npt.NDArray[Any], list[float] | None]:
+    """Return samples as int16 and their step, or as they are and None.
+
+    The step is kept as (numerator, denominator): a logger's 0.0012 is 12/10000 to the last bit, but not
+    12 · 0.0001.
+    """
+    known = np.unique(x[np.isfinite(x)])
+    if known.size < 2:
+        return x, None
+    step = float(np.diff(known).min())
+    decimal = Fraction(step).limit_denominator(_FINEST)
+    for numerator, denominator in ((step, 1.0), (float(decimal.numerator), float(decimal.denominator))):
+        if numerator <= 0.0:
+            continue
+        counts = np.round(x * (denominator / numerator))
+        if np.nanmax(np.abs(counts)) > _LARGEST:
+            continue
+        packed = np.where(np.isfinite(counts), counts, _MISSING).astype(np.int16)
+        if np.array_equal(_unpacked(packed, [numerator, denominator]), x, equal_nan=True):
+            return packed, [numerator, denominator]
+    return x, None
+
+
+def _unpacked(stored: npt.NDArray[Any], step: list[float] | None) -> FloatArray:
+    if step is None:
+        return np.asarray(stored, dtype=float)
+    counts = stored.astype(float)
+    counts[stored == _MISSING] = np.nan
+    numerator, denominator = step
+    return np.asarray(counts * numerator / denominator)

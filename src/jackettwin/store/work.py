@@ -1,0 +1,220 @@
+"""The queue of work: a row for each (record, model, settings, code), leased, done once.
+
+A lease has no time in it. Servers count up a beat; whoever sees a beat stand still for long by an own
+stopwatch takes the dead server's leases back. A result is accepted only from the server that still holds
+the lease.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection, CursorResult, delete, func, insert, select, update
+
+from jackettwin.store.tables import servers, work
+
+MOST_TRIES = 3
+"""A record that three workers died of, or could not finish in time, is set aside."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One row of the queue."""
+
+    id: int
+    kind: str
+    asset: str
+    record_id: str
+    version: int
+    model_hash: str
+    settings_hash: str
+    code_version: str
+    state: str
+    priority: int
+    tries: int
+    owner: str | None
+    created_utc: datetime
+    started_utc: datetime | None
+    ended_utc: datetime | None
+    reason: dict[str, Any] | None
+
+
+def enqueue(
+    connection: Connection,
+    *,
+    kind: str,
+    asset: str,
+    record_id: str,
+    version: int,
+    model_hash: str,
+    settings_hash: str,
+    code_version: str,
+    now: datetime,
+    priority: int = 0,
+) -> int:
+    """Ask for work and return its number; what is asked for already keeps its own."""
+    key = {
+        "kind": kind,
+        "asset": asset,
+        "record_id": record_id,
+        "model_hash": model_hash,
+        "settings_hash": settings_hash,
+        "code_version": code_version,
+    }
+    known = connection.scalar(
+        select(work.c.id).where(*(work.c[name] == value for name, value in key.items()))
+    )
+    if known is not None:
+        return int(known)
+    row = {**key, "version": version, "state": "queued", "priority": priority, "tries": 0, "created_utc": now}
+    return int(connection.execute(insert(work).values(**row)).inserted_primary_key[0])  # type: ignore[index]
+
+
+def lease(connection: Connection, owner: str, most: int, now: datetime) -> list[Job]:
+    """Take up to ``most`` pieces of queued work, urgent ones first, then the oldest."""
+    queued = (
+        select(work)
+        .where(work.c.state == "queued")
+        .order_by(work.c.priority.desc(), work.c.id)
+        .limit(most)
+        .with_for_update(skip_locked=True)
+    )
+    jobs = [Job(**row._mapping) for row in connection.execute(queued)]
+    if jobs:
+        taken = {"state": "leased", "owner": owner, "started_utc": now, "tries": work.c.tries + 1}
+        connection.execute(update(work).where(work.c.id.in_([job.id for job in jobs])).values(**taken))
+    return jobs
+
+
+def finish(
+    connection: Connection,
+    job: Job,
+    owner: str,
+    state: str,
+    now: datetime,
+    reason: dict[str, Any] | None = None,
+) -> bool:
+    """End a piece of work; return False if it is no longer this server's, and then keep nothing of it."""
+    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
+    ended: CursorResult[Any] = connection.execute(
+        update(work).where(*mine).values(state=state, ended_utc=now, reason=reason, owner=None)
+    )
+    return ended.rowcount == 1
+
+
+def put_back(connection: Connection, job: Job, owner: str, reason: dict[str, Any]) -> str | None:
+    """Return failed work to the queue, or set it aside after the last try; return its new state."""
+    state = "queued" if job.tries + 1 < MOST_TRIES else "set_aside"
+    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
+    ended = connection.execute(update(work).where(*mine).values(state=state, owner=None, reason=reason))
+    return state if ended.rowcount == 1 else None
+
+
+def release(connection: Connection, job: Job, owner: str) -> None:
+    """Return work that was not tried after all, without counting the try."""
+    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
+    connection.execute(update(work).where(*mine).values(state="queued", owner=None, tries=work.c.tries - 1))
+
+
+def try_again(connection: Connection, job_id: int) -> bool:
+    """Queue work anew that was set aside, failed or was cancelled."""
+    ended = work.c.state.in_(("set_aside", "failed", "cancelled", "done"))
+    done = connection.execute(
+        update(work)
+        .where(work.c.id == job_id, ended)
+        .values(state="queued", tries=0, reason=None, ended_utc=None)
+    )
+    return done.rowcount == 1
+
+
+def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
+    """Cancel work that is queued or leased; a result that comes later is not accepted."""
+    open_states = work.c.state.in_(("queued", "leased"))
+    done = connection.execute(
+        update(work)
+        .where(work.c.id == job_id, open_states)
+        .values(state="cancelled", ended_utc=now, owner=None)
+    )
+    return done.rowcount == 1
+
+
+def find_job(connection: Connection, job_id: int) -> Job | None:
+    """Return a piece of work, or None."""
+    row = connection.execute(select(work).where(work.c.id == job_id)).one_or_none()
+    return None if row is None else Job(**row._mapping)
+
+
+def list_jobs(
+    connection: Connection, *, state: str | None = None, before: int | None = None, limit: int = 100
+) -> list[Job]:
+    """Return work, newest first."""
+    where = []
+    if state is not None:
+        where.append(work.c.state == state)
+    if before is not None:
+        where.append(work.c.id < before)
+    rows = connection.execute(select(work).where(*where).order_by(work.c.id.desc()).limit(limit))
+    return [Job(**row._mapping) for row in rows]
+
+
+def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
+    """Return all work on a record, oldest first."""
+    where = (work.c.asset == asset, work.c.record_id == record_id)
+    return [Job(**row._mapping) for row in connection.execute(select(work).where(*where).order_by(work.c.id))]
+
+
+def queue_sizes(connection: Connection) -> dict[str, int]:
+    """Return how much work is in each state."""
+    return {
+        state: n for state, n in connection.execute(select(work.c.state, func.count()).group_by(work.c.state))
+    }
+
+
+def oldest_queued(connection: Connection) -> datetime | None:
+    """Return since when the oldest queued work has been waiting."""
+    found: datetime | None = connection.scalar(
+        select(func.min(work.c.created_utc, type_=work.c.created_utc.type)).where(work.c.state == "queued")
+    )
+    return found
+
+
+def join(connection: Connection, server: str, about: dict[str, Any], now: datetime) -> None:
+    """Enter a server into the list of those who may hold leases."""
+    connection.execute(insert(servers).values(id=server, beat=0, started_utc=now, about=about))
+
+
+def beat(connection: Connection, server: str) -> bool:
+    """Count a server's beat up; False if it was declared dead meanwhile."""
+    counted = connection.execute(
+        update(servers).where(servers.c.id == server).values(beat=servers.c.beat + 1)
+    )
+    return counted.rowcount == 1
+
+
+def beats(connection: Connection) -> dict[str, int]:
+    """Return the beat of every server."""
+    return {server: count for server, count in connection.execute(select(servers.c.id, servers.c.beat))}
+
+
+def bury(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:
+    """Take a dead server off the list and its leases back; nothing happens if it beat again meanwhile."""
+    where = [servers.c.id == server]
+    if at_beat is not None:
+        where.append(servers.c.beat == at_beat)
+    if connection.execute(delete(servers).where(*where)).rowcount != 1:
+        return []
+    held = list(connection.scalars(select(work.c.id).where(work.c.state == "leased", work.c.owner == server)))
+    # that a server died says nothing against the record: records are read in workers
+    given_back = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
+    connection.execute(update(work).where(work.c.id.in_(held)).values(**given_back))
+    return held
+
+
+def take_back_orphans(connection: Connection) -> int:
+    """Queue leases whose server is not on the list, as after the restore of a backup."""
+    alive = select(servers.c.id)
+    orphan = (work.c.state == "leased", work.c.owner.not_in(alive))
+    return connection.execute(update(work).where(*orphan).values(state="queued", owner=None)).rowcount

@@ -1,0 +1,177 @@
+"""A service whose workers are this process, with a turbine whose records are observed in no time."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from fastapi.testclient import TestClient
+from scipy.signal import lfilter
+from tests.support.observations import estimate, observation
+
+from jackettwin.service import ServiceSettings, engine
+from jackettwin.service.app import create_app
+from jackettwin.service.catalogue import add_text_version
+from jackettwin.service.context import Service
+from jackettwin.service.dispatch import Dispatcher
+from jackettwin.service.tasks import Outcome, Task
+from jackettwin.store import open_database, read_waveform, work, writing
+from jackettwin.twin import OBSERVATION
+
+TWIN = "structure: jacket15\n"
+NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
+class Done:
+    """A future that is done."""
+
+    key = "done"
+
+    def __init__(self, value: Any = None, error: Exception | None = None) -> None:
+        self._value, self._error = value, error
+        self.status = "finished" if error is None else "error"
+
+    def done(self) -> bool:
+        return True
+
+    def result(self, timeout: float | None = None) -> Any:
+        if self._error is not None:
+            raise self._error
+        return self._value
+
+    def exception(self, timeout: float | None = None) -> Exception | None:
+        return self._error
+
+    def add_done_callback(self, callback: Callable[[Any], None]) -> None:
+        callback(self)
+
+
+class Here:
+    """Work that is done at once, in this process."""
+
+    workers, restarts = 1, 0
+
+    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Done:
+        try:
+            return Done(task(*args))
+        except Exception as error:
+            return Done(error=error)
+
+    def end(self, future: Any) -> None:
+        self.restarts += 1
+
+    def close(self) -> None:
+        """Nothing to stop."""
+
+
+def quick(model: Any, task: Task) -> Outcome:
+    """Stand in for the identification: two modes whose frequencies depend on the samples alone."""
+    record = read_waveform(Path(task.waveform))
+    a, b = (0.18 + 1e-4 * float(np.sum(record.data)) % 1e-3, 0.55)
+    modes = {1: estimate(a, 0.012, 4e-3, 0.2), 3: estimate(b, 0.01, 4e-3, 0.2)}
+    seen = replace(
+        observation(modes, record.start_utc, name=record.name, conditions=dict(task.conditions)),
+        record_id=Path(task.waveform).stem,
+        model_hash=model.model_hash,
+    )
+    rows = tuple(
+        {
+            "label": f"mode_{number}",
+            "frequency_hz": mode.frequency_hz,
+            "frequency_std_hz": mode.frequency_std_hz,
+            "damping_ratio": mode.damping_ratio,
+            "damping_ratio_std": mode.damping_ratio_std,
+            "damping_ratio_low_95": 0.01,
+            "damping_ratio_high_95": 0.02,
+            "status": "ok",
+        }
+        for number, mode in modes.items()
+    )
+    return Outcome(json.dumps(OBSERVATION.dump(seen)), rows)
+
+
+def record_file(k: int = 0, *, samples: int = 200) -> bytes:
+    """Return a Parquet record of two channels with modes at 0.5 and 1.3 Hz; ``k`` chooses its samples."""
+    noise = np.random.default_rng(k).standard_normal((2, samples))
+    data = 0.05 * noise + sum(mixed * resonator(f, noise[i]) for i, (f, mixed) in enumerate(SHAPES.items()))
+    buffer = io.BytesIO()
+    pq.write_table(pa.table({"acc_top_x": data[0], "acc_top_y": data[1]}), buffer)
+    return buffer.getvalue()
+
+
+SHAPES = {0.5: np.array([[1.0], [0.3]]), 1.3: np.array([[-0.4], [1.0]])}
+"""Of the modes at 0.5 and 1.3 Hz."""
+
+
+def resonator(frequency_hz: float, force: np.ndarray) -> np.ndarray:
+    """Return the response of an oscillator of 1.5 % damping to white noise at 20 Hz."""
+    pole = np.exp((-0.015 + 1j) * 2 * np.pi * frequency_hz / 20.0)
+    return np.asarray(lfilter([1.0 - abs(pole)], [1.0, -2 * pole.real, abs(pole) ** 2], force))
+
+
+def description(start: datetime = NOON, **more: Any) -> str:
+    """Return what lies beside a record."""
+    axes = {"acc_top_x": [1, 0, 0], "acc_top_y": [0, 1, 0]}
+    channels = {
+        name: {"quantity": "acceleration", "unit": "m/s^2", "height_m": 120.0, "direction": axis}
+        for name, axis in axes.items()
+    }
+    return json.dumps({"sample_rate_hz": 20.0, "start_utc": start.isoformat(), "channels": channels, **more})
+
+
+def hour(k: int) -> datetime:
+    """Return the start of a record, ``k`` hours after noon."""
+    return NOON + timedelta(hours=k)
+
+
+@pytest.fixture
+def service(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Service]:
+    yield from make_service(tmp_path / "store", None, monkeypatch)
+
+
+def make_service(
+    store: Path, database: str | None, monkeypatch: pytest.MonkeyPatch, **changes: Any
+) -> Iterator[Service]:
+    """Run a service without threads: tests turn its dispatcher by hand."""
+    settings = ServiceSettings(store, database=database, **changes)
+    for folder in (settings.store, settings.spool, settings.models):
+        folder.mkdir(parents=True, exist_ok=True)
+    monkeypatch.setattr(engine, "observed", quick)
+    made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
+    with writing(made.database) as connection:
+        add_text_version(connection, made, "wtg", TWIN, {}, "test")
+    yield made
+    made.database.dispose()
+
+
+@pytest.fixture
+def client(service: Service) -> Iterator[TestClient]:
+    with TestClient(create_app(service), base_url="http://127.0.0.1:8470") as client:
+        yield client
+
+
+def upload(client: TestClient, k: int = 0, *, start: datetime | None = None, **more: Any) -> Any:
+    """Send a record; ``k`` chooses its samples and its hour."""
+    return client.post(
+        "/api/v1/assets/wtg/records",
+        files={"file": (f"r{k}.parquet", record_file(k))},
+        data={"description": description(start or hour(k), **more)},
+    )
+
+
+def turn(service: Service, times: int = 3) -> None:
+    """Start a dispatcher, as after a death of the server, and let it do what is due."""
+    with writing(service.database) as connection:
+        work.bury(connection, service.server_id)
+    dispatcher = Dispatcher(service)
+    for _ in range(times):
+        dispatcher._turn()

@@ -1,0 +1,308 @@
+"""Real servers for tests: PostgreSQL and mosquitto of Debian, ``jackettwin serve``; started and killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import httpx
+import numpy as np
+import paho.mqtt.client as mqtt
+import pytest
+from paho.mqtt.enums import CallbackAPIVersion
+from sqlalchemy import Engine, select
+
+from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables
+
+
+def free_port() -> int:
+    """Return a port that nobody listens at."""
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return int(s.getsockname()[1])
+
+
+def wait_for_port(port: int, seconds: float = 20.0) -> None:
+    """Wait until somebody listens."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        with socket.socket() as s:
+            if s.connect_ex(("127.0.0.1", port)) == 0:
+                return
+        time.sleep(0.05)
+    raise TimeoutError(f"nobody listens at {port}")
+
+
+def found(program: str) -> str:
+    """Return a program of a Debian package, which may not be on the path; skip the test without it."""
+    places = sorted(Path("/usr/lib/postgresql").glob(f"*/bin/{program}"))
+    place = shutil.which(program) or shutil.which(program, path="/usr/sbin:/sbin")
+    place = place or (str(places[-1]) if places else None)
+    if not place:
+        pytest.skip(f"{program} is not installed; scripts/install-servers does")
+    return place
+
+
+class Database:
+    """A PostgreSQL in a folder of its own, to be started, stopped and killed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.data, self.port = folder / "data", free_port()
+        self.url = f"postgresql+psycopg://postgres@127.0.0.1:{self.port}/postgres"
+        self._as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start it, on what it left behind."""
+        initdb, server = found("initdb"), found("postgres")
+        if not self.data.exists():
+            self.data.mkdir(parents=True)
+            if self._as_user:  # PostgreSQL refuses to run as root
+                for parent in self.data.parents:
+                    if str(parent) not in ("/", "/tmp"):
+                        parent.chmod(parent.stat().st_mode | 0o711)
+                shutil.chown(self.data, "postgres")
+            arguments = ["-D", str(self.data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "--no-sync"]
+            subprocess.run([*self._as_user, initdb, *arguments], check=True, capture_output=True, cwd="/")
+        (self.data / "postmaster.pid").unlink(missing_ok=True)
+        arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
+        self._process = subprocess.Popen([server, *arguments], **_quiet(), cwd="/", user=self._user())
+        wait_for_port(self.port)
+        time.sleep(0.5)  # it listens a moment before it answers
+
+    def _user(self) -> str | None:
+        return "postgres" if self._as_user else None
+
+    def kill(self) -> None:
+        """Kill it, with all its processes, at once."""
+        assert self._process is not None
+        children = subprocess.run(
+            ["pgrep", "-P", str(self._process.pid)], capture_output=True, text=True, check=False
+        ).stdout.split()
+        self._process.kill()
+        for child in children:
+            with suppress(ProcessLookupError):
+                os.kill(int(child), signal.SIGKILL)
+        self._process.wait(timeout=20)
+
+    def stop(self) -> None:
+        """Stop it well."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+            self._process.wait(timeout=20)
+
+
+@contextmanager
+def postgresql(folder: Path) -> Iterator[str]:
+    """Run a PostgreSQL; yields the URL of its first database."""
+    database = Database(folder)
+    database.start()
+    try:
+        yield database.url
+    finally:
+        database.stop()
+
+
+class Broker:
+    """A mosquitto that keeps sessions and messages in a folder, to be started and killed."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir()
+        self.folder, self.port = folder, free_port()
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start it, on what it left behind."""
+        config = self.folder / "mosquitto.conf"
+        user = "user root\n" if os.geteuid() == 0 else ""
+        config.write_text(
+            f"listener {self.port} 127.0.0.1\nallow_anonymous true\n{user}persistence true\n"
+            f"persistence_location {self.folder}/\nautosave_interval 1\nautosave_on_changes true\n"
+            "max_queued_messages 0\n"
+        )
+        self._process = subprocess.Popen([found("mosquitto"), "-c", str(config)], **_quiet())
+        wait_for_port(self.port)
+
+    def kill(self) -> None:
+        """Kill it at once."""
+        assert self._process is not None
+        self._process.kill()
+        self._process.wait(timeout=20)
+
+    def stop(self) -> None:
+        """Stop it."""
+        if self._process is not None and self._process.poll() is None:
+            self.kill()
+
+
+class Server:
+    """``jackettwin serve`` as a process of its own."""
+
+    def __init__(self, store: Path, *options: str) -> None:
+        self.store, self.options, self.port = store, options, free_port()
+        self.url = f"http://127.0.0.1:{self.port}"
+        self._process: subprocess.Popen[bytes] | None = None
+        self._log = store.parent / "serve.log"
+
+    def __enter__(self) -> Server:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Start it and wait until it is ready."""
+        arguments = ["serve", str(self.store), "--port", str(self.port), *self.options]
+        with self._log.open("ab") as log:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "jackettwin", *arguments],
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
+        end = time.monotonic() + 120.0
+        while time.monotonic() < end and self._process.poll() is None:
+            with suppress(httpx.TransportError):
+                if self.get("/api/v1/health").status_code == 200:
+                    return
+            time.sleep(0.2)
+        raise TimeoutError(self._log.read_text()[-2000:])
+
+    def get(self, path: str) -> httpx.Response:
+        """Ask."""
+        return httpx.get(self.url + path, timeout=60.0)
+
+    def post(self, name: str, file: bytes, description: str) -> httpx.Response:
+        """Send a record."""
+        return httpx.post(
+            f"{self.url}/api/v1/assets/wtg/records",
+            files={"file": (name, file)},
+            data={"description": description},
+            timeout=120.0,
+        )
+
+    def send(self, name: str, file: bytes, description: str) -> None:
+        """Send a record until it is taken, as a client does that must not lose it."""
+        end = time.monotonic() + 120.0
+        while time.monotonic() < end:
+            with suppress(httpx.TransportError):
+                answer = self.post(name, file, description)
+                if answer.status_code in (200, 202):
+                    return
+            time.sleep(0.5)
+        raise TimeoutError(f"{name} is not taken: {self._log.read_text()[-2000:]}")
+
+    def wait_until_observed(self, n: int, seconds: float = 240.0) -> None:
+        """Wait until so many records are observed."""
+        end = time.monotonic() + seconds
+        counts: dict[str, int] = {}
+        while time.monotonic() < end:
+            with suppress(httpx.TransportError, KeyError, IndexError):
+                counts = self.get("/api/v1/assets").json()["items"][0]["records"]
+                if (
+                    counts.get("observed", 0) >= n
+                    and not counts.get("observing")
+                    and not counts.get("received")
+                ):
+                    return
+            time.sleep(0.3)
+        raise TimeoutError(f"{counts}: {self._log.read_text()[-2000:]}")
+
+    def states(self) -> dict[str, str]:
+        """Return the content hash of the state of every day."""
+        with reading(self._database()) as connection:
+            version = assets.found_version(connection, "wtg")
+            return results.state_hashes(connection, "wtg", version.model_hash)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many records and observations are kept."""
+        with reading(self._database()) as connection:
+            return {
+                table.name: len(connection.execute(select(table.c.record_id)).all())
+                for table in (tables.records, tables.observations)
+            }
+
+    def _database(self) -> Engine:
+        url = self.options[self.options.index("--database") + 1] if "--database" in self.options else None
+        return open_database(url or sqlite_url(self.store))
+
+    def workers(self) -> list[int]:
+        """Return the processes that observe."""
+        if self._process is None:
+            return []
+        found = subprocess.run(
+            ["pgrep", "-s", str(self._process.pid), "-f", "spawn_main"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return [int(pid) for pid in found.stdout.split()]
+
+    def kill_a_worker(self) -> bool:
+        """Kill the newest worker at once."""
+        workers = self.workers()
+        if workers:
+            os.kill(workers[-1], signal.SIGKILL)
+        return bool(workers)
+
+    def workers_alive(self, seconds: float = 20.0) -> bool:
+        """Tell whether a worker outlives the server by so long."""
+        end = time.monotonic() + seconds
+        while self.workers() and time.monotonic() < end:
+            time.sleep(0.2)
+        return bool(self.workers())
+
+    def kill(self) -> None:
+        """Kill the server at once; its workers end by themselves."""
+        assert self._process is not None
+        self._process.kill()
+        self._process.wait(timeout=20)
+
+    def stop(self) -> None:
+        """Stop it as Ctrl-C does."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+            try:
+                self._process.wait(timeout=30)
+            except subprocess.TimeoutExpired:
+                self.kill()
+
+
+def publish(port: int, *, first_s: float, last_s: float, seed: int, doubled: bool = False) -> None:
+    """Send two channels of noise as packets of five seconds, in disorder, some of them twice."""
+    rng = random.Random(seed)
+    start = datetime(2025, 3, 1, 12, tzinfo=UTC)
+    bodies = []
+    for k in range(round(first_s / 5.0), round(last_s / 5.0)):
+        noise = np.random.default_rng(k)
+        channels = {name: noise.standard_normal(100).round(4).tolist() for name in ("acc_top_x", "acc_top_y")}
+        t0 = (start + timedelta(seconds=5.0 * k)).isoformat()
+        bodies.append(json.dumps({"t0_utc": t0, "rate_hz": 20.0, "channels": channels}))
+    if doubled:
+        bodies += bodies[::4]
+    # disorder within a minute, as networks make it
+    bodies = [b for _, b in sorted(enumerate(bodies), key=lambda item: item[0] + rng.uniform(0.0, 12.0))]
+    client = mqtt.Client(CallbackAPIVersion.VERSION2, client_id=f"logger{seed}")
+    client.connect("127.0.0.1", port)
+    client.loop_start()
+    sent = [client.publish("jackettwin/wtg", body, qos=1) for body in bodies]
+    for message in sent:
+        message.wait_for_publish(timeout=30.0)
+    client.disconnect()
+    client.loop_stop()
+
+
+def _quiet() -> dict[str, int]:
+    return {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}

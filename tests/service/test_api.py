@@ -1,0 +1,229 @@
+"""The API as its users meet it: records in, answers out, errors that say what to do."""
+
+import io
+import json
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from fastapi.testclient import TestClient
+from tests.service.conftest import description, hour, record_file, turn, upload
+
+from jackettwin.service.context import Service
+
+
+def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: Service) -> None:
+    sent = upload(client, 1)
+    assert sent.status_code == 202, sent.text
+    record_id = sent.json()["record_id"]
+    assert client.get(f"/api/v1/records/{record_id}").json()["status"] == "received"
+    turn(service)
+    assert client.get(f"/api/v1/records/{record_id}").json()["status"] == "observed"
+    assert client.get(f"/api/v1/jobs/{sent.json()['job_id']}").json()["state"] == "done"
+    modes = client.get("/api/v1/assets/wtg/modes?label=mode_1").json()["items"]
+    assert [m["record_id"] for m in modes] == [record_id]
+    assert modes[0]["damping_ratio_interval_95"] == [0.01, 0.02]
+    twin = client.get("/api/v1/assets/wtg/twin").json()
+    assert (twin["records"], twin["days"]) == (1, 1)
+    assert twin["modes"][0]["frequency_hz"] == pytest.approx(modes[0]["frequency_hz"])
+
+
+def test_the_same_content_is_one_record_whatever_the_file_is_called(
+    client: TestClient, service: Service
+) -> None:
+    first = upload(client, 1)
+    turn(service)
+    again = client.post(
+        "/api/v1/assets/wtg/records",
+        files={"file": ("renamed.parquet", record_file(1))},
+        data={"description": description(hour(1))},
+    )
+    assert (first.status_code, again.status_code) == (202, 200)
+    assert again.json()["record_id"] == first.json()["record_id"]
+    turn(service)
+    assert len(client.get("/api/v1/assets/wtg/modes").json()["items"]) == 2
+    assert client.get("/api/v1/assets/wtg/twin").json()["records"] == 1
+
+
+def test_what_cannot_be_read_is_refused_with_field_value_and_remedy(client: TestClient) -> None:
+    sent = client.post(
+        "/api/v1/assets/wtg/records",
+        files={"file": ("x.parquet", record_file(1))},
+        data={"description": json.dumps({"sample_rate_hz": -1})},
+    )
+    assert sent.status_code == 422
+    assert sent.headers["content-type"] == "application/problem+json"
+    problem = sent.json()
+    assert "sample_rate_hz" in problem["field"]
+    assert problem["status"] == 422
+    assert problem["detail"]
+
+
+def test_a_record_without_a_start_is_refused(client: TestClient) -> None:
+    body = json.loads(description())
+    del body["start_utc"]
+    sent = client.post(
+        "/api/v1/assets/wtg/records",
+        files={"file": ("x.parquet", record_file(1))},
+        data={"description": json.dumps(body)},
+    )
+    assert sent.status_code == 422
+    assert sent.json()["field"] == "start_utc"
+
+
+@pytest.mark.parametrize(
+    "name", ["../../../etc/passwd", "..\\..\\x.parquet", "/etc/shadow", ".bashrc", "a" * 500]
+)
+def test_no_name_leads_out_of_the_store(client: TestClient, service: Service, name: str) -> None:
+    before = {p for p in service.settings.store.parent.rglob("*") if p.is_file()}
+    client.post("/api/v1/assets/wtg/records", files={"file": (name, b"not a record")})
+    after = {p for p in service.settings.store.parent.rglob("*") if p.is_file()}
+    assert {p for p in after - before if "sqlite" not in p.name} == set()
+
+
+def test_an_upload_over_the_limit_is_refused_and_leaves_nothing(tmp_path, monkeypatch) -> None:
+    from tests.service.conftest import make_service
+
+    from jackettwin.service.app import create_app
+
+    for small in make_service(tmp_path, None, monkeypatch, upload_limit_bytes=1000):
+        with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:
+            assert upload(client, 1).status_code == 413
+        assert list(small.settings.spool.iterdir()) == []
+
+
+def test_lists_go_on_by_cursor(client: TestClient, service: Service) -> None:
+    for k in range(5):
+        upload(client, k)
+    turn(service, 6)
+    seen, cursor = [], ""
+    while True:
+        page = client.get(f"/api/v1/assets/wtg/records?limit=2{cursor}").json()
+        seen += [r["start_utc"] for r in page["items"]]
+        if page["next_cursor"] is None:
+            break
+        cursor = f"&cursor={page['next_cursor']}"
+    assert seen == sorted(seen, reverse=True)
+    assert len(seen) == 5
+    assert client.get("/api/v1/assets/wtg/records?cursor=nonsense").status_code == 422
+    since = hour(3).isoformat().replace("+00:00", "Z")
+    assert len(client.get(f"/api/v1/assets/wtg/records?from={since}").json()["items"]) == 2
+    assert client.get("/api/v1/assets/wtg/records?from=2025-03-01T00:00:00").json()["field"] == "from"
+
+
+def test_signals_come_as_extremes_in_json_and_arrow(client: TestClient) -> None:
+    record_id = upload(client, 1).json()["record_id"]
+    path = f"/api/v1/records/{record_id}/signal?points=10"
+    plain = client.get(path).json()
+    assert len(plain["time_s"]) == 10
+    bins = plain["channels"]["acc_top_x"]
+    assert all(low <= high for low, high in zip(bins["min"], bins["max"], strict=True))
+    samples = pq.read_table(io.BytesIO(record_file(1)))["acc_top_x"].to_numpy()
+    assert min(bins["min"]) == samples.min()
+    assert max(bins["max"]) == samples.max()
+    arrow = client.get(path, headers={"Accept": "application/vnd.apache.arrow.stream"})
+    table = pa.ipc.open_stream(arrow.content).read_all()
+    assert table["acc_top_x.min"].to_pylist() == bins["min"]
+    assert client.get(path + "&channels=nope").status_code == 422
+    spectrum = client.get(f"/api/v1/records/{record_id}/spectrum").json()
+    assert spectrum["units"]["acc_top_x"] == "(m/s^2)^2/Hz"
+
+
+def test_an_unchanged_answer_is_not_sent_again(client: TestClient) -> None:
+    first = client.get("/api/v1/assets")
+    again = client.get("/api/v1/assets", headers={"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+    upload(client, 1)
+    assert client.get("/api/v1/assets", headers={"If-None-Match": first.headers["etag"]}).status_code == 200
+
+
+def test_large_answers_are_compressed(client: TestClient) -> None:
+    assert client.get("/api/v1/openapi.json").headers["content-encoding"] == "gzip"
+
+
+def test_picks_are_kept_with_who_and_when_and_the_record_is_observed_anew(
+    client: TestClient, service: Service
+) -> None:
+    record_id = upload(client, 1).json()["record_id"]
+    turn(service)
+    done = client.put(f"/api/v1/records/{record_id}/picks", json={"picks": [{"frequency_hz": 0.18}]})
+    assert done.status_code == 202, done.text
+    turn(service)
+    picks = client.get(f"/api/v1/records/{record_id}").json()["picks"]
+    assert (picks["by"], picks["poles"][0]["frequency_hz"]) == ("local", 0.18)
+    assert client.get("/api/v1/assets/wtg/twin").json()["records"] == 1
+
+
+def test_a_new_version_observes_everything_beside_the_old_and_waits_for_a_person(
+    client: TestClient, service: Service
+) -> None:
+    upload(client, 1)
+    turn(service)
+    old = client.get("/api/v1/assets/wtg/twin").json()
+    twin = "structure: jacket15\nidentification: {highest_frequency_hz: 2.0}\n"
+    added = client.put("/api/v1/assets/wtg", json={"twin": twin, "comment": "narrower"})
+    assert added.status_code == 200, added.text
+    turn(service)
+    versions = client.get("/api/v1/assets/wtg/versions").json()["items"]
+    assert [(v["version"], v["adopted"], v["observations"]) for v in versions] == [
+        (1, True, 1),
+        (2, False, 1),
+    ]
+    assert client.get("/api/v1/assets/wtg/twin").json() == old
+    client.post("/api/v1/assets/wtg/versions/2/adopt")
+    assert client.get("/api/v1/assets/wtg/twin").json()["version"] == 2
+
+
+def test_a_twin_that_cannot_be_read_is_no_version(client: TestClient) -> None:
+    sent = client.put("/api/v1/assets/wtg", json={"twin": "structure: nowhere\n"})
+    assert sent.status_code == 422
+    assert len(client.get("/api/v1/assets/wtg/versions").json()["items"]) == 1
+    bad = client.post(
+        "/api/v1/assets", json={"name": "b", "twin": "structure: jacket15\n", "files": {"../x": "y"}}
+    )
+    assert bad.json()["field"] == "files"
+
+
+def test_conditions_are_joined_to_records_by_time(client: TestClient, service: Service) -> None:
+    times = [hour(1).isoformat(), hour(2).isoformat()]
+    body = {"time_utc": times, "values": {"mean_wind_speed_m_s": [9.0, 12.0], "state": ["parked", "idling"]}}
+    assert client.post("/api/v1/assets/wtg/conditions", json=body).json() == {"count": 4}
+    upload(client, 2)
+    turn(service)
+    from jackettwin.store import reading, results
+
+    with reading(service.database) as connection:
+        stored = next(results.observations_between(connection, "wtg", _model_hash(client), hour(0), hour(9)))
+    conditions = json.loads(stored.document)["conditions"]
+    assert (conditions["mean_wind_speed_m_s"], conditions["state"]) == (12.0, "idling")
+
+
+def test_tables_are_exported_as_parquet(client: TestClient, service: Service) -> None:
+    upload(client, 1)
+    turn(service)
+    table = pq.read_table(io.BytesIO(client.get("/api/v1/export.parquet?table=modes").content))
+    assert table["label"].to_pylist() == ["mode_1", "mode_3"]
+
+
+def test_metrics_name_what_an_operator_alarms_on(client: TestClient) -> None:
+    upload(client, 1)
+    text = client.get("/api/v1/metrics").text
+    for name in ("queue_age_seconds", "last_record_age_seconds", "worker_restarts_total", "disk_free_bytes"):
+        assert f"jackettwin_{name}" in text
+
+
+def test_health_and_readiness_need_no_login(client: TestClient) -> None:
+    assert client.get("/api/v1/health").json()["status"] == "ok"
+    assert client.get("/api/v1/ready").json()["ready"]
+
+
+def test_pages_list_the_assets(client: TestClient) -> None:
+    assert "wtg" in client.get("/").text
+    assert "Frequency through time" in client.get("/assets/wtg").text
+    assert client.get("/static/asset.js").headers["content-type"].startswith("text/javascript")
+    assert client.get("/assets/none").status_code == 404
+
+
+def _model_hash(client: TestClient) -> str:
+    found: str = client.get("/api/v1/assets/wtg").json()["model_hash"]
+    return found

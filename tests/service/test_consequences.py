@@ -1,0 +1,169 @@
+"""Exactly once.
+
+Whatever order records come in, however often, and wherever a server dies, the states are the same.
+"""
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from sqlalchemy import select
+from tests.service.conftest import description, hour, make_service, record_file, turn
+
+from jackettwin.service import consequences, uploads
+from jackettwin.service.context import Service
+from jackettwin.service.dispatch import Dispatcher
+from jackettwin.store import assets, reading, results, tables, work, writing
+
+RECORDS = 6
+
+
+class Killed(BaseException):
+    """The server ends here; what was not committed is gone."""
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    patch = pytest.MonkeyPatch()
+    yield from make_service(tmp_path_factory.mktemp("kept"), None, patch)
+    patch.undo()
+
+
+def send(service: Service, k: int) -> None:
+    import io
+
+    # hours 18 to 30: two UTC days
+    start = hour(6 + 2 * k)
+    uploads.take(service, "wtg", f"r{k}.parquet", io.BytesIO(record_file(k)), description(start))
+
+
+def hashes(service: Service) -> dict[str, str]:
+    with reading(service.database) as connection:
+        version = assets.found_version(connection, "wtg")
+        return results.state_hashes(connection, "wtg", version.model_hash)
+
+
+def forget(service: Service) -> None:
+    """Empty the store but for the asset."""
+    with writing(service.database) as connection:
+        for name in ("modes", "observations", "states", "findings", "events", "work", "records", "servers"):
+            connection.execute(tables.metadata.tables[name].delete())
+
+
+def undisturbed(service: Service) -> dict[str, str]:
+    forget(service)
+    for k in range(RECORDS):
+        send(service, k)
+        turn(service, 2)
+    return hashes(service)
+
+
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    order=st.permutations(range(RECORDS)),
+    doubled=st.lists(st.integers(0, RECORDS - 1), max_size=4),
+    kills=st.lists(st.integers(0, 14), max_size=4, unique=True),
+    seed=st.integers(0, 1000),
+)
+def test_orders_doubles_and_deaths_do_not_show(kept: Service, order, doubled, kills, seed) -> None:
+    expected = undisturbed(kept)
+    assert len(expected) == 2
+    forget(kept)
+    rng = random.Random(seed)
+    steps = 0
+    original = consequences.journal.tell
+
+    def deadly(*arguments, **more):
+        """Die in the middle of a transaction, at steps that were drawn."""
+        nonlocal steps
+        steps += 1
+        if steps - 1 in kills:
+            raise Killed
+        original(*arguments, **more)
+
+    consequences.journal.tell = deadly
+    try:
+        for k in [*order, *doubled]:
+            for attempt in ("send", "turn"):
+                try:
+                    send(kept, k) if attempt == "send" else turn(kept, rng.randint(1, 3))
+                except Killed:
+                    continue
+    finally:
+        consequences.journal.tell = original
+    for k in order:  # what was on its way when a server died is sent again
+        send(kept, k)
+        turn(kept, 3)
+    assert hashes(kept) == expected
+    with reading(kept.database) as connection:
+        observed = connection.execute(select(tables.observations.c.record_id)).all()
+        rows = connection.execute(select(tables.modes.c.record_id)).all()
+        statuses = set(connection.scalars(select(tables.records.c.status)))
+    assert len(observed) == len(set(observed)) == RECORDS
+    assert len(rows) == 2 * RECORDS
+    assert statuses == {"observed"}
+
+
+def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(service: Service) -> None:
+    send(service, 0)
+    with writing(service.database) as connection:
+        work.join(connection, "slow", {}, service.now())
+        job = work.lease(connection, "slow", 1, service.now())[0]
+        task = consequences.task_of(connection, service, job)
+        work.bury(connection, "slow")
+    from jackettwin.service.tasks import observe_stored
+
+    slow = type(service)(service.settings, service.database, service.compute, "slow")
+    turn(service)
+    before = hashes(service)
+    with writing(service.database) as connection:
+        consequences.keep(connection, slow, job, observe_stored(task))
+    assert hashes(service) == before
+    with reading(service.database) as connection:
+        assert len(connection.execute(select(tables.modes)).all()) == 2
+
+
+def test_a_record_whose_worker_dies_is_tried_three_times_and_set_aside(service: Service, monkeypatch) -> None:
+    from jackettwin.service import dispatch
+
+    def poison(task: object) -> None:
+        raise RuntimeError("segmentation fault, as it were")
+
+    monkeypatch.setattr(dispatch, "observe_stored", poison)
+    send(service, 0)
+    turn(service, 12)
+    with reading(service.database) as connection:
+        job = work.list_jobs(connection)[0]
+        status = connection.scalar(select(tables.records.c.status))
+    assert (job.state, job.tries, status) == ("set_aside", work.MOST_TRIES, "set_aside")
+    monkeypatch.undo()
+
+
+def test_states_are_made_again_from_stored_observations(service: Service) -> None:
+    from jackettwin.service import rebuild
+
+    for k in range(3):
+        send(service, k)
+    turn(service, 5)
+    before = hashes(service)
+    with writing(service.database) as connection:
+        connection.execute(tables.states.delete())
+    done = rebuild(service.database, Path(service.settings.store), None, None)
+    assert done["days"] == len(before)
+    assert hashes(service) == before
+
+
+def test_two_servers_share_one_queue(service: Service) -> None:
+    other = type(service)(service.settings, service.database, service.compute, "other")
+    for k in range(RECORDS):
+        send(service, k)
+    one, two = Dispatcher(service), Dispatcher(other)
+    for _ in range(4):
+        one._turn()
+        two._turn()
+    with reading(service.database) as connection:
+        assert work.queue_sizes(connection) == {"done": RECORDS}
+        assert len(connection.execute(select(tables.observations)).all()) == RECORDS

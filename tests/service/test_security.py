@@ -1,0 +1,187 @@
+"""Who may do what: roles over every route, sessions, tokens, forged requests, guessing."""
+
+import re
+from collections.abc import Iterator
+from datetime import timedelta
+
+import pytest
+from fastapi.routing import APIRoute
+from fastapi.testclient import TestClient
+from tests.service.conftest import NOON, upload
+
+from jackettwin.errors import InputError
+from jackettwin.service import ServiceSettings, auth, pages
+from jackettwin.service.app import API, ROUTERS, create_app
+from jackettwin.service.context import Service
+from jackettwin.service.settings import refuse_exposed
+from jackettwin.store import people, writing
+
+PASSWORD = "three small words"
+OPEN = {
+    "/api/v1/login",
+    "/api/v1/health",
+    "/api/v1/ready",
+    "/",
+    "/login",
+    "/static/{name}",
+    "/library/plotly.js",
+}
+"""What needs no login; ``/`` sends strangers to ``/login``."""
+
+
+@pytest.fixture(scope="module")
+def password_hash() -> str:
+    return auth.hashed(PASSWORD)
+
+
+@pytest.fixture
+def users(service: Service, password_hash: str) -> Service:
+    with writing(service.database) as connection:
+        for role in people.ROLES:
+            people.add_user(connection, people.User(role, role, password_hash, NOON))
+    return service
+
+
+@pytest.fixture
+def stranger(users: Service) -> Iterator[TestClient]:
+    with TestClient(create_app(users), base_url="http://127.0.0.1:8470", follow_redirects=False) as client:
+        yield client
+
+
+def token(service: Service, user: str, **lasts: float) -> dict[str, str]:
+    with writing(service.database) as connection:
+        lasting = timedelta(**(lasts or {"days": 1}))
+        secret, _ = auth.new_grant(connection, user, "token", "test", service.now(), lasting)
+    return {"Authorization": f"Bearer {secret}"}
+
+
+def routes() -> list[tuple[str, str, str]]:
+    """Return (method, path, role) of every route; the role is what its dependency says."""
+    found = []
+    for prefix, router in [*((API, router) for router in ROUTERS), ("", pages.router)]:
+        for route in router.routes:
+            assert isinstance(route, APIRoute)
+            roles = [d.call.role for d in route.dependant.dependencies if hasattr(d.call, "role")]
+            path = prefix + route.path
+            found += [(method, path, roles[0] if roles else "") for method in sorted(route.methods)]
+    return found
+
+
+def filled(path: str) -> str:
+    """Return a path with names for its parts that nothing has."""
+    values = {"asset": "none", "record_id": "0123456789abcdef", "name": "style.css"}
+    return re.sub(r"{(\w+)}", lambda m: values.get(m[1], "999999"), path)
+
+
+def test_every_route_says_who_may() -> None:
+    known = routes()
+    assert len(known) > 35
+    assert {path for _, path, role in known if not role} == OPEN
+
+
+def test_without_login_everything_else_is_refused(stranger: TestClient) -> None:
+    for method, path, role in routes():
+        if role:
+            assert stranger.request(method, filled(path)).status_code == 401, (method, path)
+    assert stranger.get("/").headers["location"] == "/login"
+
+
+@pytest.mark.parametrize("user", people.ROLES)
+def test_a_role_may_what_its_routes_say_and_no_more(stranger: TestClient, users: Service, user: str) -> None:
+    headers = token(users, user)
+    for method, path, role in routes():
+        if not role or path in ("/api/v1/events", "/api/v1/logout"):
+            continue
+        status = stranger.request(method, filled(path), headers=headers).status_code
+        refused = people.ROLES.index(user) < people.ROLES.index(role)
+        assert (status == 403) == refused, (method, path, role, status)
+        assert status < 500
+
+
+def test_a_session_needs_its_csrf_token_for_what_it_changes(stranger: TestClient) -> None:
+    answer = stranger.post("/api/v1/login", json={"name": "engineer", "password": PASSWORD})
+    assert answer.status_code == 200
+    cookie = answer.headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "SameSite=strict" in cookie
+    assert stranger.get("/api/v1/me").json()["role"] == "engineer"
+    assert upload(stranger, 1).status_code == 403
+    csrf = {"X-CSRF-Token": answer.json()["csrf_token"]}
+    assert stranger.post("/api/v1/jobs/1/cancel", headers=csrf).status_code == 404
+    foreign = {**csrf, "Origin": "https://elsewhere.example"}
+    assert stranger.post("/api/v1/jobs/1/cancel", headers=foreign).status_code == 403
+    assert stranger.post("/api/v1/logout", headers=csrf).status_code == 204
+    assert stranger.get("/api/v1/me").status_code == 401
+
+
+def test_cookies_are_secure_where_answers_are_encrypted(users: Service) -> None:
+    object.__setattr__(users.settings, "behind_proxy", True)
+    with TestClient(create_app(users), base_url="https://127.0.0.1") as client:
+        answer = client.post("/api/v1/login", json={"name": "viewer", "password": PASSWORD})
+        assert "Secure" in answer.headers["set-cookie"]
+        assert "max-age" in answer.headers["strict-transport-security"]
+
+
+def test_guessing_is_slowed_down(stranger: TestClient) -> None:
+    wrong = {"name": "admin", "password": "not the password"}
+    statuses = [stranger.post("/api/v1/login", json=wrong).status_code for _ in range(6)]
+    assert statuses == [401] * 5 + [429]
+    right = stranger.post("/api/v1/login", json={"name": "admin", "password": PASSWORD})
+    assert right.status_code == 429
+    assert int(right.headers["retry-after"]) > 0
+
+
+def test_passwords_and_tokens_are_kept_as_hashes(users: Service) -> None:
+    secret = token(users, "viewer")["Authorization"].split()[1]
+    raw = (users.settings.store / "jackettwin.sqlite").read_bytes() + b"".join(
+        p.read_bytes() for p in users.settings.store.glob("*wal")
+    )
+    assert secret.encode() not in raw
+    assert PASSWORD.encode() not in raw
+    assert b"$argon2id$" in raw
+
+
+def test_expired_tokens_and_disabled_users_are_nobody(stranger: TestClient, users: Service) -> None:
+    old = token(users, "viewer", seconds=-1)
+    assert stranger.get("/api/v1/me", headers=old).status_code == 401
+    good = token(users, "viewer")
+    assert stranger.get("/api/v1/me", headers=good).status_code == 200
+    with writing(users.database) as connection:
+        known = people.find_user(connection, "viewer")
+        assert known is not None
+        connection.execute(people.users.update().where(people.users.c.name == "viewer").values(disabled=True))
+    assert stranger.get("/api/v1/me", headers=good).status_code == 401
+
+
+def test_an_open_server_answers_only_to_its_own_name(client: TestClient) -> None:
+    """A page elsewhere may point a name of its own at 127.0.0.1 (DNS rebinding), or send forms here."""
+    assert client.get("/api/v1/assets").status_code == 200
+    rebound = client.get("/api/v1/assets", headers={"Host": "evil.example:8470"})
+    assert rebound.status_code == 401
+    forged = client.post("/api/v1/jobs/1/cancel", headers={"Origin": "https://evil.example"})
+    assert forged.status_code == 403
+
+
+def test_a_server_that_others_reach_needs_users_and_tls(tmp_path) -> None:
+    exposed = ServiceSettings(tmp_path, host="0.0.0.0")
+    with pytest.raises(InputError, match="no user is defined"):
+        refuse_exposed(exposed, users=False)
+    with pytest.raises(InputError, match="unencrypted"):
+        refuse_exposed(exposed, users=True)
+    refuse_exposed(ServiceSettings(tmp_path, host="0.0.0.0", behind_proxy=True), users=True)
+    refuse_exposed(ServiceSettings(tmp_path), users=False)
+
+
+def test_what_was_done_is_written_down(stranger: TestClient, users: Service) -> None:
+    stranger.post("/api/v1/login", json={"name": "admin", "password": "wrong password"})
+    with writing(users.database) as connection:
+        rows = connection.execute(people.audit.select().where(people.audit.c.action == "login")).all()
+    assert [(row.who, row.outcome) for row in rows] == [("admin", "refused")]
+
+
+def test_answers_forbid_what_a_page_of_ours_does_not_need(client: TestClient) -> None:
+    headers = client.get("/").headers
+    assert "script-src" not in headers["content-security-policy"]  # default-src 'self' holds for scripts
+    assert "unsafe-eval" not in headers["content-security-policy"]
+    assert headers["x-content-type-options"] == "nosniff"
+    assert headers["x-frame-options"] == "DENY"

@@ -1,0 +1,149 @@
+"""Real processes, really killed: every record observed once, states as if nothing had happened.
+
+The campaign of full size is ``python qualify/service.py``; this is the same in small.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.service.conftest import description, hour, record_file
+from tests.service.servers import Broker, Database, Server, publish
+
+from jackettwin.service import add_twin
+from jackettwin.store import open_database, sqlite_url
+
+RECORDS = 6
+SAMPLES = 6000
+
+
+def records() -> list[tuple[str, bytes, str]]:
+    """Return (name, file, description) of records whose identification takes a moment."""
+    return [
+        (f"r{k}.parquet", record_file(k, samples=SAMPLES), description(hour(6 + 2 * k)))
+        for k in range(RECORDS)
+    ]
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """What an undisturbed run knows in the end."""
+    store = new_store(tmp_path_factory.mktemp("undisturbed"))
+    with Server(store) as server:
+        for sent in records():
+            server.send(*sent)
+        server.wait_until_observed(RECORDS)
+        yield server.states()
+
+
+def new_store(folder: Path, database: str | None = None) -> Path:
+    store = folder / "store"
+    store.mkdir()
+    twin = folder / "twin.yaml"
+    twin.write_text("structure: jacket15\n")
+    add_twin(open_database(database or sqlite_url(store)), store, "wtg", twin)
+    return store
+
+
+def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[str, str]) -> None:
+    rng = random.Random(5)
+    store = new_store(tmp_path)
+    server = Server(store)
+    server.start()
+    try:
+        for i, sent in enumerate(records()):
+            server.send(*sent)
+            if i in (1, 4):
+                time.sleep(rng.uniform(0.0, 1.0))
+                server.kill()
+                server.start()
+            if i == 3:
+                assert server.kill_a_worker()
+        server.wait_until_observed(RECORDS)
+        assert server.states() == expected
+        assert server.counts() == {"records": RECORDS, "observations": RECORDS}
+    finally:
+        server.stop()
+    assert not server.workers_alive()
+
+
+def test_a_database_that_dies_is_waited_for(tmp_path: Path, expected: dict[str, str]) -> None:
+    database = Database(tmp_path / "postgresql")
+    database.start()
+    try:
+        store = new_store(tmp_path, database.url)
+        with Server(store, "--database", database.url) as server:
+            sent = records()
+            for one in sent[:3]:
+                server.send(*one)
+            database.kill()
+            assert server.get("/api/v1/ready").status_code in (500, 503)
+            database.start()
+            for one in sent:  # a client that got no answer sends again
+                server.send(*one)
+            server.wait_until_observed(RECORDS)
+            assert server.states() == expected
+            assert server.counts() == {"records": RECORDS, "observations": RECORDS}
+    finally:
+        database.stop()
+
+
+def test_streams_survive_broker_and_server(tmp_path: Path) -> None:
+    """Two channels for two windows: shuffled, doubled, with broker and server killed in between."""
+    broker = Broker(tmp_path / "broker")
+    broker.start()
+    store = new_store(tmp_path)
+    server = Server(store, "--mqtt", f"mqtt://127.0.0.1:{broker.port}")
+    server.start()
+    try:
+        wait_for(lambda: server.get("/api/v1/ready").json()["broker"])
+        publish(broker.port, first_s=0.0, last_s=650.0, seed=1, doubled=True)
+        server.kill()
+        publish(broker.port, first_s=650.0, last_s=900.0, seed=2)
+        server.start()
+        broker.kill()
+        broker.start()
+        publish(broker.port, first_s=900.0, last_s=1260.0, seed=3)
+        server.wait_until_observed(2)
+        rows = sorted(server.get("/api/v1/assets/wtg/records").json()["items"], key=lambda r: r["start_utc"])
+        assert [r["start_utc"] for r in rows if r["status"] == "observed"] == [
+            "2025-03-01T12:00:00Z",
+            "2025-03-01T12:10:00Z",
+        ]
+        found = server.get(f"/api/v1/records/{rows[0]['record_id']}/signal?points=1").json()
+        assert set(found["channels"]) == {"acc_top_x", "acc_top_y"}
+    finally:
+        server.stop()
+        broker.stop()
+
+
+def test_a_full_disk_is_said_and_nothing_is_half_kept(tmp_path: Path) -> None:
+    """On a file system of its own, where the machine lets us make one."""
+    folder = tmp_path / "small"
+    folder.mkdir()
+    if os.geteuid() != 0 or os.system(f"mount -t tmpfs -o size=40m tmpfs {folder} 2>/dev/null") != 0:
+        pytest.skip("needs the right to mount a small file system")
+    try:
+        store = new_store(folder)
+        with Server(store) as server:
+            answer = server.post(*records()[0])
+            assert answer.status_code == 507
+            assert "full" in answer.json()["detail"]
+            assert server.get("/api/v1/assets/wtg/records").json()["items"] == []
+            assert list((store / "spool").iterdir()) == []
+    finally:
+        os.system(f"umount -l {folder}")
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def wait_for(condition, seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it does not come"
+        time.sleep(0.2)

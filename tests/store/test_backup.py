@@ -1,0 +1,77 @@
+"""A backup restores into either kind of database; a damaged one restores nothing."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sqlalchemy import Engine, func, select
+
+from jackettwin.errors import InputError
+from jackettwin.records import Channel, Record
+from jackettwin.store import (
+    assets,
+    journal,
+    open_database,
+    records,
+    tables,
+    waveform_path,
+    write_waveform,
+    writing,
+)
+from jackettwin.store.backup import backup, restore
+
+NOW = datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
+def filled(database: Engine, store: Path) -> None:
+    place = waveform_path("wtg", NOW, "ab12")
+    write_waveform(Record(np.zeros((1, 9)), 1.0, (Channel("a"),), NOW), store / place)
+    with writing(database) as c:
+        assets.add_version(
+            c,
+            "wtg",
+            {"twin.yaml": b"structure: jacket15"},
+            model_hash="m",
+            settings_hash="s",
+            by="me",
+            now=NOW,
+        )
+        records.add_record(
+            c, records.StoredRecord("wtg", "ab12", "received", NOW, 9.0, 1.0, [], {}, "f", NOW, place, 1)
+        )
+        journal.tell(c, "record", "wtg", {"record_id": "ab12"}, NOW)
+
+
+def test_a_backup_restores_to_the_same_rows(database: Engine, tmp_path: Path) -> None:
+    filled(database, tmp_path / "a")
+    backup(database, tmp_path / "a", tmp_path / "all.tar.gz")
+    other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    counts = restore(tmp_path / "all.tar.gz", other, tmp_path / "b")
+    assert counts["records"] == counts["assets"] == counts["versions"] == 1
+    with writing(database) as one, writing(other) as two:
+        for table in (tables.records, tables.versions, tables.events):
+            assert one.execute(select(table)).all() == two.execute(select(table)).all()
+        journal.tell(two, "record", "wtg", {}, NOW)  # numbers go on
+        assert journal.last_event(two) == 2
+    place = waveform_path("wtg", NOW, "ab12")
+    assert (tmp_path / "b" / place).read_bytes() == (tmp_path / "a" / place).read_bytes()
+
+
+def test_a_damaged_backup_restores_nothing(database: Engine, tmp_path: Path) -> None:
+    filled(database, tmp_path / "a")
+    file = tmp_path / "all.tar.gz"
+    backup(database, tmp_path / "a", file)
+    file.write_bytes(file.read_bytes()[:-200])
+    other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    with pytest.raises(InputError, match="not a whole backup"):
+        restore(file, other, tmp_path / "b")
+    with writing(other) as c:
+        assert c.scalar(select(func.count()).select_from(tables.assets)) == 0
+
+
+def test_a_store_that_holds_something_is_not_overwritten(database: Engine, tmp_path: Path) -> None:
+    filled(database, tmp_path / "a")
+    backup(database, tmp_path / "a", tmp_path / "all.tar.gz")
+    with pytest.raises(InputError, match="not empty"):
+        restore(tmp_path / "all.tar.gz", database, tmp_path / "b")

@@ -1,0 +1,55 @@
+"""Samples are kept to the last bit, as int16 where the sensor's step allows."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from jackettwin.records import Channel, Record
+from jackettwin.records.identity import record_id
+from jackettwin.store import read_waveform, waveform_path, write_waveform
+from jackettwin.store.waveforms import packed_samples
+
+START = datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
+def record(data: np.ndarray) -> Record:
+    channels = tuple(Channel(f"a{i}", direction=(1.0, 0.0, 0.0), height_m=20.0 + i) for i in range(len(data)))
+    return Record(data, 20.0, channels, START, {"mean_wind_speed_m_s": 8.5}, {"logger": "x"}, "one")
+
+
+@pytest.mark.parametrize("step", [0.0001, 0.003, 2.0**-13, 1.0, 0.0025])
+def test_a_loggers_steps_become_int16(tmp_path: Path, step: float) -> None:
+    rng = np.random.default_rng(1)
+    counts = np.round(200 * rng.standard_normal((2, 4000)))
+    # what a reader makes of the decimals a logger writes
+    data = np.array([[float(f"{c * step:.15g}") for c in row] for row in counts])
+    data[0, 100:120] = np.nan
+    path = tmp_path / waveform_path("wtg", START, "abc")
+    size = write_waveform(record(data), path)
+    assert all(str(field.type) == "int16" for field in pq.read_schema(path))
+    assert size < 0.4 * data.nbytes
+    back = read_waveform(path)
+    np.testing.assert_array_equal(back.data, data)
+    assert record_id(back) == record_id(record(data))
+    assert (back.channels, back.conditions, back.start_utc) == (
+        record(data).channels,
+        {"mean_wind_speed_m_s": 8.5},
+        START,
+    )
+
+
+def test_what_has_no_step_is_kept_as_it_is(tmp_path: Path) -> None:
+    data = np.random.default_rng(2).standard_normal((2, 500))
+    path = tmp_path / "x.parquet"
+    write_waveform(record(data), path)
+    np.testing.assert_array_equal(read_waveform(path).data, data)
+
+
+def test_a_range_beyond_int16_is_not_squeezed_into_it() -> None:
+    x = np.arange(-40_000.0, 40_000.0, 2.0) / 8.0
+    packed, step = packed_samples(np.append(x, x[0] + 0.125))
+    assert step is None
+    assert packed.dtype == np.float64

@@ -1,0 +1,93 @@
+"""The queue: once for each key, leases that outlive no server, tries that are counted."""
+
+from datetime import UTC, datetime
+
+from sqlalchemy import Connection, Engine
+
+from jackettwin.store import assets, work, writing
+
+NOW = datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
+def asked(connection: Connection, record: str, **changes: object) -> int:
+    key = {
+        "kind": "observe",
+        "asset": "wtg",
+        "record_id": record,
+        "version": 1,
+        "model_hash": "m",
+        "settings_hash": "s",
+        "code_version": "1",
+        "now": NOW,
+    }
+    return work.enqueue(connection, **{**key, **changes})  # type: ignore[arg-type]
+
+
+def with_asset(database: Engine) -> None:
+    with writing(database) as c:
+        assets.add_version(c, "wtg", {"twin.yaml": b""}, model_hash="m", settings_hash="s", by="me", now=NOW)
+
+
+def test_the_same_key_is_the_same_work(database: Engine) -> None:
+    with_asset(database)
+    with writing(database) as c:
+        first, again, other = asked(c, "a"), asked(c, "a"), asked(c, "a", model_hash="n")
+        assert first == again != other
+        assert work.queue_sizes(c) == {"queued": 2}
+
+
+def test_urgent_work_is_leased_first_and_only_once(database: Engine) -> None:
+    with_asset(database)
+    with writing(database) as c:
+        asked(c, "old")
+        asked(c, "urgent", priority=5)
+        work.join(c, "one", {}, NOW)
+        work.join(c, "two", {}, NOW)
+    with writing(database) as c:
+        assert [j.record_id for j in work.lease(c, "one", 1, NOW)] == ["urgent"]
+    with writing(database) as c:
+        assert [j.record_id for j in work.lease(c, "two", 5, NOW)] == ["old"]
+
+
+def test_a_result_counts_only_while_the_lease_is_held(database: Engine) -> None:
+    with_asset(database)
+    with writing(database) as c:
+        asked(c, "a")
+        work.join(c, "one", {}, NOW)
+        job = work.lease(c, "one", 1, NOW)[0]
+    with writing(database) as c:
+        assert work.bury(c, "one", at_beat=7) == []  # it beat meanwhile
+        assert list(work.bury(c, "one", at_beat=0)) == [job.id]
+    with writing(database) as c:
+        assert not work.finish(c, job, "one", "done", NOW)
+        again = work.lease(c, "two", 1, NOW)[0]
+        assert again.id == job.id
+        assert again.tries == 0  # a dead server is not the record's fault
+        assert work.finish(c, again, "two", "done", NOW)
+        assert not work.finish(c, again, "two", "done", NOW)
+
+
+def test_after_three_tries_a_record_is_set_aside_and_may_be_tried_again(database: Engine) -> None:
+    with_asset(database)
+    with writing(database) as c:
+        asked(c, "poison")
+    states = []
+    for _ in range(work.MOST_TRIES):
+        with writing(database) as c:
+            job = work.lease(c, "one", 1, NOW)[0]
+            states.append(work.put_back(c, job, "one", {"detail": "died"}))
+    assert states == ["queued", "queued", "set_aside"]
+    with writing(database) as c:
+        assert work.lease(c, "one", 1, NOW) == []
+        assert work.try_again(c, job.id)
+        assert work.lease(c, "one", 1, NOW)[0].tries == 0
+
+
+def test_leases_of_servers_nobody_knows_are_taken_back(database: Engine) -> None:
+    """As after the restore of a backup that was taken while work was under way."""
+    with_asset(database)
+    with writing(database) as c:
+        asked(c, "a")
+        work.lease(c, "gone", 1, NOW)
+        assert work.take_back_orphans(c) == 1
+        assert work.queue_sizes(c) == {"queued": 1}
