@@ -40,6 +40,26 @@ CATALOGUE: dict[str, Kind] = {
     "tone_passes": Kind(
         "warning", "a tone passes here, between {low_hz:.4g} and {high_hz:.4g} Hz: distrust the damping"
     ),
+    "free_decay": Kind(
+        "info",
+        "a free decay from {from_s:.4g} to {to_s:.4g} s, over {fall:.1f} e-folds; its modes explain "
+        "{explained:.1%} of it, and nothing else of the record is used",
+    ),
+    "transient": Kind(
+        "warning",
+        "the record falls by {fall:.1f} e-folds from one high point while forces go on: no free decay, not "
+        "stationary",
+    ),
+    "decay_forced": Kind("warning", "forces leave {left:.0%} of the decay unexplained"),
+    "decay_weak": Kind(
+        "warning", "only {ratio:.0f} times the power of the noise in this part of the spectrum"
+    ),
+    "decay_short": Kind("warning", "watched for {folds:.1f} e-folds only"),
+    "decay_damping_unknown": Kind("warning", "damping uncertain by {spread:.0%}"),
+    "decay_damping_changes": Kind(
+        "warning",
+        "the damping changes with the amplitude: {early:.2%} of critical at first, {late:.2%} at the end",
+    ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
     # updating
     "unpaired_shape": Kind(

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
+from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, RealPole, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
@@ -66,7 +67,8 @@ def identify(
 
     Vibration channels only; others are left aside. Detrended, decimated and scaled to unit variance,
     then SSI-cov over a sweep of model orders, clustering of the poles, hard criteria, refinement of the
-    modes by maximum likelihood.
+    modes by maximum likelihood. A record of a structure that was let go is recognised, and its modes are
+    those of the decay (``decays/free_decay.py``; their ``method`` is "decay").
 
     Parameters
     ----------
@@ -103,6 +105,9 @@ def identify(
     if settings.method == "efdd":
         _refuse_picks(wanted)
         return fdd(record, settings)
+    fallen = transient(record, settings) if settings.method == "ssi-cov" and not wanted else None
+    if fallen is not None and fallen.identified is not None:
+        return fallen.identified
     if settings.method != "ssi-cov":
         # what is compared is the method; without uncertainties, persistence alone tells modes from noise
         share = max(settings.min_order_share, STEADFAST)
@@ -136,10 +141,11 @@ def identify(
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number
+    modes = tuple(_named(mode, settings) for mode in chosen.modes)
     identified = Identification(
         records=(record.name,),
         channels=ready.channels,
-        modes=tuple(_named(mode, settings) for mode in chosen.modes),
+        modes=modes if fallen is None else fallen.doubted(modes),
         rejected=chosen.rejected,
         stabilisation=replace(poles, cluster=label),
         spectrum=as_measured(welch(y * scale[:, None], resolved.sample_rate_hz), ready.differentiated),

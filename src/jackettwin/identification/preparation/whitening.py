@@ -55,13 +55,15 @@ KAISER = 8.0
 """… and the parameter of its window: right to 5e-4 up to 0.8 of Nyquist, which is what decimation passes."""
 
 
-def accelerated(record: Record) -> tuple[Record, IntArray]:
+def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, IntArray]:
     """Return the record differentiated towards accelerations, and how often each channel was, (n_channels,).
 
     Parameters
     ----------
     record : Record
         Vibration channels without trend; NaN marks a missing sample.
+    as_declared : bool
+        Go by the quantities alone, whatever the spectrum looks like: that of a decay says little.
 
     Examples
     --------
@@ -73,7 +75,8 @@ def accelerated(record: Record) -> tuple[Record, IntArray]:
     (True, 1)
     """
     declared = np.array([DERIVATIVES[c.quantity] for c in record.channels], dtype=np.int64)
-    times = np.clip(declared + _more(record, declared), 0, MOST_DERIVATIVES)
+    more = 0 if as_declared else _more(record, declared)
+    times = np.clip(declared + more, 0, MOST_DERIVATIVES)
     if not times.any():
         return record, times
     rate = record.sample_rate_hz

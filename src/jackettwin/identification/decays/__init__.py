@@ -1,0 +1,1 @@
+"""Free decays: found in a record, and identified as what they are."""

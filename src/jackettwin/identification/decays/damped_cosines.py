@@ -1,0 +1,216 @@
+r"""Damped cosines in noise, by maximum likelihood: the modes of a free decay.
+
+The channels of a structure that is let go share poles and nothing else,
+
+.. math:: y_c(t) = b_c + \mathrm{Re} \sum_m a_{cm} e^{\lambda_m t} + e_c(t), \qquad
+          \lambda = -\zeta\omega + i\omega\sqrt{1 - \zeta^2},
+
+so the amplitudes :math:`a_{cm}`, which are the shapes, are linear and drop out (variable projection; Golub &
+Pereyra 1973, with the derivative of Kaufman 1975): what is left to search is ln ω and ln ζ of each mode. In
+white noise of each channel's own strength the least squares of the whitened residual are maximum likelihood,
+and their information is the Cramér–Rao bound; for one mode that dies within the record
+
+.. math:: \mathrm{var}(\hat\omega) = \mathrm{var}(\hat\alpha) = 16\,\alpha^3\sigma^2\Delta t / A^2,
+          \qquad \alpha = \zeta\omega
+
+(Yao & Pandit 1995, in the limit of many samples a decay). What a structure does under wind and waves while it
+decays is no white noise, but strongest just at the mode: the covariance is therefore the sandwich
+:math:`I^{-1} V I^{-1}`, V the variance of the score in noise with the spectrum of what is left, or of the
+record after the decay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import fft, optimize
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+REWEIGHTED = 2
+"""Times the noise of each channel is estimated anew."""
+MOST_DAMPING = 0.5
+FARTHEST = 0.2
+"""Largest change of ln ω from where a mode started: farther is another mode."""
+LEAST_NOISE = 1e-6
+"""Of a channel's rms: noise below it is not believed."""
+SEGMENTS = 4
+"""Of the noise, in the average that smooths its spectrum."""
+
+
+@dataclass(frozen=True)
+class DampedCosines:
+    """A fitted sum of damped cosines.
+
+    Attributes
+    ----------
+    frequency_hz, damping_ratio : (n_modes,)
+        |λ|/2π and −Re λ/|λ|.
+    amplitudes : (n_modes, n_channels) complex
+        At the first sample, in the units of the samples.
+    residual : (n_channels, n_samples)
+    log_covariance : (2 n_modes, 2 n_modes)
+        Of (ln f, …, ln ζ, …), for the noise there is.
+    cramer_rao : (2 n_modes, 2 n_modes)
+        The same for white noise of the residual's variance.
+    explained : float
+        Share of the channels' whitened power that the cosines explain.
+    """
+
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    amplitudes: ComplexArray
+    residual: FloatArray
+    log_covariance: FloatArray
+    cramer_rao: FloatArray
+    explained: float
+
+
+def damped_cosines(
+    y: FloatArray,
+    sample_rate_hz: float,
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    *,
+    noise: FloatArray | None = None,
+) -> DampedCosines:
+    """Fit damped cosines to a decay, from a first estimate of their frequencies and damping ratios.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Nothing missing.
+    frequency_hz, damping_ratio : (n_modes,)
+    noise : (n_channels, n_more), optional
+        The same channels after the decay, if there is as much: less what still decays its spectrum is that of
+        the noise.
+
+    Examples
+    --------
+    >>> t = np.arange(2000) / 10.0
+    >>> y = np.exp(-0.02 * t) * np.cos(2 * np.pi * 0.3 * t)
+    >>> fit = damped_cosines(y[None] + 1e-3 * np.sin(1e3 * t**2), 10.0, np.array([0.29]), np.array([0.02]))
+    >>> [round(float(v), 4) for v in (fit.frequency_hz[0], fit.damping_ratio[0])]
+    [0.3002, 0.0106]
+    """
+    t = np.arange(y.shape[1]) / sample_rate_hz
+    start = np.concatenate([np.log(2.0 * np.pi * frequency_hz), np.log(damping_ratio)])
+    n = len(frequency_hz)
+    low = np.concatenate([start[:n] - FARTHEST, np.full(n, np.log(1e-5))])
+    high = np.concatenate([start[:n] + FARTHEST, np.full(n, np.log(MOST_DAMPING))])
+    least = LEAST_NOISE * y.std(axis=1) + 1e-300
+    sigma, p = y.std(axis=1) + least, np.clip(start, low + 1e-9, high - 1e-9)
+    for _ in range(REWEIGHTED):
+        white = y / sigma[:, None]
+        p = _least_squares(white, t, p, (low, high))
+        residual = _projected(y, t, p)[0]
+        free = max(len(t) - 2 * n - 1, 1)
+        sigma = np.sqrt(np.sum(residual**2, axis=1) / free) + least
+    white = y / sigma[:, None]
+    left, amplitudes = _projected(white, t, p)
+    jacobian = _jacobian(white, t, p)
+    flat = jacobian.reshape(len(p), -1)
+    bound = np.linalg.pinv(flat @ flat.T)
+    background = left
+    if noise is not None and noise.shape[1] >= len(t):
+        later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
+        background = noise / sigma[:, None] - _sums(p, amplitudes, later)
+    covariance = bound @ _score_variance(jacobian, background) @ bound
+    about = white - white.mean(axis=1, keepdims=True)
+    return DampedCosines(
+        frequency_hz=np.exp(p[:n]) / (2.0 * np.pi),
+        damping_ratio=np.exp(p[n:]),
+        amplitudes=amplitudes * sigma,
+        residual=left * sigma[:, None],
+        log_covariance=np.asarray(covariance),
+        cramer_rao=np.asarray(bound),
+        explained=1.0 - float(np.sum(left**2) / np.sum(about**2)),
+    )
+
+
+def _least_squares(
+    y: FloatArray, t: FloatArray, p: FloatArray, bounds: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Return the parameters within bounds that leave least, from p on."""
+
+    def left(q: FloatArray) -> FloatArray:
+        return _projected(y, t, q)[0].ravel()
+
+    def slope(q: FloatArray) -> FloatArray:
+        return _jacobian(y, t, q).reshape(len(q), -1).T
+
+    return np.asarray(optimize.least_squares(left, p, jac=slope, bounds=bounds, x_scale="jac").x)
+
+
+def _sums(p: FloatArray, amplitudes: ComplexArray, t: FloatArray) -> FloatArray:
+    """Return the decays of amplitudes (n_modes, n_channels) at later times, (n_channels, n_times)."""
+    return np.asarray((amplitudes.T @ np.exp(np.outer(_poles(p), t))).real)
+
+
+def _poles(p: FloatArray) -> ComplexArray:
+    omega, zeta = np.exp(p[: len(p) // 2]), np.exp(p[len(p) // 2 :])
+    return np.asarray(omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2)))
+
+
+def _basis(t: FloatArray, p: FloatArray) -> tuple[FloatArray, ComplexArray]:
+    """Return Re and −Im of the decays and a constant, (n_samples, 2 n_modes + 1), and the decays."""
+    decays = np.exp(np.outer(t, _poles(p)))
+    return np.concatenate([decays.real, -decays.imag, np.ones((len(t), 1))], axis=1), decays
+
+
+def _projected(y: FloatArray, t: FloatArray, p: FloatArray) -> tuple[FloatArray, ComplexArray]:
+    """Return what the best amplitudes leave, and these, (n_modes, n_channels)."""
+    basis, decays = _basis(t, p)
+    q, r = np.linalg.qr(basis)
+    linear = np.linalg.solve(r + 1e-12 * np.trace(np.abs(r)) / len(r) * np.eye(len(r)), q.T @ y.T)
+    n = decays.shape[1]
+    return np.asarray(y - (y @ q) @ q.T), np.asarray(linear[:n] + 1j * linear[n : 2 * n])
+
+
+def _jacobian(y: FloatArray, t: FloatArray, p: FloatArray) -> FloatArray:
+    """Return the residual's derivatives by ln ω and ln ζ, (2 n_modes, n_channels, n_samples)."""
+    basis, decays = _basis(t, p)
+    _, amplitudes = _projected(y, t, p)
+    n = len(p) // 2
+    omega, zeta = np.exp(p[:n]), np.exp(p[n:])
+    by_log_omega = _poles(p)
+    by_log_zeta = omega * zeta * (-1.0 - 1j * zeta / np.sqrt(1.0 - zeta**2))
+    slope = np.concatenate([by_log_omega, by_log_zeta])
+    moved = t[:, None] * np.concatenate([decays, decays], axis=1) * slope
+    q, _ = np.linalg.qr(basis)
+    out = np.empty((2 * n, *y.shape))
+    for i in range(2 * n):
+        change = np.outer(moved[:, i], amplitudes[i % n]).real.T
+        out[i] = -(change - (change @ q) @ q.T)
+    return out
+
+
+def _score_variance(jacobian: FloatArray, noise: FloatArray) -> FloatArray:
+    """Return the variance of Jᵀe for noise e of the spectrum of a sample of it, (n_parameters, n_parameters).
+
+    Averaged over all times the sample may begin at, and never less than in white noise of its power.
+    """
+    n_parameters, n_channels, n_samples = jacobian.shape
+    length = noise.shape[1]
+    size = fft.next_fast_len(length + n_samples)
+    lines = fft.rfft(noise - noise.mean(axis=1, keepdims=True), size, axis=1) / np.sqrt(length)
+    moved = fft.rfft(jacobian, size, axis=2)
+    score = np.sum(moved.conj() * lines, axis=1)
+    weight = np.full(score.shape[1], 2.0)
+    weight[0] = 1.0
+    variance = (score * weight) @ score.conj().T / size
+    power = np.mean(noise**2, axis=1)
+    white = np.einsum("pct,qct,c->pq", jacobian, jacobian, power)
+    values, vectors = _generalised(variance.real, white)
+    return np.asarray(vectors @ np.diag(np.maximum(values, 1.0)) @ vectors.T)
+
+
+def _generalised(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the values of A over B, and vectors V with A = V diag(values) Vᵀ and B = V Vᵀ."""
+    root = np.linalg.cholesky(b + 1e-12 * np.trace(b) / len(b) * np.eye(len(b)))
+    inner = np.linalg.solve(root, np.linalg.solve(root, a).T)
+    values, vectors = np.linalg.eigh(0.5 * (inner + inner.T))
+    return np.asarray(values), np.asarray(root @ vectors)

@@ -1,0 +1,156 @@
+"""Which damped cosines a decay holds: poles of a subspace fit, while they explain what noise does not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+
+from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
+from jackettwin.identification.mac import mac
+from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
+
+FloatArray = npt.NDArray[np.float64]
+
+ORDERS = tuple(range(2, 26, 2))
+"""Model orders whose poles are tried."""
+ROWS_CYCLES = 1.5
+"""Block rows in cycles of the strongest frequency …"""
+MOST_ROWS = 60
+"""… and at most so many."""
+MOST_MODES = 6
+MOST_REFUSED = 3
+"""Poles that may turn out to be no modes until the search ends."""
+APART = 0.02
+"""Two modes of a decay are farther apart than this share of their frequency."""
+NEAR = 0.25
+"""Logarithm of the ratio of two frequencies within which two modes …"""
+SAME_SHAPE = 0.9
+"""… of at least this MAC are one."""
+LEAST_RATIO = 12.0
+"""Power of a mode in the decay over what noise gives the same cosines, from which it is taken."""
+LIGHTEST, HEAVIEST = 2e-4, 0.12
+"""Damping ratios of the poles that are tried, and of the modes that are believed."""
+
+
+@dataclass(frozen=True)
+class DecayFit:
+    """Modes of a decay, and how clear each is.
+
+    Attributes
+    ----------
+    fit : DampedCosines
+    ratio : (n_modes,)
+        Power of each mode over what noise gives the same cosines.
+    """
+
+    fit: DampedCosines
+    ratio: FloatArray
+
+
+def modes_of_decay(
+    y: FloatArray, sample_rate_hz: float, strongest_hz: float, noise: FloatArray | None
+) -> DecayFit | None:
+    """Return the modes of a decay, the one that explains most first taken; None if there is none.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        The decay, nothing missing.
+    noise : (n_channels, n_more) or None
+        The same channels after it.
+    """
+    f, zeta = _poles(y, sample_rate_hz, strongest_hz)
+    taken: list[int] = []
+    open_to = list(range(len(f)))
+    best: DecayFit | None = None
+    left, refused = y, 0
+    while open_to and len(taken) < MOST_MODES and refused < MOST_REFUSED:
+        gains = [_explained(left, sample_rate_hz, float(f[i]), float(zeta[i])) for i in open_to]
+        k = open_to[int(np.argmax(gains))]
+        open_to = [i for i in open_to if abs(np.log(f[i] / f[k])) > APART]
+        tried = [*taken, k]
+        fit = damped_cosines(y, sample_rate_hz, f[tried], zeta[tried], noise=noise)
+        found = DecayFit(fit, _ratios(fit, sample_rate_hz, y.shape[1], noise))
+        if found.ratio.min() > LEAST_RATIO and fit.damping_ratio.max() < HEAVIEST and _distinct(fit):
+            taken, best, left = tried, found, fit.residual
+        else:
+            refused += 1
+    return best
+
+
+@dataclass(frozen=True)
+class _Quiet:
+    """The spectrum of what is no decay."""
+
+    frequency_hz: FloatArray
+    density: FloatArray
+    sample_rate_hz: float
+
+    @classmethod
+    def of(cls, left: FloatArray, sample_rate_hz: float, noise: FloatArray | None) -> _Quiet:
+        """Return that of the noise if there is enough of it, else that of what is left of the decay."""
+        background = left if noise is None or noise.shape[1] < left.shape[1] // 2 else noise
+        length = max(background.shape[1] // 4, 16)
+        f, density = signal.welch(background, sample_rate_hz, nperseg=length, axis=1)
+        return cls(f, density, sample_rate_hz)
+
+    def power(self, f: float) -> FloatArray:
+        """Return the power noise has along two cosines of unit power near a frequency, (n_channels,)."""
+        level = [np.interp(f, self.frequency_hz, row) for row in self.density]
+        return np.array(level) * self.sample_rate_hz + 1e-300
+
+
+def _poles(y: FloatArray, sample_rate_hz: float, strongest_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Return the poles of all orders of the decay, taken as a row of covariances."""
+    rows = min(max(round(ROWS_CYCLES * sample_rate_hz / strongest_hz), 6), MOST_ROWS, (y.shape[1] - 2) // 2)
+    lags = y.T[:, :, None] / (y.std(axis=1)[:, None] + 1e-300)
+    shifts = _sums(lags, rows)
+    subspace = ssi_cov(shifts, block_rows=rows, max_order=ORDERS[-1], factors=False)
+    table = [
+        frequency_and_damping(p.eigenvalues, sample_rate_hz)
+        for p in order_poles(subspace, subspace.orders(ORDERS))
+    ]
+    f, zeta = (np.concatenate([row[i] for row in table]) for i in (0, 1))
+    good = (zeta > LIGHTEST) & (zeta < HEAVIEST) & (f < 0.45 * sample_rate_hz)
+    return f[good], zeta[good]
+
+
+def _sums(lags: FloatArray, rows: int) -> FloatArray:
+    """Return the products of the decay with what comes later, which are sums of its own decays."""
+    y = lags[:, :, 0].T
+    n = y.shape[1]
+    size = 2 * rows + 1
+    head = y[:, : n - size]
+    return np.stack([y[:, k : k + head.shape[1]] @ head.T / head.shape[1] for k in range(size)])
+
+
+def _explained(y: FloatArray, sample_rate_hz: float, f: float, zeta: float) -> float:
+    """Return the power along one damped cosine, every channel over its own."""
+    t = np.arange(y.shape[1]) / sample_rate_hz
+    decay = np.exp(2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2)) * t)
+    q, _ = np.linalg.qr(np.stack([decay.real, decay.imag], axis=1))
+    return float(np.mean(np.sum((y @ q) ** 2, axis=1) / (np.sum(y**2, axis=1) + 1e-300)))
+
+
+def _ratios(
+    fit: DampedCosines, sample_rate_hz: float, n_samples: int, noise: FloatArray | None
+) -> FloatArray:
+    """Return the power of each mode over that of noise in its two cosines, (n_modes,)."""
+    quiet = _Quiet.of(fit.residual, sample_rate_hz, noise)
+    t = np.arange(n_samples) / sample_rate_hz
+    out = []
+    for f, zeta, a in zip(fit.frequency_hz, fit.damping_ratio, fit.amplitudes, strict=True):
+        energy = 0.5 * np.abs(a) ** 2 * np.sum(np.exp(-4.0 * np.pi * f * zeta * t))
+        out.append(float(np.mean(energy / quiet.power(float(f)))))
+    return np.array(out)
+
+
+def _distinct(fit: DampedCosines) -> bool:
+    """Return whether all modes are apart: two near each other of one shape are one whose damping changes."""
+    apart = np.abs(np.log(fit.frequency_hz[:, None] / fit.frequency_hz))
+    alike = mac(fit.amplitudes, fit.amplitudes)
+    same = (apart < 0.5 * APART) | ((apart < NEAR) & (alike > SAME_SHAPE))
+    return int(same.sum()) == len(same)

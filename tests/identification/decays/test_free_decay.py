@@ -1,0 +1,98 @@
+"""Rotor stops and pull-and-release tests: found, named, and identified as decays."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from jackettwin.identification import IdentificationSettings, identify, mac
+from jackettwin.identification.decays.free_decay import transient
+from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Channel, Record
+
+RATE, LENGTH = 10.0, 6000
+T = np.arange(LENGTH) / RATE
+F, ZETA = np.array([0.31, 0.95]), np.array([0.012, 0.012])
+HEIGHT = np.array([0.25, 0.5, 0.75, 1.0])
+SHAPES = np.array([np.append(HEIGHT**1.5, 0.1 * HEIGHT), np.append(np.sin(4.2 * HEIGHT), 0.2 * HEIGHT)])
+SYSTEM = ModalSystem(F, ZETA, SHAPES, np.diag([1.0, 0.3]), noise_ratio=0.02)
+
+
+def let_go(at_s: float, amplitudes: tuple[float, float], since: npt.NDArray[np.float64] = T) -> np.ndarray:
+    """Return the accelerations of both modes from an instant on, (8 channels, n)."""
+    omega, later = 2.0 * np.pi * F[:, None], np.maximum(since - at_s, 0.0)
+    swing = np.exp(-ZETA[:, None] * omega * later) * np.cos(omega * later) * (since >= at_s)
+    return np.asarray(SHAPES.T @ (np.array(amplitudes)[:, None] * swing))
+
+
+def record(y: np.ndarray, quantity: str = "acceleration", unit: str = "m/s²") -> Record:
+    return Record(y, RATE, tuple(Channel(f"s{i}", quantity, unit) for i in range(len(y))), name="stop")
+
+
+def after_a_stop(seed: int) -> Record:
+    """Return ten minutes in wind, in which a rotor stops at 150 s, with twenty times the motion."""
+    wind = simulate(SYSTEM, np.random.default_rng(seed), duration_s=600.0, sample_rate_hz=RATE).data
+    return record(wind / wind.std() * 0.1 + let_go(150.0, (4.0, 1.5)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_rotor_stop_is_a_decay(seed: int) -> None:
+    found = identify(after_a_stop(seed))
+    assert any("free decay" in text for text in found.warnings)
+    assert {mode.method for mode in found.modes} == {"decay"}
+    first = found.modes[0]
+    assert first.status == "ok"
+    assert first.frequency_interval_95 is not None
+    assert first.damping_ratio_interval_95 is not None
+    # 99 % intervals: eight of 95 % would fail once in three runs of other seeds
+    for value, (low, high), truth in (
+        (first.frequency_hz, first.frequency_interval_95, F[0]),
+        (first.damping_ratio, first.damping_ratio_interval_95, ZETA[0]),
+    ):
+        assert (low / value) ** 1.32 < truth / value < (high / value) ** 1.32
+    assert mac(first.mode_shape, SHAPES[0].astype(complex)) > 0.99
+    # nothing that is not of the structure is called ok
+    for mode in found.modes:
+        assert mode.status != "ok" or np.min(np.abs(np.log(mode.frequency_hz / F))) < 0.02
+
+
+def test_pull_and_release_seen_as_displacement() -> None:
+    omega = 2.0 * np.pi * F[:, None]
+    swing = np.exp(-ZETA[:, None] * omega * T[:900]) * np.cos(omega * T[:900])
+    y = SHAPES.T @ (np.array([[0.1], [0.01]]) * swing)
+    noise = 2e-5 * np.random.default_rng(5).standard_normal((8, 1000))
+    pulled = np.concatenate([np.repeat(y[:, :1], 100, axis=1), y], axis=1) + noise
+    found = identify(record(pulled, "displacement", "m"))
+    assert found.modes[0].method == "decay"
+    assert abs(found.modes[0].frequency_hz / F[0] - 1.0) < 2e-3
+    assert abs(found.modes[0].damping_ratio / ZETA[0] - 1.0) < 0.1
+
+
+def test_damping_that_falls_with_the_amplitude_is_said() -> None:
+    omega = 2.0 * np.pi * F[0]
+    # ζ falls from 3 to 1 % over a minute
+    exponent = omega * np.cumsum(0.01 + 0.02 * np.exp(-np.maximum(T - 30.0, 0.0) / 30.0)) / RATE
+    swing = np.where(T >= 30.0, np.exp(-(exponent - exponent[300])) * np.cos(omega * (T - 30.0)), 0.0)
+    y = np.outer(SHAPES[0], swing) + 2e-3 * np.random.default_rng(2).standard_normal((8, LENGTH))
+    (mode,) = identify(record(y)).modes
+    assert mode.status is ModeStatus.DOUBTFUL
+    assert "changes with the amplitude" in str(mode.status_reason)
+
+
+@pytest.mark.parametrize("duration_s", [120.0, 600.0])
+def test_wind_is_no_decay(duration_s: float) -> None:
+    settings = IdentificationSettings()
+    for seed in range(15):
+        wind = simulate(SYSTEM, np.random.default_rng(seed), duration_s=duration_s, sample_rate_hz=RATE)
+        assert transient(wind, settings) is None
+
+
+def test_a_gust_that_dies_down_is_no_decay_and_leaves_no_mode_ok() -> None:
+    """Wind that falls by a factor of fifty: random forces go on, so damped cosines explain little."""
+    wind = simulate(SYSTEM, np.random.default_rng(1), duration_s=600.0, sample_rate_hz=RATE).data
+    settings = IdentificationSettings(refine=False)
+    found = identify(record(wind * (0.02 + np.exp(-np.abs(T - 60.0) / 60.0))), settings)
+    assert all(mode.method != "decay" for mode in found.modes)
+    assert all(mode.status != "ok" for mode in found.modes)
