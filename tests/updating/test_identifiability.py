@@ -1,5 +1,7 @@
 """Verdicts on a case whose answer is known from the physics: tower modes see the vertical springs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from jackettwin.updating.laplace import laplace_draws
 from jackettwin.updating.next_measurement import next_measurements
 from jackettwin.updating.posterior import sample_posterior
 from jackettwin.updating.predictive import predict_quantities, support_quantities
+from jackettwin.updating.prior import BoxPrior
 from jackettwin.updating.profile import profile
 
 TRUTH = np.array([2.5e9, 1e8, 2.5e9, 1e8])  # k, c horizontal; k, c vertical
@@ -52,6 +55,55 @@ def test_vertical_stiffness_is_identified_and_horizontal_damping_is_not(verdicts
     assert verdicts["k_vertical"].reason.startswith("fixed by f")
     assert verdicts["c_horizontal"].verdict == "unidentified"
     assert verdicts["c_horizontal"].ratio > verdicts["c_vertical"].ratio
+
+
+def spread(problem: Problem, column: int, z: np.ndarray) -> Verdict:
+    """Return the verdict on one parameter whose draws are these, the others a tenth about the truth."""
+    rng = np.random.default_rng(2)
+    draws = np.log(TRUTH) + 0.1 * rng.standard_normal((z.size, 4))
+    draws[:, column] = z
+    return identifiability(problem, draws)[column]
+
+
+def test_an_interval_too_long_to_use_is_not_identified(problem: Problem) -> None:
+    """A factor of four between bounds of three decades has a fifth of their deviation, and is no use."""
+    rng = np.random.default_rng(3)
+    noise = rng.standard_normal(4000)
+    short = spread(problem, 2, np.log(TRUTH[2]) + 0.15 * noise)
+    long = spread(problem, 2, np.log(TRUTH[2]) + 0.4 * noise)
+    assert (short.verdict, short.decided_by) == ("identified", "data")
+    assert (long.verdict, long.decided_by) == ("weak", "data")
+    # 2 · 1.645 standard deviations; 4000 draws tell a quantile to 3 %
+    assert long.interval_factor == pytest.approx(np.exp(3.29 * 0.4), rel=0.1)
+    assert long.ratio < 0.3 and "factor of" in long.reason
+
+
+def test_an_interval_that_ends_at_a_bound_is_the_bounds(problem: Problem) -> None:
+    low = float(problem.prior.low[2])
+    leaning = spread(problem, 2, low + 0.2 * np.abs(np.random.default_rng(4).standard_normal(4000)))
+    assert (leaning.verdict, leaning.decided_by) == ("weak", "bounds")
+    assert leaning.interval_factor < 2.0
+
+
+def test_an_interval_that_is_the_priors_is_not_the_datas(problem: Problem) -> None:
+    """A prior of 10 % gives a short interval whatever the data say."""
+    p = problem.parameters[2]
+    informed = replace(p, median=TRUTH[2], log_std=0.1)
+    parameters = (*problem.parameters[:2], informed, problem.parameters[3])
+    prior = replace(problem, parameters=parameters, prior=BoxPrior.of(parameters))
+    noise = np.random.default_rng(5).standard_normal(4000)
+    untold = spread(prior, 2, np.log(TRUTH[2]) + 0.098 * noise)
+    half = spread(prior, 2, np.log(TRUTH[2]) + 0.07 * noise)
+    told = spread(prior, 2, np.log(TRUTH[2]) + 0.04 * noise)
+    assert [(v.verdict, v.decided_by) for v in (untold, half, told)] == [
+        ("unidentified", "prior"), ("weak", "prior"), ("identified", "data"),
+    ]  # fmt: skip
+
+
+def test_without_a_posterior_nothing_is_identified(problem: Problem, draws: np.ndarray) -> None:
+    found = identifiability(problem, draws, converged=False)
+    assert {v.decided_by for v in found} == {"no posterior"}
+    assert "identified" not in {v.verdict for v in found}
 
 
 def test_before_any_value_is_known_the_design_says_the_same(verdicts: dict[str, Verdict]) -> None:

@@ -26,13 +26,26 @@ SIMULATED_TWIN = "simulated"
 )
 @click.option("--simulate", is_flag=True, help="Simulate the records first: an asset whose truth is known.")
 @click.option("--set", "set_file", default="demo", show_default=True, help="What to simulate.")
+@click.option(
+    "--all-laws", is_flag=True, help="Sample the posterior of every law and compare them by evidence; slower."
+)
+@click.option("--compare", is_flag=True, help="Identify the first record by every method, side by side.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: str, as_json: bool) -> None:
+def run_command(
+    twin: str | None,
+    out: Path | None,
+    simulate: bool,
+    set_file: str,
+    all_laws: bool,
+    compare: bool,
+    as_json: bool,
+) -> None:
     """Go from records to modes to updated supports: report.html, result.json, figures.
 
     TWIN is a twin file or the name of a shipped twin: openfast_pile (the default: the reference jacket with
     records that OpenFAST produced) or thesis_table_6_1. With --simulate the records come from
     `jackettwin simulate-set`, by default those of a known asset; the report compares with its truth.
+    The first law of the twin gets a posterior, the others are fitted; --all-laws gives each one.
     """
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
@@ -40,7 +53,13 @@ def run_command(twin: str | None, out: Path | None, simulate: bool, set_file: st
     if simulate:
         config = replace(config, records=_simulated(set_file, folder / "records"), targets=())
     with progress(count_steps(config) + 1, config.name) as step:
-        result = run_twin(config, compare=True, step=step, within=step.within)
+        result = run_twin(
+            config,
+            compare=compare,
+            posteriors="all" if all_laws else "first",
+            step=step,
+            within=step.within,
+        )
         step("write the report")
         document = run_document(result, report=str(folder / "report.html"))
         with atomic_folder(folder) as temporary:

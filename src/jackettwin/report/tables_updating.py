@@ -135,7 +135,7 @@ def parameter_table(updates: Sequence[Update]) -> Table:
     columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
     return Table(
         "What was updated: the best fit, and the 90 % interval of the posterior, whose median may differ. "
-        "The verdict compares its width with that before the data: bounds, or median ×÷ one std. "
+        "Identified: the data alone made the interval, and its ends are a factor of two apart at most. "
         "c_fore_aft, c_side_side: the rotor's dashpot.",
         columns,
         tuple(rows),

@@ -198,6 +198,8 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
         "identifiability_detail": {
             v.name: {
                 "verdict": v.verdict,
+                "decided_by": v.decided_by,
+                "interval_factor": v.interval_factor,
                 "posterior_over_prior_std": v.ratio,
                 "before": v.verdict_before,
                 "expected_posterior_over_prior_std": v.ratio_before,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 
@@ -18,12 +19,15 @@ from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
 from jackettwin.updating import Update, update
 
+Posteriors = Literal["all", "first"]
+
 
 def run_twin(
     config: TwinConfig,
     *,
     laws: tuple[str, ...] | None = None,
     compare: bool = False,
+    posteriors: Posteriors = "all",
     step: Callable[[str], None] = lambda _: None,
     within: Callable[[str], None] = lambda _: None,
 ) -> TwinResult:
@@ -35,6 +39,8 @@ def run_twin(
         Instead of the twin file's.
     compare : bool
         Identify the first record by every method, to set side by side.
+    posteriors : {"all", "first"}
+        Whether every law's posterior is sampled, or the first one's alone: the others are fitted.
     step : callable
         Told what is being done, once a step; ``count_steps`` says how many there are.
     within : callable
@@ -62,11 +68,12 @@ def run_twin(
     states = operating_states(config, measured, state, fitted, wind)
     evidence = Evidence(assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations)
     wanted = laws or config.update.laws
-    updates = []
+    updates: list[Update] = []
     for law in relaxing(config, wanted) if relaxations else wanted:
         step(f"update {law}")
         shown = tuple(m.mode for m in measured)
-        updates.append(_update(config, evidence, law, shown, within))
+        sampled = posteriors == "all" or not updates
+        updates.append(_update(config, evidence, law, shown, within, sampled=sampled))
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -103,6 +110,8 @@ def _update(
     law: str,
     shown: tuple[int, ...],
     within: Callable[[str], None],
+    *,
+    sampled: bool,
 ) -> Update:
     def progress(what: str) -> None:
         within(f"{law}: {what}")
@@ -118,6 +127,7 @@ def _update(
             sampler=how.sampler,
             seed=how.seed,
             most_evaluations=how.most_evaluations,
+            sampled=sampled,
             progress=progress,
         )
     except InputError as error:

@@ -125,6 +125,7 @@ def update(
     sampler: Sampler = "smc",
     seed: int = 0,
     most_evaluations: int = MOST_EVALUATIONS,
+    sampled: bool = True,
     progress: Callable[[str], None] | None = None,
 ) -> Update:
     """Return every solution of one law, the best one recomputed on the full model, and what is known of it.
@@ -140,6 +141,8 @@ def update(
         Tempered sequential Monte Carlo, or dynesty.
     most_evaluations : int
         After which the search adds no further starts.
+    sampled : bool
+        Whether the posterior is sampled; else there are solutions, and no uncertainty.
     progress : callable, optional
         Told what is being done, and how far it is.
 
@@ -160,7 +163,7 @@ def update(
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
     uncertainty = None
-    if problem.weighted:
+    if sampled and problem.weighted:
         if progress is not None:
             progress("posterior")
         posterior, status = posterior_or_status(problem, sampler=sampler, particles=particles, seed=seed)
@@ -220,7 +223,7 @@ def _uncertainty(
         status=status,
         laplace_log_std=np.sqrt(np.diag(log_covariance(problem, best.theta))),
         log_theta=z,
-        verdicts=identifiability(problem, z, seed=seed),
+        verdicts=identifiability(problem, z, seed=seed, converged=posterior is not None),
         next_measurements=next_measurements(problem, z),
         predictive=predict_quantities(
             model, _first(problem, _thinned(z)), (*known, *beyond), problem.states[0].relaxations
