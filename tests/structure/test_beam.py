@@ -133,6 +133,22 @@ def test_geometric_stiffness_finds_the_euler_load() -> None:
     assert 1.0 / inverse.max() == pytest.approx(np.pi**2 * E * p.I[0] / (4 * L**2), rel=1e-5)
 
 
+def test_compression_softens_torsion_until_it_buckles() -> None:
+    """Torsional buckling of a bar (Wagner; closed form): P = GJ·A/I_p, which for a tube is G·A.
+
+    Tension stiffens by as much as compression softens.
+    """
+    p = assemble(cantilever(np.array([0.0, 0.0, 1.0]))).mesh.properties
+    twist = np.zeros(12)
+    twist[9] = 1.0
+    elastic = twist @ beam.stiffness(p)[0] @ twist
+    assert elastic == pytest.approx(p.G[0] * p.J[0] / p.L[0])
+    buckling = p.G * p.A  # J = I_p of a tube
+    softened = twist @ beam.geometric_stiffness(-buckling, p)[0] @ twist
+    assert softened == pytest.approx(-elastic)
+    assert twist @ beam.geometric_stiffness(buckling, p)[0] @ twist == pytest.approx(elastic)
+
+
 def test_shape_functions_interpolate_a_rigid_motion_and_a_cubic() -> None:
     N = beam.translation_shape(0.3, 5.0)
     rotation = np.zeros(12)

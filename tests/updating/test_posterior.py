@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from jackettwin.updating import Problem, Residuals, SupportModel, Target, law_pr
 from jackettwin.updating.convergence import convergence
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.nested import sample_nested
-from jackettwin.updating.posterior import Posterior, gathered, sample_posterior
+from jackettwin.updating.posterior import Posterior, _evaluate, _moved, gathered, sample_posterior
+from jackettwin.updating.prior import BoxPrior
 
 TRUTH = np.array([3e9, 0.15])
 MODES = (1, 2, 4)
@@ -144,6 +146,24 @@ def test_runs_that_sit_apart_or_stand_still_are_noticed(rng: np.random.Generator
     # four distinct values a run, equally spread in every run: they agree, but there are few of them
     still = np.repeat(good[:1, :5], 20, axis=1) + np.zeros((4, 1, 1))
     assert convergence(still).problem is not None
+
+
+def test_where_the_data_say_nothing_the_sampler_keeps_the_prior() -> None:
+    """A swarm drawn from a normal prior and moved a hundred times keeps its mean and spread."""
+    prior = BoxPrior(np.full(2, -50.0), np.full(2, 50.0), np.array([1.0, -2.0]), np.array([0.5, 2.0]))
+
+    class Silent:
+        def log_likelihood(self, z: np.ndarray, near: object) -> tuple[np.ndarray, tuple[()]]:
+            return np.zeros(len(z)), ()
+
+    rng = np.random.default_rng(7)
+    problem: Any = Silent()
+    swarm = _evaluate(problem, prior, prior.draw(2000, rng), None)
+    for _ in range(100):
+        swarm = _moved(problem, prior, swarm, 1.0, rng, wide=False)
+    # 2000 draws tell a mean to 0.022 and a standard deviation to 0.016 of it: four times that
+    np.testing.assert_allclose((swarm.z.mean(axis=0) - prior.mean) / prior.scale, 0.0, atol=0.09)
+    np.testing.assert_allclose(swarm.z.std(axis=0), prior.scale, rtol=0.065)
 
 
 def test_without_standard_deviations_there_is_no_likelihood(model: SupportModel) -> None:

@@ -145,7 +145,7 @@ def highest_wave(length: float, depth: float) -> float:
     """Return the height [m] at which waves of a length break, Fenton (1990) eq. (32) from Williams (1981).
 
     >>> round(highest_wave(100.0, 1e4), 2)  # deep water: 0.141 λ
-    14.11
+    14.1
     """
     x = length / depth
     above = 0.141063 * x + 0.0095721 * x**2 + 0.0077829 * x**3
