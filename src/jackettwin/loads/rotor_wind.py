@@ -35,11 +35,12 @@ class RotorWind:
     ----------
     hub : (n_times, 3)
     rotor : at the places of the standing blades; or at the hub and on the rings
-    tower : on pieces of the tower's axis, from still water to the hub
+    tower : on pieces of the tower's axis, from still water to the hub; or at the grid's nodes on it
     step_s : between samples
     radius : of the rotor [m]
     azimuth : of the first blade if the rotor stands [rad], None if it turns
     shares : (n_elements, n) of each place that an element of the standing blades sees
+    nodes_z : (n,) heights of the grid's nodes on the tower's axis, rising [m]; None with pieces
     """
 
     wind: Wind
@@ -50,6 +51,7 @@ class RotorWind:
     radius: float
     azimuth: float | None
     shares: FloatArray
+    nodes_z: FloatArray | None = None
 
     @property
     def n_times(self) -> int:
@@ -87,6 +89,14 @@ class RotorWind:
 
     def at_heights(self, z: FloatArray) -> FloatArray:
         """Return the wind on the tower's axis at heights ``z`` (n,) [m], (n_times, n, 3)."""
+        if self.nodes_z is not None:
+            at = np.interp(z, self.nodes_z, np.arange(self.nodes_z.size))
+            low = np.minimum(at.astype(np.intp), max(self.nodes_z.size - 2, 0))
+            high = np.minimum(low + 1, self.nodes_z.size - 1)
+            share = (at - low)[None, :, None]
+            return np.asarray(
+                (1.0 - share) * self.tower[:, low] + share * self.tower[:, high] + self._mean(z)
+            )
         pieces = self.tower.shape[1]
         piece = np.clip((z * pieces / self.wind.hub_height_m).astype(np.intp), 0, pieces - 1)
         return np.asarray(self.tower[:, piece] + self._mean(z))
@@ -120,11 +130,18 @@ def rotor_wind(
     piece : float
         Longest piece of blade or tower with a wind of its own [m].
     grid : float, optional
-        Width of a grid whose nodes the standing blades take their wind from instead [m].
+        Width of a grid whose nodes the standing blades and the tower take their wind from instead [m].
     """
     hub = wind.hub_height_m
     on_rotor, shares = _on_rotor(hub, rotor, azimuth, piece, grid)
-    tower = line_pieces(np.zeros(2), np.array([0.0, hub]), piece)
+    nodes_z: FloatArray | None = None
+    if grid is not None:
+        nodes_z = np.asarray(hub - grid * np.arange(int(hub // grid), -1, -1), dtype=np.float64)
+    tower = (
+        line_pieces(np.zeros(2), np.array([0.0, hub]), piece)
+        if nodes_z is None
+        else np.stack([np.zeros_like(nodes_z), nodes_z], axis=1)[:, None]
+    )
     places = [np.array([[[0.0, hub]]]), on_rotor, tower]
     points = np.concatenate([group.reshape(-1, 2) for group in places])
     size = np.concatenate([np.full(group.shape[0], group.shape[1]) for group in places])
@@ -147,6 +164,7 @@ def rotor_wind(
         0.0 if rotor is None else rotor.radius,
         azimuth,
         shares,
+        nodes_z,
     )
 
 

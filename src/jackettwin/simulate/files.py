@@ -12,12 +12,13 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
 from jackettwin.loads.files import read_rotor
+from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
-from jackettwin.simulate.scenario import Air, Clock, Instrument, Scenario, Sea, Turbine
+from jackettwin.simulate.scenario import GRID_M, Air, Clock, Instrument, Scenario, Sea, Turbine
 from jackettwin.simulate.schema import (
     RotorSchema,
     ScenarioSchema,
@@ -137,10 +138,19 @@ def _air(schema: ScenarioSchema, structure: Structure, turbine: Turbine | None) 
         yaw=_mean_heading(path) if path else radians(w.yaw_deg),
         yaw_path=path,
         tower_drag=w.tower_drag,
-        coherent=w.coherence,
-        piece_m=w.piece_m,
-        grid_m=w.grid_m,
+        **_places(w, stands=turbine is not None and turbine.state != "operating"),
     )
+
+
+def _places(w: WindSchema, *, stands: bool) -> dict[str, Any]:
+    """Return where the wind is made: a rotor that stands is blown at as by a wind field file.
+
+    There v and w are independent from node to node, as IEC 61400-1 leaves them; on pieces, and for a rotor
+    that turns, they are as coherent as u.
+    """
+    grid = GRID_M if stands and w.grid_m is None and w.piece_m is None else w.grid_m
+    coherence = w.coherence or ("all" if grid is None else "u")
+    return {"coherent": coherence, "piece_m": w.piece_m or PIECE_M, "grid_m": grid}
 
 
 def _yaw_path(w: WindSchema, duration_s: float) -> tuple[tuple[float, float], ...]:

@@ -71,6 +71,11 @@ class Sea:
     ends: EndCoefficients = EndCoefficients()
 
 
+TOWER_DRAG = 0.5
+"""Of a tower beyond the drag crisis; the reference turbine's own aeroelastic deck has it (TwrCd of
+IEA-15-240-RWT_AeroDyn15.dat)."""
+GRID_M = 19.1
+"""Between the nodes of the wind field that the OpenFAST records were made in [m]."""
 _HEADINGS = 9
 """Over which the rotor's mean stiffness is averaged."""
 
@@ -85,7 +90,7 @@ class Air:
     """The mean heading of a path: at which the nacelle's mass stands."""
     yaw_path: tuple[tuple[float, float], ...] = ()
     """Time in the record [s], first to last, and heading [rad] of rotor and sensors; straight in between."""
-    tower_drag: float = 0.65
+    tower_drag: float = TOWER_DRAG
     coherent: Coherent = "all"
     """Which components of turbulence are coherent across rotor and tower."""
     piece_m: float = PIECE_M

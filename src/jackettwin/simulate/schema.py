@@ -8,7 +8,7 @@ from pydantic import Field
 
 from jackettwin.files import Schema
 from jackettwin.files.limits import Angle, ForceCoefficient, Frequency, Height, Seed
-from jackettwin.loads.rotor_wind import PIECE_M
+from jackettwin.simulate.scenario import TOWER_DRAG
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.soil.foundation import (
     CurvesSchema,
@@ -104,9 +104,9 @@ class WindSchema(Schema):
     seed: Seed = 0
     yaw_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 0.0
     yaw_path: list[tuple[float, Angle]] | None = Field(default=None, min_length=2)
-    tower_drag: ForceCoefficient = 0.65
-    coherence: Literal["all", "u"] = "all"
-    piece_m: Annotated[float, Field(ge=1.0, le=200.0)] = PIECE_M
+    tower_drag: ForceCoefficient = TOWER_DRAG
+    coherence: Literal["all", "u"] | None = None
+    piece_m: Annotated[float, Field(ge=1.0, le=200.0)] | None = None
     grid_m: Annotated[float, Field(ge=5.0, le=200.0)] | None = None
 
 
