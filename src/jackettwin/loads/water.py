@@ -13,8 +13,15 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.axes import GRAVITY_M_S2
-from jackettwin.loads.coefficients import require_members
-from jackettwin.loads.morison import MorisonPoints, added_mass, nodal_loads, spread, wetness
+from jackettwin.loads.coefficients import Coefficients, require_members
+from jackettwin.loads.morison import (
+    MorisonPoints,
+    added_mass,
+    morison_points,
+    nodal_loads,
+    spread,
+    wetness,
+)
 from jackettwin.structure import Assembly
 
 FloatArray = npt.NDArray[np.float64]
@@ -27,20 +34,38 @@ class Water:
     flooded: tuple[str, ...] = ()
 
 
-def water_mass(assembly: Assembly, grid: MorisonPoints, water: Water) -> sp.csr_array:
+def water_mass(
+    assembly: Assembly, grid: MorisonPoints, water: Water, *, level_m: float = 0.0
+) -> sp.csr_array:
     """Return the mass of growth, of water inside and of added water, (n_dof, n_dof) [kg, kg·m, kg·m²].
 
-    Growth and the water inside move with the member in every direction, added water only across it.
+    Growth and the water inside move with the member in every direction, added water only across it. With the
+    sea ``level_m`` above still water more of the members is wet; ``grid`` must reach there.
 
     Raises
     ------
     InputError
         If a flooded member or part does not exist.
     """
-    wet = wetness(grid, np.zeros(grid.weight.size))
+    wet = wetness(grid, np.full(grid.weight.size, level_m))
     carried = _growth_area(grid) * grid.growth_density
     carried = carried + _bore_area(grid) * grid.density_kg_m3 * wet * _flooded(assembly, grid, water)
-    return sp.csr_array(spread(grid, carried[:, None, None] * np.eye(3)) + added_mass(grid))
+    return sp.csr_array(spread(grid, carried[:, None, None] * np.eye(3)) + added_mass(grid, eta=level_m))
+
+
+def mass_per_level(
+    assembly: Assembly, coefficients: Coefficients, water: Water, *, step_m: float = 0.5, spacing: float = 1.0
+) -> sp.csr_array:
+    """Return ∂M/∂level at still water, (n_dof, n_dof) [kg/m, …]: how a tide moves the mass of the water.
+
+    Central differences over ± ``step_m``: a tide's own size, so that braces just under or over the surface
+    count in part.
+    """
+    grid = morison_points(
+        assembly, highest_z=step_m, lowest_z=-step_m, coefficients=coefficients, spacing=spacing
+    )
+    high, low = (water_mass(assembly, grid, water, level_m=sign * step_m) for sign in (1.0, -1.0))
+    return sp.csr_array((high - low) / (2.0 * step_m))
 
 
 def water_weight(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
