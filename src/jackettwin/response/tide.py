@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
 from jackettwin.errors import InputError
+from jackettwin.response.system import Matrix
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,9 +41,7 @@ class TideSlopes:
         return np.asarray(self.slope_hz_m / self.frequency_hz)
 
 
-def tide_slopes(
-    frequency_hz: FloatArray, shapes: FloatArray, mass: sp.sparray, mass_per_m: sp.sparray
-) -> TideSlopes:
+def tide_slopes(frequency_hz: FloatArray, shapes: FloatArray, mass: Matrix, mass_per_m: Matrix) -> TideSlopes:
     """Return the slopes of modes with shapes (n_dof, n_modes), real or complex, of any size.
 
     Parameters
