@@ -1,0 +1,245 @@
+"""What we write, read and run by OpenFAST itself; runs where ``OPENFAST=/path/to/openfast`` is set.
+
+Writes docs/verification/openfast.md. jacket15 as ExtPtfm superelement under an ElastoDyn tower and the IEA
+15 MW rotor, with rigid and with bending blades, linearised and in free decay, against ``modes --gravity``;
+and the exported SubDyn deck's frequencies against our own.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import yaml
+from common.openfast_deck import Run, Turbine, write_case
+from common.page import write_page
+
+from jackettwin.records.readers.openfast import read_text
+from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.own_damping import own_damping
+from jackettwin.response.static import self_weight, static_displacement
+from jackettwin.response.superelement import superelement
+from jackettwin.response.superelement_files import write_superelement
+from jackettwin.response.system import System, build_system
+from jackettwin.soil import Support, read_support, with_static_reactions
+from jackettwin.soil.foundation import read_foundation
+from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
+from jackettwin.structure.blade_files import read_flexible_rotor
+from jackettwin.structure.cut import at_interface
+from jackettwin.structure.rotor_modes import with_rotor
+from jackettwin.structure.subdyn_deck import write_subdyn
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+KELVIN_VOIGT = "kelvin-voigt:k=2.5e9,c=7.6e8"
+DEPTH_M = 72.0
+MODES = 24
+BAND_HZ = 1.0
+DECAY_S = 150.0
+FOUR = ("first side-side", "first fore-aft", "second side-side", "second fore-aft")
+
+
+def main() -> None:
+    program = os.environ.get("OPENFAST", "")
+    if not Path(program).is_file():
+        sys.stderr.write(
+            "OPENFAST is not set to the program: nothing is run (docs/verification/openfast.md)\n"
+        )
+        return
+    lines = introduction()
+    with tempfile.TemporaryDirectory() as folder:
+        for k, (title, structure, support) in enumerate(assets()):
+            for flexible in (False, True):
+                place = Path(folder) / f"{k}{flexible:d}"
+                place.mkdir()
+                lines += compared(program, place, title, structure, support, flexible=flexible)
+        lines += subdyn(program, Path(folder))
+    write_page("openfast", lines)
+
+
+def introduction() -> list[str]:
+    return [
+        "# OpenFAST reads and runs what we write",
+        "",
+        "`jacket15` as an ExtPtfm superelement (24 coordinates, `--layout openfast5`, gravity) under an",
+        "ElastoDyn tower with the IEA 15 MW rotor, parked and feathered, the steel undamped: OpenFAST 5.0.0,",
+        "linearised at rest and in free decay at steps of 0.01 s, beside `modes --gravity` of the whole.",
+        "`ModCoupling` is 3: with 1 that version writes beyond its arrays, whatever the superelement.",
+        "ElastoDyn's tower has two shapes in each direction, its blades three: what is left is mostly theirs.",
+        "`OPENFAST=/path make qualify` writes this page.",
+        "",
+    ]
+
+
+def turbine() -> Turbine:
+    """Return the IEA 15 MW turbine: its ElastoDyn file's nacelle, yaw bearing and hub."""
+    rotor = read_flexible_rotor("iea15")
+    return Turbine(rotor, 644857.0, -5.125, 4.315, 32929058.0, 28249.0, 69131.0, 969952.0)
+
+
+def assets() -> Iterator[tuple[str, Structure, Support]]:
+    steel = read_structure("jacket15")
+    steel = steel.with_masses((turbine().body(steel.top_node),))
+    yield "Kelvin–Voigt feet (k 2.5e9, c 7.6e8)", steel, read_support(KELVIN_VOIGT, steel)
+    piled, support = read_foundation("jacket15_records").lumped(steel)
+    yield "the records' piles", piled, support
+
+
+def compared(
+    program: str, folder: Path, title: str, structure: Structure, support: Support, *, flexible: bool
+) -> list[str]:
+    """Return the table of a case: linearised, and with rigid blades in free decay."""
+    rigid = assemble(structure, gravity=True)
+    foundation, _ = at_interface(structure)
+    base = build_system(assemble(foundation, gravity=True, weight=rigid.weight), support)
+    element = superelement(base, number=MODES, band_hz=BAND_HZ)
+    write_superelement(element, folder / "jacket.dat")
+    u = static_displacement(build_system(rigid, support), self_weight(rigid))
+    rest = tuple(
+        float(v) for node in (structure.interface_nodes[0], structure.top_node) for v in u[rigid.dofs(node)]
+    )
+    run = Run(flexible=flexible, linearise=True, rest=rest)
+    columns = {"linearised": linearised(program, folder, structure, run)}
+    if not flexible:
+        decay = replace(run, linearise=False, duration_s=DECAY_S, offset_m=0.3)
+        columns["free decay"] = decayed(program, folder, structure, decay)
+    whole = with_rotor(structure, turbine().rotor, structure.top_node) if flexible else structure
+    assembly = assemble(whole, gravity=True)
+    system = build_system(assembly, support, spread=own_damping(assembly, Rayleigh()))
+    return table(f"{title}, {'bending' if flexible else 'rigid'} blades", pairs(system, structure), columns)
+
+
+def pairs(system: System, structure: Structure) -> dict[str, complex]:
+    """Return our poles of the first and second pairs: those that move the tower's top or middle most."""
+    found = damped_modes(system, below_hz=BAND_HZ)
+    assembly = system.assembly
+    tower = [m.end for m in structure.members if m.part == "tower"]
+    rows = np.concatenate([assembly.dofs(node)[:2] for node in tower])
+    mass = np.einsum("ij,ij->j", found.shapes.conj(), assembly.mass @ found.shapes).real
+    moved = np.abs(found.shapes[rows]).reshape(len(tower), 2, -1) ** 2
+    share = moved.sum(axis=0) / mass
+    poles = found.eigenvalues
+    low = np.abs(poles) < 2.0 * np.pi * 0.3
+    chosen = [
+        int(np.argmax(np.where(low == first, share[axis], -1.0)))
+        for first in (True, False)
+        for axis in (1, 0)
+    ]
+    return {name: complex(poles[k]) for name, k in zip(FOUR, chosen, strict=True)}
+
+
+def table(title: str, ours: dict[str, complex], columns: dict[str, ComplexArray]) -> list[str]:
+    heads = [f"{name} f [Hz], ζ [%] | Δf [%], Δζ/ζ [%]" for name in columns]
+    lines = [f"**{title}**", "", f"| pair | `modes` f [Hz], ζ [%] | {' | '.join(heads)} |"]
+    lines.append("|---" * (2 + 2 * len(columns)) + "|")
+    for name, pole in ours.items():
+        cells = [name, _pole(pole)]
+        for poles in columns.values():
+            other = poles[np.argmin(np.abs(poles - pole))]
+            apart = 100.0 * (abs(pole) / abs(other) - 1.0), 100.0 * (_ratio(pole) / _ratio(other) - 1.0)
+            cells += [_pole(complex(other)), f"{apart[0]:+.2f}, {apart[1]:+.1f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return [*lines, ""]
+
+
+def _pole(pole: complex) -> str:
+    return f"{abs(pole) / 2.0 / np.pi:.4f}, {100.0 * _ratio(pole):.3f}"
+
+
+def _ratio(pole: complex) -> float:
+    return float(-pole.real / abs(pole))
+
+
+def execute(program: str, primary: Path) -> None:
+    """Run a case; what the program says is in ``log.txt`` beside it."""
+    log = primary.parent / "log.txt"
+    with log.open("w") as stream:
+        done = subprocess.run(
+            [program, primary.name], cwd=primary.parent, stdout=stream, stderr=stream, check=False
+        )
+    if done.returncode != 0:
+        raise SystemExit(f"OpenFAST refused {primary}:\n{log.read_text(errors='replace')[-2000:]}")
+
+
+def linearised(program: str, folder: Path, structure: Structure, run: Run) -> ComplexArray:
+    """Return the oscillating poles of the linearised system [rad/s]."""
+    primary = write_case(folder, structure, turbine(), run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M)
+    execute(program, primary)
+    lines = (folder / "case.1.lin").read_text().splitlines()
+    at = next(k for k, line in enumerate(lines) if line.strip().startswith("A:"))
+    found = re.search(r"(\d+) *x", lines[at])
+    assert found is not None
+    n = int(found[1])
+    A = np.array([[float(v) for v in line.split()] for line in lines[at + 1 : at + 1 + n]])
+    values = np.linalg.eigvals(A)
+    return np.asarray(values[values.imag > 0.0])
+
+
+def decayed(program: str, folder: Path, structure: Structure, run: Run) -> ComplexArray:
+    """Return the poles of a free decay by a subspace of each direction's accelerations [rad/s]."""
+    primary = write_case(folder, structure, turbine(), run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M)
+    execute(program, primary)
+    found = read_text(folder / "case.out")
+    started = found.times_s > 5.0
+    step = float(np.diff(found.times_s[:2])[0])
+    every = max(1, round(0.2 / step))
+    rows = [found.data[found.names.index(name)][started][::every] for name in ("YawBrTAxp", "YawBrTAyp")]
+    return np.concatenate([_poles_of_decay(row - row.mean(), every * step) for row in rows])
+
+
+def _poles_of_decay(x: FloatArray, step: float, *, order: int = 12, rows: int = 100) -> ComplexArray:
+    hankel = np.lib.stride_tricks.sliding_window_view(x, x.size - rows + 1)
+    basis = np.linalg.svd(hankel, full_matrices=False)[0][:, :order]
+    advance = np.linalg.lstsq(basis[:-1], basis[1:], rcond=None)[0]
+    values = np.log(np.linalg.eigvals(advance).astype(np.complex128)) / step
+    return np.asarray(values[values.imag > 0.0])
+
+
+def subdyn(program: str, folder: Path) -> list[str]:
+    """Return the frequencies of the exported deck, by SubDyn and by us."""
+    place = folder / "subdyn"
+    place.mkdir()
+    structure = read_structure("jacket15")
+    structure = structure.with_masses((turbine().body(structure.top_node),))
+    support = read_support("kelvin-voigt:k=2.5e9,c=0", structure)
+    foundation, _ = at_interface(structure)
+    held = with_static_reactions(foundation, support)
+    write_subdyn(held, place / "deck.dat")
+    deck = read_structure(place / "deck.dat")
+    ours = undamped_modes(build_system(assemble(deck), read_support(None, deck)), 60).frequency_hz
+    primary = write_case(
+        place,
+        structure,
+        turbine(),
+        Run(duration_s=0.1, step_s=0.002, sub=1),
+        foundation="deck.dat",
+        depth_m=DEPTH_M,
+    )
+    execute(program, primary)
+    summary = yaml.safe_load(next(place.glob("*.SD.sum.yaml")).read_text())
+    theirs = np.ravel(
+        summary["Full_frequencies"] if "Full_frequencies" in summary else summary["FEM_frequencies"]
+    )
+    theirs = np.sort(theirs[theirs > 1e-3])
+    wanted = ours[(ours > 1e-3) & (ours < 3.0)]
+    apart = np.abs(wanted / theirs[: wanted.size] - 1.0)
+    return [
+        "**SubDyn: `export`**",
+        "",
+        f"{wanted.size} modes of the exported foundation below 3 Hz, by SubDyn's own finite elements (its",
+        f"summary file) and by ours on the deck read back: at most {100 * apart.max():.4f} % apart.",
+        "",
+    ]
+
+
+if __name__ == "__main__":
+    main()
