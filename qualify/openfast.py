@@ -74,8 +74,8 @@ def introduction() -> list[str]:
         "ElastoDyn tower with the IEA 15 MW rotor, parked and feathered, the steel undamped: OpenFAST 5.0.0,",
         "linearised at rest and in free decay at steps of 0.01 s, beside `modes --gravity` of the whole.",
         "`ModCoupling` is 3: with 1 that version writes beyond its arrays, whatever the superelement.",
-        "ElastoDyn's tower has two shapes in each direction, its blades three: what is left is mostly theirs.",
-        "`OPENFAST=/path make qualify` writes this page.",
+        "ElastoDyn's tower has two shapes in each direction, its blades three: what is left is mostly",
+        "theirs. `OPENFAST=/path make qualify` writes this page.",
         "",
     ]
 

@@ -19,6 +19,8 @@ COMMANDS = {
     "refine": "Scale E and ρ of the steel, part by part, to known frequencies; writes nothing.",
     "superelement": "Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right "
     "that is.",
+    "soil": "Reaction curves, head stiffness, capacity and pushover of a pile of FOUNDATION, and a page of "
+    "them.",
     "export": "Write what stands below the interface of STRUCTURE as a SubDyn input file.",
     "stages": "Frequencies of STRUCTURE on pinned feet as its parts are added: jacket, transition piece, "
     "tower.",

@@ -1,0 +1,178 @@
+"""``jackettwin soil``: what the ground of a foundation does to one of its piles."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from rich.table import Table
+
+from jackettwin.cli.console import messages, output, print_json
+from jackettwin.soil.curves import Curve
+from jackettwin.soil.foundation import Foundation, read_foundation
+from jackettwin.soil.impedance import head_impedance
+from jackettwin.soil.pile_capacity import FAILED_AT, Pushover, axial_capacity, pushover
+from jackettwin.soil.pile_curves import PileCurves
+
+_POINTS = 31
+"""Of a curve in the tables."""
+_REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
+"""Largest displacement of a curve in the tables, in pile diameters."""
+
+
+@click.command("soil")
+@click.argument("foundation")
+@click.option(
+    "--frequency-hz",
+    default=0.18,
+    show_default=True,
+    type=click.FloatRange(min=0.0, max=100.0),
+    help="Of the head's stiffness and loss.",
+)
+@click.option("--arm", "arm_m", default=0.0, show_default=True, help="Height of the lateral load [m].")
+@click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), help="The page; default out/NAME_soil.html."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def soil_command(
+    foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None, as_json: bool
+) -> None:
+    """Reaction curves, head stiffness, capacity and pushover of a pile of FOUNDATION, and a page of them."""
+    ground = read_foundation(foundation)
+    pushed = None if ground.curves is None else pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
+    document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
+    # drawing takes a second to load: not before it is needed
+    from jackettwin.report.soil_page import write_soil_page
+
+    path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
+    document["page"] = str(path)
+    if as_json:
+        print_json(document)
+    else:
+        _print(document)
+    for note in document["warnings"]:
+        messages.print(f"warning: {note}")
+
+
+def _document(
+    name: str, ground: Foundation, pushed: Pushover | None, frequency_hz: float, arm_m: float
+) -> dict[str, Any]:
+    pile, curves = ground.pile, ground.curves
+    s = 2j * pi * frequency_hz
+    K = head_impedance(pile, ground.springs, s, law=ground.law, dashpots=ground.dashpots)[0]
+    return {
+        "foundation": name,
+        "pile": {
+            "length_m": pile.length_m,
+            "outer_diameter_m": pile.section.outer_diameter_m,
+            "thickness_m": pile.section.thickness_m,
+        },
+        "frequency_hz": frequency_hz,
+        "head_stiffness": K.real,
+        "head_loss": K.imag,
+        "curves": None if curves is None else _curves(curves),
+        "capacity": None if curves is None or pushed is None else _capacity(curves, pushed),
+        "pushover": None if pushed is None else _pushover(pushed, arm_m),
+        "warnings": _warnings(ground),
+    }
+
+
+def _warnings(ground: Foundation) -> list[str]:
+    if ground.curves is None:
+        return [*ground.notes, "linear ground has no curves and no capacity: describe it by layers"]
+    return list(ground.notes)
+
+
+def _curves(curves: PileCurves) -> dict[str, Any]:
+    D, at = curves.diameter_m, curves.at
+    return {
+        "stations": [
+            {
+                "depth_m": float(at.depth[k]),
+                "py": _curve(curves.py[k], _REACH["py"] * D),
+                "tz": _curve(curves.tz[k], _REACH["tz"] * D),
+            }
+            for k in range(at.depth.size)
+        ],
+        "qz": _curve(curves.qz, _REACH["qz"] * D),
+    }
+
+
+def _curve(curve: Curve, reach: float) -> dict[str, Any]:
+    """Return a curve as a table; a p-y and t-z in N per m of pile, q-z in N."""
+    y = reach * np.linspace(0.0, 1.0, _POINTS) ** 2
+    return {
+        "y_m": y,
+        "reaction": curve.force(y),
+        "capacity": float(curve.capacity),
+        "initial_stiffness": float(curve.initial_stiffness),
+    }
+
+
+def _capacity(curves: PileCurves, pushed: Pushover) -> dict[str, Any]:
+    axial = axial_capacity(curves)
+    return {
+        "shaft_n": axial.shaft_n,
+        "tip_n": axial.tip_n,
+        "axial_compression_n": axial.compression_n,
+        "axial_tension_n": axial.tension_n,
+        "lateral_n": pushed.ultimate_n,
+        "lateral_displacement_limit_m": FAILED_AT * curves.diameter_m,
+    }
+
+
+def _pushover(pushed: Pushover, arm_m: float) -> dict[str, Any]:
+    return {
+        "arm_m": arm_m,
+        "load_n": pushed.load_n,
+        "head_m": pushed.head_m,
+        "rotation_rad": pushed.rotation_rad,
+        "largest_moment_nm": pushed.moment_nm,
+    }
+
+
+def _print(document: dict[str, Any]) -> None:
+    pile = document["pile"]
+    output.print(
+        f"{document['foundation']}: one pile {pile['length_m']:g} m long, {pile['outer_diameter_m']:g} m × "
+        f"{1e3 * pile['thickness_m']:g} mm"
+    )
+    names = ("x", "y", "z", "rx", "ry", "rz")
+    table = Table(
+        "", *names, title=f"head at {document['frequency_hz']:g} Hz [N/m, N, N·m/rad]", title_justify="left"
+    )
+    for part, key in (("K", "head_stiffness"), ("loss", "head_loss")):
+        for name, row in zip(names, np.asarray(document[key]), strict=True):
+            table.add_row(f"{part} {name}", *(f"{v:.3g}" for v in row))
+    output.print(table)
+    capacity, pushed = document["capacity"], document["pushover"]
+    if capacity is not None:
+        output.print(
+            f"capacity [MN]: compression {1e-6 * capacity['axial_compression_n']:.1f} (shaft "
+            f"{1e-6 * capacity['shaft_n']:.1f}, tip {1e-6 * capacity['tip_n']:.1f}), tension "
+            f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
+            f"{capacity['lateral_displacement_limit_m']:.2f} m"
+        )
+        output.print(_pushover_table(pushed))
+    output.print(f"wrote {document['page']}")
+
+
+def _pushover_table(pushed: dict[str, Any]) -> Table:
+    table = Table(
+        "load [MN]",
+        "head [mm]",
+        "rotation [mrad]",
+        "largest moment [MN·m]",
+        title="pushover",
+        title_justify="left",
+    )
+    columns = (pushed["load_n"], pushed["head_m"], pushed["rotation_rad"], pushed["largest_moment_nm"])
+    for load, head, rotation, moment in zip(*columns, strict=True):
+        table.add_row(
+            f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * rotation:.2f}", f"{1e-6 * moment:.2f}"
+        )
+    return table

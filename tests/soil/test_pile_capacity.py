@@ -1,0 +1,78 @@
+"""Capacity of piles against closed forms: summed friction, Broms's short pile."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.soil.curves import Tanh
+from jackettwin.soil.pile_capacity import axial_capacity, pushover
+from jackettwin.soil.pile_curves import PileCurves, pile_curves
+from jackettwin.soil.piles import Pile, stations
+from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.structure import Section
+from jackettwin.structure.model import STEEL, Material
+
+D, L = 2.0, 20.0
+STUBBY = Pile(L, Section(D, 0.05), Material(1e4 * STEEL.youngs_modulus_pa, 1e14, 7850.0))
+
+
+def plastic(pile: Pile, p_u: float, t_u: float = 1.0, q_u: float = 1.0) -> PileCurves:
+    """Ground that resists by the same force everywhere, after a millimetre."""
+    at = stations(pile)
+    py, tz = (tuple(Tanh(v, 1e3 * v) for _ in at.depth) for v in (p_u, t_u))
+    return PileCurves(at, py, tz, Tanh(q_u, 1e3 * q_u), D)
+
+
+def test_axial_capacity_is_friction_times_length_and_the_tip() -> None:
+    """API in clay: α s_u π D L of the outer shaft, 9 s_u A of the tip; α = 0.5/√(s_u/σ'_v) at ψ ≤ 1."""
+    found = axial_capacity(plastic(STUBBY, 1e5, 2e5, 3e6))
+    assert (found.shaft_n, found.tip_n) == pytest.approx((2e5 * L, 3e6))
+    assert found.compression_n == pytest.approx(2e5 * L + 3e6)
+    assert found.tension_n == found.shaft_n
+    su, gamma = 60e3, 9e3
+    curves = pile_curves(STUBBY, SoilProfile((Layer(30.0, gamma, Clay(su, su)),)))
+    z = np.linspace(0.0, L, 4001)
+    psi = su / np.maximum(gamma * z, 1.0)
+    alpha = np.minimum(np.where(psi <= 1.0, 0.5 * psi**-0.5, 0.5 * psi**-0.25), 1.0)
+    # Simpson's rule in pieces of a metre on the fourth root of depth at the surface: half a per cent
+    assert axial_capacity(curves).shaft_n == pytest.approx(np.trapezoid(alpha * su, z) * np.pi * D, rel=6e-3)
+
+
+@pytest.mark.parametrize("arm", [0.0, 10.0])
+def test_a_stiff_short_pile_turns_over_as_broms_says(arm: float) -> None:
+    """Uniform p, turning about a depth a: H = p (2a − L).
+
+    With a load e above the head, H = p(2a − L) and p(L²/2 − a²) = −H e give
+    a² + 2 e a − (L²/2 + e L) = 0 (Broms 1964).
+    """
+    p = 1e5
+    a = -arm + np.sqrt(arm**2 + 0.5 * L**2 + arm * L)
+    wanted = p * (2.0 * a - L)
+    found = pushover(STUBBY, plastic(STUBBY, p), arm_m=arm, steps=4)
+    # at a head displacement of D/10 the ground near the pivot is not plastic yet: 1 %
+    assert found.ultimate_n == pytest.approx(wanted, rel=0.015)
+    assert (np.diff(found.head_m) > 0.0).all() and (np.diff(found.load_n) > 0.0).all()
+    assert found.head_m[-1] <= 0.1 * D
+
+
+def test_moments_are_those_of_the_loads_below_the_head() -> None:
+    """The largest moment of a free head in uniform plastic ground: H e + H²/2p at depth H/p."""
+    p, arm = 1e5, 3.0
+    slender = Pile(60.0, Section(D, 0.05), STEEL, spacing_m=0.5)
+    found = pushover(slender, plastic(slender, p), arm_m=arm, steps=3)
+    H = found.load_n[-1]
+    # the last millimetre of every spring is elastic
+    assert found.moment_nm[-1] == pytest.approx(H * arm + H**2 / (2.0 * p), rel=0.05)
+
+
+def test_ground_that_holds_nothing_is_refused() -> None:
+    with pytest.raises(InputError, match="resists no lateral load"):
+        pushover(STUBBY, plastic(STUBBY, 0.0))
+
+
+def test_sand_carries_more_the_deeper() -> None:
+    profile = SoilProfile((Layer(80.0, 10e3, Sand(35.0)),))
+    shallow, deep = (
+        axial_capacity(pile_curves(Pile(length, Section(D, 0.05)), profile)) for length in (20.0, 40.0)
+    )
+    assert deep.shaft_n > 2.0 * shallow.shaft_n
