@@ -18,7 +18,7 @@ from jackettwin.response.reduced import Reduced, reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, build_system
 from jackettwin.simulate.scenario import Air, Asset, Scenario, Sea, Turbine
-from jackettwin.simulate.tuning import tuned_tower
+from jackettwin.simulate.tuning import tuned_damping
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.rotor_modes import turned_nacelle
@@ -99,7 +99,7 @@ def asset_model(asset: Asset, *, sea: Sea | None = None, yaw: float = 0.0) -> Mo
     model = Model(assembly, small, np.asarray(rows @ small.basis), sources)
     if asset.coupled_damping is None:
         return model
-    damping = tuned_tower(assembly, small, asset.coupled_damping)
+    damping = tuned_damping(assembly, small, asset.coupled_damping)
     return model.with_forces_of_motion("structure", damping=damping, stiffness=np.zeros_like(damping))
 
 
