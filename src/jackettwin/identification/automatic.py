@@ -252,4 +252,4 @@ def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
 def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
     rows = ready.settings.block_rows
     blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
-    return propagation(subspace, block_deviations(blocks, rows))
+    return propagation(subspace, block_deviations(blocks, rows), np.float32)

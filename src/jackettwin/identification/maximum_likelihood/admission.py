@@ -36,6 +36,8 @@ APPROACH = 4
 """Steps before the doubtful modes are judged."""
 PARAMETERS_OF_A_MODE = 3
 """f, ζ and colour; its shape has one for each channel."""
+MOST_STEPS = 20
+"""Steps of a fit with one mode less, from where that with it ended."""
 MOST_ADDED = 6
 """Doubtful modes admitted at most."""
 
@@ -82,7 +84,7 @@ def thinned(
         suspect = [k for k in suspect if int(chosen[k]) not in kept]
         if not suspect:
             break
-        fewer = likelihood.climbed(data, p.without(p.held + suspect[0]))
+        fewer = likelihood.climbed(data, p.without(p.held + suspect[0]), MOST_STEPS)
         if climb.value - fewer.value < needed_gain(data):
             climb, chosen = fewer, np.delete(chosen, suspect[0])
             known = accuracy.accuracy_of(data, climb.parameters)

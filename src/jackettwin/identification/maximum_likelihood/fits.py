@@ -139,7 +139,7 @@ def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, floa
         tried = _tried(work, MOST_LACK_OF_FIT, start, y.shape[1] / sample_rate_hz)
         if best is None or _rank(tried, start) < _rank(best, start):
             best = tried
-        if best.fit is not None and not best.strayed.any():
+        if best.fit is not None and not np.any(best.strayed & start.sure):
             break
     assert best is not None
     return best

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.identification.maximum_likelihood.directions import at_channels, directions, projected
 from jackettwin.identification.maximum_likelihood.refinement import Narrow, Refined, refine
 
 if TYPE_CHECKING:
@@ -91,11 +92,17 @@ def refine_group(
 ) -> Refined:
     """Fit one group; parameters as of ``refine``, candidates counted as there.
 
-    What the lack of fit exceeds 1 by multiplies the covariance.
+    Of many channels only the directions that move in the band are fitted (``directions.py``). What the lack
+    of fit exceeds 1 by multiplies the covariance.
     """
     among = np.flatnonzero(group.members)
     low, high = group.band_hz
     beside = sure & ~group.members & (frequency_hz > low / BESIDE) & (frequency_hz < high * BESIDE)
+    own = shapes[group.members & sure]
+    basis = directions(y, sample_rate_hz, group.band_hz, own) if len(set(derivatives)) == 1 else None
+    if basis is not None:
+        y = projected(y, basis)
+        shapes, derivatives = shapes @ basis, derivatives[: basis.shape[1]]
     fit = refine(
         y,
         sample_rate_hz,
@@ -110,6 +117,8 @@ def refine_group(
         narrow=Narrow(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
+    if basis is not None:
+        fit = at_channels(fit, basis)
     return replace(
         fit,
         candidate=among[fit.candidate],

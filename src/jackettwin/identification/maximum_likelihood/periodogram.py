@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-LINES_IN_HALF_BANDWIDTH = 5
+LINES_IN_HALF_BANDWIDTH = 3
 """Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
-FAR_LINES = 12.0
+FAR_LINES = 6.0
 """… and may widen to this fraction of the distance to it."""
 DITHER_SHARE = 0.3
 """Share of the local median spectrum added to model and data …"""

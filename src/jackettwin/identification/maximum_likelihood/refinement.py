@@ -36,12 +36,16 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
+BEYOND_HOPE = 6.0
+"""A fit is given up before the doubtful modes are looked at, if it lacks this many times what it may, …"""
 HOPELESS = 3.0
 """A fit is given up when the doubtful modes are judged, if it lacks this many times what it may …"""
 WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
+MOST_STEPS = 60
+"""Steps after those: fits that end take eight to twenty as a rule."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""
 
@@ -156,6 +160,9 @@ def refine(
     if background:
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
+    lack = accuracy.lack_of_fit(data, climb.parameters)
+    if lack > BEYOND_HOPE * most_lack_of_fit:
+        return _given_up(np.full(len(sure), np.inf), unit.shape[1], lack)
     least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else needed_gain(data)
     climb, chosen, gain = joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
     lack = accuracy.lack_of_fit(data, climb.parameters)
@@ -166,10 +173,10 @@ def refine(
     if lack > STILL_HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
     if not climb.converged:
-        climb = likelihood.climbed(data, climb.parameters)
+        climb = likelihood.climbed(data, climb.parameters, MOST_STEPS)
         lack = accuracy.lack_of_fit(data, climb.parameters)
     known = accuracy.accuracy_of(data, climb.parameters)
-    if lack <= most_lack_of_fit:
+    if climb.converged and lack <= most_lack_of_fit:
         climb, chosen, known = thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
 

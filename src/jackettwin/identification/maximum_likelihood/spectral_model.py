@@ -15,7 +15,7 @@ its peak a mode moves as a real one times a complex row of Φ. Every parameter c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -143,8 +143,12 @@ def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: F
 
 
 def derivative_factors(
-    data: Periodogram, p: Parameters, model: Expected, white: ComplexArray
-) -> tuple[ComplexArray, ComplexArray]:
+    data: Periodogram,
+    p: Parameters,
+    model: Expected,
+    white: ComplexArray,
+    precision: type[np.complex64] | type[np.complex128] = np.complex128,
+) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
     """Return u and w of every parameter, multiplied by ``white`` (n_groups, n_channels, n_channels).
 
     Returns
@@ -173,11 +177,11 @@ def derivative_factors(
         of_sought = slice(p.held * n_channels, None)
         u.append(1j * u[3][:, :, of_sought])
         w.append(w[3][:, :, of_sought])
-    return _stacked(u), _stacked(w)
+    return _stacked(u, precision), _stacked(w, precision)
 
 
 def gram(
-    u: ComplexArray, w: ComplexArray, misfit: ComplexArray | None = None
+    u: npt.NDArray[Any], w: npt.NDArray[Any], misfit: npt.NDArray[Any] | None = None
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return the inner products of :math:`G_p = u_p w_p^H + w_p u_p^H` with a matrix and with each other.
 
@@ -186,28 +190,31 @@ def gram(
     Parameters
     ----------
     u, w : (n_channels, n_parameters, n_groups)
+        Complex, of single or of double precision: in that the products are formed.
     misfit : (n_channels, n_channels, n_groups), optional
-        Hermitian.
+        Hermitian, of the same precision.
 
     Returns
     -------
     (n_parameters,), (n_parameters, n_parameters)
     """
     n_channels, n_parameters, _ = u.shape
+    real = u.real.dtype
+    syrk = blas.ssyrk if real == np.float32 else blas.dsyrk
     first = np.zeros(n_parameters)
-    second = np.zeros((n_parameters, n_parameters), order="F")
+    second = np.zeros((n_parameters, n_parameters), dtype=real, order="F")
     w_conj, u_conj = w.conj(), u.conj()
     for a in range(n_channels):
         for b in range(a, n_channels):
             g = u[a] * w_conj[b]
             g += w[a] * u_conj[b]
-            flat = np.ascontiguousarray(g.real) if a == b else g.view(np.float64)
+            flat = np.ascontiguousarray(g.real) if a == b else g.view(real)
             twice = 1.0 if a == b else 2.0
-            second = blas.dsyrk(twice, flat.T, beta=1.0, c=second, trans=1, lower=1, overwrite_c=1)
+            second = syrk(twice, flat.T, beta=1.0, c=second, trans=1, lower=1, overwrite_c=1)
             if misfit is not None:
                 m = np.ascontiguousarray(misfit[a, b])
-                first += twice * (flat @ (m.real if a == b else m.view(np.float64)))
-    return first, np.asarray(second + np.tril(second, -1).T)
+                first += twice * (flat @ (m.real if a == b else m.view(real)))
+    return first, np.asarray(second + np.tril(second, -1).T, dtype=np.float64)
 
 
 def _kernel(
@@ -220,5 +227,12 @@ def _kernel(
     return steady, leaked
 
 
-def _stacked(factors: list[ComplexArray]) -> ComplexArray:
-    return np.ascontiguousarray(np.concatenate(factors, axis=2).transpose(1, 2, 0))
+def _stacked(factors: list[ComplexArray], precision: type[np.complexfloating[Any]]) -> npt.NDArray[Any]:
+    """Return (n_channels, n_parameters, n_groups) of parts (n_groups, n_channels, n_parameters)."""
+    n_groups, n_channels, _ = factors[0].shape
+    out = np.empty((n_channels, sum(part.shape[2] for part in factors), n_groups), dtype=precision)
+    first = 0
+    for part in factors:
+        out[:, first : first + part.shape[2]] = part.transpose(1, 2, 0)
+        first += part.shape[2]
+    return out

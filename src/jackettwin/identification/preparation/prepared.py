@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-SPARE = 4.0
+SPARE = 2.0
 """Tones are sought at so many times the rate that a band from the lowest peak on needs: that may be one."""
 FEW_CHANNELS = 6
 """That are looked at for it."""

@@ -7,7 +7,7 @@ the largest one, and its shift equation is solved with the leading blocks of one
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +46,11 @@ class Factors:
     left: FloatArray
     singular_values: FloatArray
     right: FloatArray
+
+    def rounded(self, precision: type[np.floating[Any]]) -> Factors:
+        """Return the factors in another precision."""
+        parts = (self.left, self.singular_values, self.right)
+        return Factors(*(part.astype(precision, copy=False) for part in parts))
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ formed once for all orders.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -107,8 +107,17 @@ def stacked_hankel(
     return whole, deviations
 
 
-def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propagation:
-    """Form what all orders share. Unit weights and shift structure only."""
+def propagation(
+    subspace: Subspace, deviations: Iterable[FloatArray], precision: type[np.floating[Any]] = np.float64
+) -> Propagation:
+    """Form what all orders share. Unit weights and shift structure only.
+
+    Parameters
+    ----------
+    precision : numpy.float64 or numpy.float32
+        Of the products with ΔH. A standard deviation from thirty blocks has an error of 13 %: single
+        precision halves the work and changes nothing.
+    """
     if subspace.basis is None or subspace.factors is None:
         raise InputError(
             "uncertainty needs the shift structure",
@@ -119,16 +128,19 @@ def propagation(subspace: Subspace, deviations: Iterable[FloatArray]) -> Propaga
         )
     u, n_channels = subspace.factors.left, subspace.n_channels
     q, o = subspace.basis, subspace.observability
-    outside = np.stack([_outside(subspace.factors, delta, o.shape[1]) for delta in deviations], axis=1)
+    factors = subspace.factors.rounded(precision)
+    outside = np.stack(
+        [_outside(factors, delta.astype(precision, copy=False), o.shape[1]) for delta in deviations], axis=1
+    )
     n_rows, n_blocks, n_max = outside.shape
     return Propagation(
         subspace=subspace,
         outside=outside.reshape(n_rows * n_blocks, n_max),
         outside_turned=np.ascontiguousarray(outside.transpose(2, 1, 0)).reshape(n_max * n_blocks, n_rows),
         n_blocks=n_blocks,
-        seen=np.vstack([q.T @ u[n_channels:], q.T @ u[:-n_channels], u[:n_channels]]),
-        residual_low=u[:-n_channels].T @ o[n_channels:],
-        residual_up=u[:-n_channels].T @ o[:-n_channels],
+        seen=np.vstack([q.T @ u[n_channels:], q.T @ u[:-n_channels], u[:n_channels]]).astype(precision),
+        residual_low=(u[:-n_channels].T @ o[n_channels:]).astype(precision),
+        residual_up=(u[:-n_channels].T @ o[:-n_channels]).astype(precision),
     )
 
 
@@ -140,7 +152,7 @@ def _outside(factors: Factors, delta: FloatArray, n_max: int) -> FloatArray:
     crossed = (v.T @ (delta.T @ u[:, :n_max]))[:n_rows]
     near, far = s[:n_max], np.pad(s, (0, n_rows - len(s)))[:, None]
     beyond = np.arange(n_rows)[:, None] > np.arange(n_max)
-    root = np.sqrt(near) / np.where(beyond, near**2 - far**2, np.inf)
+    root = np.sqrt(near) / np.where(beyond, (near - far) * (near + far), np.inf)
     out = columns * (near * root)
     out[: len(crossed)] += crossed * (far * root)[: len(crossed)]
     return np.asarray(out)
@@ -220,7 +232,7 @@ def _of_normalised(raw: ComplexArray, delta: ComplexArray) -> ComplexArray:
 
 def _parts_of_product(a: FloatArray, b: ComplexArray) -> FloatArray:
     """Return real a (…, n) times the real and the imaginary parts of b (n, m), (…, 2m): one real product."""
-    return np.asarray(a @ np.hstack([b.real, b.imag]))
+    return np.asarray(a @ np.hstack([b.real, b.imag]).astype(a.dtype, copy=False))
 
 
 def _joined(parts: FloatArray, n_blocks: int) -> ComplexArray:
