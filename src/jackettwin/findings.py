@@ -60,6 +60,34 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "the damping changes with the amplitude: {early:.2%} of critical at first, {late:.2%} at the end",
     ),
+    "damping_unknown": Kind(
+        "warning",
+        "the record does not tell the damping: its logarithm has a standard deviation of {log_std:.2g}",
+    ),
+    "narrow_as_a_line": Kind(
+        "warning", "hardly broader than a line of the spectrum: too short a record for it"
+    ),
+    "follows_the_sea": Kind(
+        "warning",
+        "a peak of waves: {damping_percent:.2g} % broad where the sea of {period_s:.3g} s has its own",
+    ),
+    "broad_as_waves": Kind(
+        "warning",
+        "with {damping_percent:.2g} % as broad as the forces of waves; state their period (tp_s)",
+    ),
+    "broad": Kind("warning", "with {damping_percent:.2g} % so broad that it may be a slope of the forces"),
+    "complex_shape": Kind(
+        "warning",
+        "the sensors do not move in phase (modal phase collinearity {mpc:.2f}) and no close mode explains it",
+    ),
+    "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
+    "one_method": Kind(
+        "warning", "with a shorter lag window it is found in {share:.0%} of the model orders only"
+    ),
+    "no_peak": Kind(
+        "warning",
+        "in the direction of its shape the spectrum has no clear peak ({ratio:.2g} times the level beside)",
+    ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
     # updating
     "unpaired_shape": Kind(

@@ -21,9 +21,10 @@ from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.selection.candidates import candidates, find_tones
-from jackettwin.identification.selection.choice import chosen_modes
+from jackettwin.identification.selection.choice import chosen_modes, cleared, screened_choice
 from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
+from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.subspace.covariances import block_covariances, covariances
 from jackettwin.identification.subspace.real_poles import real_poles
@@ -137,7 +138,12 @@ def identify(
         missing = left_out(judged, picked)
         judged = with_verdicts(wanted, judge(picked))
     say("refinement")
+    known = evidence(tones.clean, ready, record.conditions) if _uncertain(settings) else None
+    if known is not None and not wanted:
+        judged = cleared(judged, known)
     chosen = chosen_modes(judged, tones, ready, settings)
+    if known is not None:
+        chosen = screened_choice(chosen, judged, known, rescue=not wanted)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number

@@ -44,8 +44,10 @@ WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
-MOST_STEPS = 60
-"""Steps after those: fits that end take eight to twenty as a rule."""
+MOST_STEPS, FEWEST_STEPS = 60, 12
+"""Steps after those: fits that end take eight to twenty as a rule …"""
+MOST_WORK = 1.2e10
+"""… and no more than this many products: what is still on its way then seldom arrives."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""
 
@@ -173,12 +175,18 @@ def refine(
     if lack > STILL_HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
     if not climb.converged:
-        climb = likelihood.climbed(data, climb.parameters, MOST_STEPS)
+        climb = likelihood.climbed(data, climb.parameters, _steps(data, climb.parameters))
         lack = accuracy.lack_of_fit(data, climb.parameters)
     known = accuracy.accuracy_of(data, climb.parameters)
     if climb.converged and lack <= most_lack_of_fit:
         climb, chosen, known = thinned(data, climb, chosen, known)
     return _result(data, climb, chosen, gain, known)
+
+
+def _steps(data: Periodogram, p: Parameters) -> int:
+    """Return the steps a fit may take yet, by what each costs."""
+    work = p.vector.size**2 * p.shapes.shape[1] ** 2 * len(data.omega)
+    return int(np.clip(MOST_WORK / work, FEWEST_STEPS, MOST_STEPS))
 
 
 def _beside(

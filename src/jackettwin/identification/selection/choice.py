@@ -15,6 +15,7 @@ from jackettwin.identification.maximum_likelihood.mode_drift import long_data_li
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
 from jackettwin.identification.selection.candidates import beside_tones, with_covariance
+from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
 from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.refinement import Refined
     from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate, Tones
+    from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,6 +41,8 @@ HINT_ORDER_SHARE = 0.25
 """Share of the model orders in which what may be a mode must appear to be worth a hint."""
 SAME_SHAPE = 0.8
 """MAC from which a pole is the mode beside it."""
+SAME_CANDIDATE = 1e-3
+"""Relative distance of frequencies up to which a refused candidate is the one that came back."""
 TAKEN_LINES = 0.75
 """A line as far from a tone as this went with it."""
 
@@ -79,6 +83,56 @@ def chosen_modes(
     if settings.refine:
         found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
+
+
+def cleared(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:
+    """Return the candidates, none doubted for its damping alone where everything else says it is a mode.
+
+    A fit may then tell its damping.
+    """
+    out = list(judged)
+    sure = [c.mode for c in judged if c.objection is None and c.doubt is None]
+    for i, c in enumerate(judged):
+        if c.objection is None and c.doubt is not None and worth_keeping(c.mode, sure, known):
+            out[i] = replace(c, doubt=None)
+            sure.append(c.mode)
+    return out
+
+
+def screened_choice(
+    chosen: Choice, judged: Sequence[Candidate], known: Evidence, *, rescue: bool = True
+) -> Choice:
+    """Give every mode its status; bring back those whose frequency is known, leave out what is no mode.
+
+    Parameters
+    ----------
+    rescue : bool
+        Whether modes are brought back.
+    """
+    modes = dict(zip(chosen.candidate, screened(chosen.modes, known), strict=True))
+    rejected = list(chosen.rejected)
+    for i, c in enumerate(judged if rescue else ()):
+        if i in modes or c.objection is not None or not known.inside(c.mode.frequency_hz):
+            continue
+        if worth_keeping(c.mode, list(modes.values()), known):
+            rejected = [r for r in rejected if not _about(r, c.mode)]
+            modes[i] = rescued(c.mode)
+    forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}
+    order = sorted((i for i in modes if i not in forced), key=lambda i: modes[i].frequency_hz)
+    left_out = [
+        Rejected(m.frequency_hz, m.damping_ratio, m.status_reason or "", m.status) for m in forced.values()
+    ]
+    return replace(
+        chosen,
+        modes=tuple(modes[i] for i in order),
+        candidate=tuple(order),
+        rejected=(*left_out, *rejected),
+    )
+
+
+def _about(refused: Rejected, mode: ModalEstimate) -> bool:
+    """Tell whether a candidate was refused that later came back; refined, it may have moved a little."""
+    return abs(refused.frequency_hz / mode.frequency_hz - 1.0) < SAME_CANDIDATE
 
 
 def _start(

@@ -1,0 +1,313 @@
+r"""What a reported peak is taken for: a mode, one to doubt, or the forces.
+
+Four things are asked of a mode, none of which alone tells it from noise, waves or a slope of the spectrum:
+
+1. a *second look*: subspace identification again, with a shorter lag window, finds the same
+   frequency and shape;
+2. a *peak*: seen through the filter that its shape makes against everything around,
+
+   .. math:: P(f) = w^H \hat S(f)\, w, \qquad w = R^{-1}\phi,
+
+   R the mean spectral matrix beside the mode, the power at the mode stands out of that beside it (the peak of
+   FDD, without its singular values, which follow whatever is loudest);
+3. a *shape* that is nearly real, unless a close mode shares its plane;
+4. not to be *forces*: as broad as a wave spectrum, where waves are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.findings import Finding
+from jackettwin.identification.mac import mac
+from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.subspace.covariances import covariances
+from jackettwin.identification.subspace.ssi_cov import order_poles, ssi_cov
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from jackettwin.identification.estimate import ModalEstimate
+    from jackettwin.identification.preparation.prepared import Prepared
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Verdict = tuple[ModeStatus, Finding]
+
+SHORTER = 0.6
+"""Lag window of the second look over that of the first."""
+SECOND_ORDERS = 10
+"""Model orders of the second look."""
+SEEN_AGAIN = 0.4
+"""Share of them, from the first that holds the mode on, that must hold it."""
+SAME_SHAPE = 0.7
+"""Least MAC of the two looks …"""
+SAME_FREQUENCY = 2.0
+"""… and farthest apart, in half bandwidths or in standard deviations of the frequency, whichever is more."""
+LEAST_MPC = 0.5
+"""Shapes less collinear than this are doubted …"""
+CLOSE = 2.0
+"""… unless another mode is nearer than so many of their half bandwidths together: one record determines the
+plane of a close pair, not the shapes in it."""
+LEAST_CONTRAST = 1.5
+"""Least power at the peak over that beside it …"""
+LEAST_CONTRAST_STD = 3.0
+"""… and the least number of standard deviations by which it exceeds it."""
+WAVES_HZ = (0.04, 0.4)
+"""Where seas have their power."""
+BROAD = 0.04
+"""Damping ratio from which a peak is as broad as a wave spectrum: that of JONSWAP with γ = 3.3, times the
+transfer to acceleration, is identified with 5 to 10 %."""
+TOP_OF_SEA = 0.25
+"""Relative distance from 1/Tp within which a broad peak is the sea's."""
+TOO_BROAD = 0.10
+"""Damping ratio from which nothing is called a mode without doubt."""
+ONE_SENSOR = 0.98
+"""Share of a shape, in units of each channel's motion, from which it is of one sensor …"""
+ENOUGH_SENSORS = 4
+"""… of so many at least."""
+BESIDE = (2.5, 8.0)
+"""Half bandwidths from a mode between which the power beside it is taken, …"""
+BESIDE_LINES = 4
+"""… over so many lines a channel at least."""
+REGULAR = 1e-4
+"""Share of the mean power beside the mode that counts as noise of every channel."""
+KNOWN_FREQUENCY = 0.03
+"""Standard deviation of a frequency, relative, up to which it is called known."""
+STEADY = 0.7
+"""Share of the model orders, of either look, that must hold a mode whose damping is not known."""
+KEPT_CONTRAST, KEPT_CONTRAST_STD = 3.0, 8.0
+"""Contrast asked of it: there are dozens of such candidates in a record, few of them modes. Those that fit
+noise have 0.7 to 1.7 with up to 4 standard deviations, modes that were doubted for their damping 4 to 40."""
+UNKNOWN_DAMPING = 1.0
+"""Standard deviation of ln ζ above which damping is called unknown."""
+PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp")
+"""Names of the peak period of the sea among a record's conditions."""
+NARROW = 1.5
+"""2πζfT below which a peak is hardly broader than a line."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """Poles of the second look: flat arrays of the same length.
+
+    Attributes
+    ----------
+    order : (n_poles,)
+    frequency_hz : (n_poles,)
+    shape : (n_poles, n_channels)
+        In the scaling of the samples.
+    orders : tuple of int
+        All of them.
+    """
+
+    order: npt.NDArray[np.int64]
+    frequency_hz: FloatArray
+    shape: ComplexArray
+    orders: tuple[int, ...]
+
+
+def second_look(y: FloatArray, ready: Prepared) -> Look:
+    """Return the poles of a shorter lag window, without their uncertainty."""
+    rate = ready.settings.sample_rate_hz
+    rows = max(int(SHORTER * ready.settings.block_rows), 3)
+    top = min(ready.settings.orders[-1], (rows - 1) * len(ready.references), (rows - 1) * len(y))
+    step = max(2 * round(0.5 * top / SECOND_ORDERS), 2)
+    lags = covariances(y, 2 * rows)[:, :, ready.references]
+    subspace = ssi_cov(lags, block_rows=rows, max_order=top, factors=False)
+    orders = tuple(subspace.orders(range(step, top + 1, step)))
+    number, f, shapes = [], [], []
+    for poles in order_poles(subspace, orders):
+        pole = np.log(poles.eigenvalues) * rate
+        number.append(np.full(len(pole), poles.order))
+        f.append(np.abs(pole) / (2.0 * np.pi))
+        shapes.append(poles.shapes)
+    return Look(np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders)
+
+
+def seen_again(look: Look, mode: ModalEstimate, scale: FloatArray, others: Sequence[ModalEstimate]) -> float:
+    """Return the share of the second look's orders that hold the mode, from the first that does on.
+
+    Of a close pair a shape counts that lies in the plane of the two.
+    """
+    shapes = np.array([mode.mode_shape, *(m.mode_shape for m in others)]) / scale
+    reach = SAME_FREQUENCY * max(mode.damping_ratio, (mode.frequency_std_hz or 0.0) / mode.frequency_hz)
+    near = np.abs(look.frequency_hz / mode.frequency_hz - 1.0) < reach
+    q, _ = np.linalg.qr(shapes.T)
+    inside = np.sum(np.abs(look.shape @ q.conj()) ** 2, axis=1) / np.sum(np.abs(look.shape) ** 2, axis=1)
+    held = np.unique(look.order[near & (inside > SAME_SHAPE)])
+    if not len(held):
+        return 0.0
+    return len(held) / sum(order >= int(held[0]) for order in look.orders)
+
+
+def contrast(
+    lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
+) -> tuple[float, float]:
+    """Return the power at a mode over that beside it through its filter, and the excess over its deviation.
+
+    Parameters
+    ----------
+    lines : (n_channels, n_lines)
+        Fourier transform of the samples.
+    shape : (n_channels,)
+        In the scaling of the samples.
+    """
+    f = np.arange(lines.shape[1]) / duration_s
+    half = max(mode.damping_ratio * mode.frequency_hz, 1.5 / duration_s)
+    far = max(BESIDE[1] * half, BESIDE_LINES * len(lines) / duration_s)
+    away = np.abs(f - mode.frequency_hz)
+    at, beside = away <= half, (away > BESIDE[0] * half) & (away <= far) & (f > 0.0)
+    if at.sum() < 2 or beside.sum() <= len(lines):
+        return np.inf, np.inf
+    around = lines[:, beside]
+    matrix = around @ around.conj().T / beside.sum()
+    matrix += REGULAR * np.trace(matrix).real / len(lines) * np.eye(len(lines))
+    w = np.linalg.solve(matrix, shape)
+    power = np.abs(w.conj() @ lines) ** 2
+    ratio = float(power[at].mean() / power[beside].mean())
+    return ratio, float((ratio - 1.0) / np.sqrt(1.0 / at.sum() + 1.0 / beside.sum()))
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the four questions are answered from.
+
+    Attributes
+    ----------
+    look : Look
+    lines : (n_channels, n_lines)
+    scale : (n_channels,)
+        By which the channels were divided.
+    duration_s : float
+    peak_of_sea_hz : float or None
+        1/Tp where the conditions say it.
+    band_hz : (low, high)
+        Of interest.
+    """
+
+    look: Look
+    lines: ComplexArray
+    scale: FloatArray
+    duration_s: float
+    peak_of_sea_hz: float | None
+    band_hz: tuple[float, float]
+
+    def inside(self, frequency_hz: float) -> bool:
+        """Whether a frequency lies in the band of interest."""
+        return self.band_hz[0] < frequency_hz < self.band_hz[1]
+
+
+def evidence(y: FloatArray, ready: Prepared, conditions: Mapping[str, Any]) -> Evidence:
+    """Gather what modes are judged by.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Without tones, divided by the channels' scale; NaN marks a missing sample.
+    conditions : mapping
+        Of the record; ``wave_tp_s``, ``tp_s`` or ``peak_period_s`` is the peak period of the sea [s].
+    """
+    periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
+    return Evidence(
+        look=second_look(y, ready),
+        lines=np.asarray(np.fft.rfft(np.nan_to_num(y), axis=1)),
+        scale=ready.scale,
+        duration_s=y.shape[1] / ready.settings.sample_rate_hz,
+        peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
+        band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
+    )
+
+
+def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
+    """Return the modes with their statuses; some are not modes."""
+    return [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
+
+
+def worth_keeping(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> bool:
+    """Tell whether a candidate whose damping is hardly known is a mode whose frequency is."""
+    std = mode.frequency_std_hz
+    if std is None or std > KNOWN_FREQUENCY * mode.frequency_hz or mode.order_share < STEADY:
+        return False
+    if mode.mpc < LEAST_MPC or any(_same(mode, other, known.scale) for other in others):
+        return False
+    ratio, excess = contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
+    again = seen_again(known.look, mode, known.scale, ())
+    return ratio > KEPT_CONTRAST and excess > KEPT_CONTRAST_STD and again >= STEADY
+
+
+def rescued(mode: ModalEstimate) -> ModalEstimate:
+    """Return a mode of known frequency with the status that says what is not known of it."""
+    std = float("inf") if mode.log_covariance is None else float(np.sqrt(mode.log_covariance[1, 1]))
+    return mode.flagged(ModeStatus.DAMPING_UNKNOWN, Finding("damping_unknown", params={"log_std": std}))
+
+
+def _same(mode: ModalEstimate, other: ModalEstimate, scale: FloatArray) -> bool:
+    alike = float(mac(mode.mode_shape / scale, other.mode_shape / scale)) > SAME_SHAPE
+    return alike and _apart(mode, other) < CLOSE
+
+
+def _apart(mode: ModalEstimate, other: ModalEstimate) -> float:
+    """Return the distance of two modes in their half bandwidths together."""
+    both = mode.damping_ratio * mode.frequency_hz + other.damping_ratio * other.frequency_hz
+    return abs(mode.frequency_hz - other.frequency_hz) / both
+
+
+def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> ModalEstimate:
+    close = [m for m in others if _apart(mode, m) < CLOSE]
+    for status, finding in (
+        *_forces(mode, close, known.peak_of_sea_hz),
+        *_shape(mode, close, known.scale),
+        *_agreement(mode, close, known),
+        *_damping(mode, known),
+    ):
+        mode = mode.flagged(status, finding)
+    return mode
+
+
+def _forces(mode: ModalEstimate, close: Sequence[ModalEstimate], peak_hz: float | None) -> Iterator[Verdict]:
+    f, zeta = mode.frequency_hz, mode.damping_ratio
+    percent = {"damping_percent": 100.0 * zeta}
+    if peak_hz is not None and abs(f / peak_hz - 1.0) < TOP_OF_SEA and zeta > BROAD:
+        lighter = any(m.damping_ratio < BROAD for m in close)
+        status = ModeStatus.DOUBTFUL if lighter else ModeStatus.WAVE
+        yield status, Finding("follows_the_sea", params={**percent, "period_s": 1.0 / peak_hz})
+    elif peak_hz is None and WAVES_HZ[0] < f < WAVES_HZ[1] and zeta > BROAD:
+        if not any(m.damping_ratio < BROAD for m in close):
+            yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
+    if zeta > TOO_BROAD:
+        yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
+
+
+def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], scale: FloatArray) -> Iterator[Verdict]:
+    if mode.mpc < LEAST_MPC and not close:
+        yield ModeStatus.DOUBTFUL, Finding("complex_shape", params={"mpc": mode.mpc})
+    share = np.abs(mode.mode_shape / scale) ** 2
+    share = share / share.sum()
+    if len(share) >= ENOUGH_SENSORS and share.max() > ONE_SENSOR:
+        yield ModeStatus.DOUBTFUL, Finding("one_sensor", params={"share": float(share.max())})
+
+
+def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
+    again = seen_again(known.look, mode, known.scale, close)
+    if again < SEEN_AGAIN:
+        yield ModeStatus.DOUBTFUL, Finding("one_method", params={"share": again})
+    shape = mode.mode_shape / known.scale
+    ratio, excess = contrast(known.lines, known.duration_s, mode, shape)
+    if ratio < LEAST_CONTRAST or excess < LEAST_CONTRAST_STD:
+        yield ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio})
+
+
+def _damping(mode: ModalEstimate, known: Evidence) -> Iterator[Verdict]:
+    """Say where damping is not known: by its own standard deviation, or as the peak is a line."""
+    if mode.log_covariance is None:
+        return
+    if 2.0 * np.pi * mode.damping_ratio * mode.frequency_hz * known.duration_s < NARROW:
+        yield ModeStatus.DAMPING_UNKNOWN, Finding("narrow_as_a_line")
+    std = float(np.sqrt(mode.log_covariance[1, 1]))
+    if std > UNKNOWN_DAMPING:
+        yield ModeStatus.DAMPING_UNKNOWN, Finding("damping_unknown", params={"log_std": std})
