@@ -13,6 +13,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.records.readers.description import parse_time
 from jackettwin.report.watch_page import build_watch_page
+from jackettwin.structure import read_structure
 from jackettwin.twin.modal_table import ModalTable, read_modal_table
 from jackettwin.twin.watched import watch_table
 from jackettwin.twin.watched_document import statement, watched_document
@@ -36,6 +37,11 @@ _SHOWN = 4
     "--arl-years", default=10.0, show_default=True, type=click.FloatRange(min=0.1, max=1e4),
     help="Mean time between false alarms, at least.",
 )  # fmt: skip
+@click.option(
+    "--structure",
+    "structure_name",
+    help="STRUCTURE that stands there: its causes are told apart by their patterns.",
+)
 @click.option("--relearn", help="Learn anew from this time on: after a repair or a confirmed change.")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
@@ -47,6 +53,7 @@ def watch_command(
     conditions: str | None,
     baseline_days: float,
     arl_years: float,
+    structure_name: str | None,
     relearn: str | None,
     out: Path | None,
     as_json: bool,
@@ -59,9 +66,15 @@ def watch_command(
     """
     read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
     from_day = _day(read, relearn)
-    with progress(2 + len(read.history.by_day()), read.name) as step, located(file=table):
+    structure = None if structure_name is None else read_structure(structure_name)
+    with progress(3 + len(read.history.by_day()), read.name) as step, located(file=table):
         watched = watch_table(
-            read, baseline_days=baseline_days, arl_years=arl_years, from_day=from_day, progress=step
+            read,
+            baseline_days=baseline_days,
+            arl_years=arl_years,
+            from_day=from_day,
+            structure=structure,
+            progress=step,
         )
     document = watched_document(watched)
     if out is not None:

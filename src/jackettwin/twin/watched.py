@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
+from jackettwin.structure import Structure
+from jackettwin.twin.causes import SeenCauses, model_causes, next_measurements, seen_causes
 from jackettwin.twin.modal_table import ModalTable
 from jackettwin.watching import (
-    Cause,
     Change,
     Diagnosis,
     History,
@@ -26,7 +27,6 @@ from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
 
 FloatArray = npt.NDArray[np.float64]
-Causes = Callable[[Watch, History], tuple[Cause, ...]]
 
 RARE_DAYS = 3
 """Days after the baseline below which there is nothing to watch yet."""
@@ -71,7 +71,8 @@ def watch_table(
     baseline_days: float = 365.0,
     arl_years: float = 10.0,
     from_day: float = 0.0,
-    causes: Causes | None = None,
+    structure: Structure | None = None,
+    gravity: bool = True,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Watched:
     """Return what a table says: nothing of it is looked at before its day.
@@ -80,7 +81,8 @@ def watch_table(
     ----------
     baseline_days : from the first row on, or from ``from_day``
     from_day : earlier rows are left out: after a repair or a confirmed change the baseline is learnt anew
-    causes : what may have happened, from a model; None for what patterns over modes tell by themselves
+    structure, gravity : what stands there, and whether its weight softens it: causes are then its own. None
+        for what patterns over modes tell by themselves
     progress : told what is being done
 
     Raises
@@ -105,26 +107,43 @@ def watch_table(
     watch = start(baseline, arl_years=arl_years)
     limits += _limits(watch, baseline)
     explained, unexplained = _explained(watch, baseline)
-    known = causes(watch, baseline) if causes is not None else _general(watch, baseline)
+    if structure is not None:
+        progress("causes")
+    seen = None if structure is None else _of_structure(structure, gravity, watch, baseline)
+    if seen is not None:
+        limits.append(f"leaves no trace in these quantities: {', '.join(seen.model.traceless)}")
     looks, alarms = [], []
-    kinds = [kind for kind, _ in watch.quantities]
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
         watch, look = step(watch, day)
         looks.append(look)
         if look.change is not None:
-            alarms.append(Alarm(look.change, diagnose(look.change, known, kinds)))
+            alarms.append(_alarm(look.change, watch, baseline, seen))
     return Watched(
         table, (first, end), watch, tuple(looks), tuple(alarms), explained, unexplained, tuple(limits)
     )
 
 
-def _general(watch: Watch, baseline: History) -> tuple[Cause, ...]:
-    return general_causes(watch.quantities, watch.labels, _typical_hz(baseline))
+def _alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | None) -> Alarm:
+    kinds = [kind for kind, _ in watch.quantities]
+    if seen is None:
+        general = general_causes(watch.quantities, watch.labels, _typical(baseline.frequency))
+        return Alarm(change, diagnose(change, general, kinds))
+    own = [kind for kind, good in zip(kinds, seen.known, strict=True) if good]
+    diagnosis = diagnose(change.restricted(seen.known), seen.causes, own)
+    further = tuple((m.what, m.gain_nats) for m in next_measurements(seen, diagnosis))
+    return Alarm(change, diagnosis, further)
 
 
-def _typical_hz(baseline: History) -> FloatArray:
-    seen = [f[np.isfinite(f) & (f > 0.0)] for f in baseline.frequency.T]
+def _of_structure(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
+    model = model_causes(
+        structure, watch.labels, _typical(baseline.frequency), _typical(baseline.damping), gravity=gravity
+    )
+    return seen_causes(model, watch.quantities, watch.labels)
+
+
+def _typical(values: FloatArray) -> FloatArray:
+    seen = [f[np.isfinite(f) & (f > 0.0)] for f in values.T]
     return np.array([np.median(f) if f.size else np.nan for f in seen])
 
 

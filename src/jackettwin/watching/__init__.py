@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from jackettwin.watching.causes import Cause, general_causes, lognormal_sizes, sensor_noise
     from jackettwin.watching.diagnosis import Diagnosis, Verdict, diagnose
     from jackettwin.watching.history import History
+    from jackettwin.watching.next_look import expected_information
     from jackettwin.watching.watch import Change, Look, Watch, start, step
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "Verdict",
     "Watch",
     "diagnose",
+    "expected_information",
     "general_causes",
     "lognormal_sizes",
     "sensor_noise",
@@ -32,6 +34,7 @@ door(
         "causes": "Cause general_causes lognormal_sizes sensor_noise",
         "diagnosis": "Diagnosis Verdict diagnose",
         "history": "History",
+        "next_look": "expected_information",
         "watch": "Change Look Watch start step",
     },
 )

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from jackettwin.watching.design import Design
 from jackettwin.watching.directions import Directions, log_bayes_factors
-from jackettwin.watching.history import History, Kind, logarithms
+from jackettwin.watching.history import History, Kind, logarithms, std_power
 from jackettwin.watching.hours import NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
-from jackettwin.watching.memory import Bank, Belief, Learnt, Memory, empty_bank, filtered, learn
+from jackettwin.watching.memory import Bank, Belief, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,6 +36,7 @@ class Block:
     kind : of the quantities
     kept : (m,) columns of the history that are watched
     typical : (m,) values of the baseline
+    std_power : (m,) by which stated standard deviations follow values
     usual_std : (m,) relative standard deviation where none is stated
     spread : (m,) standard deviation over the baseline, by which priors of coefficients are scaled
     memories, beliefs, banks, log_weights : models, and what each knows
@@ -49,6 +50,7 @@ class Block:
     kind: Kind
     kept: npt.NDArray[np.intp]
     typical: FloatArray
+    std_power: FloatArray
     usual_std: FloatArray
     spread: FloatArray
     memories: tuple[Memory, ...]
@@ -98,10 +100,10 @@ def begin(
     """Return what a baseline teaches of one kind of quantity, and its hours."""
     value = getattr(baseline, kind)[:, kept]
     typical = np.asarray(np.nanmedian(np.where(value > 0.0, value, np.nan), axis=0))
-    y, relative = logarithms(baseline, kind, np.ones(getattr(baseline, kind).shape[1]))
-    y = y[:, kept] - np.log(typical)
+    # a frequency's noise is far too small for its power to matter
+    power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
+    y, relative = logarithms(baseline, kind, kept, typical, power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
-    relative = _relative(baseline, kind, kept, typical)
     x = np.nan_to_num(rows)
     usual, rest = _usual_std(baseline.days, x, y, relative, design)
     variance = _variance(relative, usual)
@@ -112,23 +114,31 @@ def begin(
     beside = np.stack([apart[many == d].sum(axis=0) for d in np.unique(many)])
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
     learnt = learn(hours, np.outer(spread, design.priors))
-    return _block(learnt, hours, kind, kept, typical, usual, spread, tail, directions, beside), hours
+    m, p = len(kept), rows.shape[1]
+    block = Block(
+        kind=kind,
+        kept=kept,
+        typical=typical,
+        std_power=power,
+        usual_std=usual,
+        spread=spread,
+        memories=learnt.memories,
+        beliefs=learnt.beliefs,
+        banks=tuple(empty_bank(m, belief.mean.size) for belief in learnt.beliefs),
+        log_weights=learnt.log_weights,
+        louder=np.ones(m),
+        tail=tail,
+        steadiness=_steady(hours, learnt.memories[0], beside),
+        reference=learnt.beliefs[0].mean[: m * p].reshape(m, p),
+        directions=directions,
+    )
+    return block, hours
 
 
-def _block(
-    learnt: Learnt, hours: Hours, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray,
-    usual: FloatArray, spread: FloatArray, tail: FloatArray, directions: Directions, beside: FloatArray,
-) -> Block:  # fmt: skip
-    m, p = len(kept), hours.rows.shape[1]
-    chi2, freedom = _by_day(hours, learnt.memories[0])
-    chi2, freedom = _with_outliers(chi2, freedom, beside)
-    nu = np.array([steadiness(chi2[:, q], freedom[:, q]) for q in range(m)])
-    bank = empty_bank(m, learnt.beliefs[0].mean.size)
-    return Block(
-        kind, kept, typical, usual, spread, learnt.memories, learnt.beliefs,
-        tuple(bank for _ in learnt.memories), learnt.log_weights, np.ones(m), tail, nu,
-        learnt.beliefs[0].mean[: m * p].reshape(m, p), directions,
-    )  # fmt: skip
+def _steady(hours: Hours, memory: Memory, beside: FloatArray) -> FloatArray:
+    """Return the steadiness of the scatter of each quantity."""
+    chi2, freedom = _with_outliers(*_by_day(hours, memory), beside)
+    return np.array([steadiness(chi2[:, q], freedom[:, q]) for q in range(chi2.shape[1])])
 
 
 def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
@@ -142,12 +152,6 @@ def _by_day(hours: Hours, memory: Memory) -> tuple[FloatArray, FloatArray]:
 def _with_outliers(chi2: FloatArray, freedom: FloatArray, apart: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return scatter with what was set aside, each as far out as is just tolerated."""
     return chi2 + OUTLIER**2 * apart, freedom + apart
-
-
-def _relative(history: History, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray) -> FloatArray:
-    at = np.ones(getattr(history, kind).shape[1])
-    at[kept] = typical
-    return logarithms(history, kind, at)[1][:, kept]
 
 
 def _usual_std(
@@ -200,11 +204,10 @@ def _set_apart(
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
     """Return the hours of a day, how many values were set aside (m,), and the block with its last values."""
-    y, _ = logarithms(history, block.kind, np.ones(getattr(history, block.kind).shape[1]))
-    y = y[:, block.kept] - np.log(block.typical)
+    y, relative = logarithms(history, block.kind, block.kept, block.typical, block.std_power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
-    variance = _variance(_relative(history, block.kind, block.kept, block.typical), block.usual_std)
+    variance = _variance(relative, block.usual_std)
     variance = variance * block.louder**2
     memory = block.memories[0]
     moving = variance * memory.scale**2 + memory.short_std**2

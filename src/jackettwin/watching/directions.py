@@ -18,14 +18,14 @@ PAIR = 0.08
 structure."""
 SIZES = {
     "frequency": (0.0007, 0.0014, 0.0028, 0.0056, 0.0112, 0.0225, 0.045),
-    "damping": (0.06, 0.12, 0.24, 0.48, 0.96),
+    "damping": (0.12, 0.24, 0.48, 0.96),
 }
 """Sizes of a step in the logarithm that are bet on, each give or take a third: below the first nothing is
 worth an
 alarm, beyond the last one any prior finds it."""
 SIZE_WEIGHTS = {
     "frequency": (0.12, 0.26, 0.24, 0.16, 0.1, 0.07, 0.05),
-    "damping": (0.15, 0.3, 0.3, 0.15, 0.1),
+    "damping": (0.3, 0.4, 0.2, 0.1),
 }
 """Small steps take the longest: most of the stake is on them."""
 _WIDTH = 1.0 / 3.0

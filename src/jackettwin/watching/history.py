@@ -11,6 +11,10 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 Kind = Literal["frequency", "damping"]
 
+_NEAR_DAYS = 0.25
+"""Records closer together saw the same structure."""
+_FEWEST_PAIRS = 30
+
 
 @dataclass(frozen=True)
 class History:
@@ -54,17 +58,38 @@ class History:
         return tuple(self.rows(day == d) for d in np.unique(day))
 
 
-def logarithms(history: History, kind: Kind, typical: FloatArray) -> tuple[FloatArray, FloatArray]:
+def logarithms(
+    history: History, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray, power: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return ln of the values over typical ones, and relative standard deviations, both (n, m).
 
-    Those of ζ are std/√(ζ·ζ_typical): a record whose ζ happens to be low must not claim to be sharp
-    (CoV ζ = 1/√(2πζfT), Au 2014).
+    A stated standard deviation may follow the value that it belongs to: that of ζ goes with √ζ by Au's law
+    (2014), with ζ if a coefficient of variation was stated. A record whose ζ happens to be low must not
+    claim to be sharp by that: what follows the value is taken at the typical one.
 
     Parameters
     ----------
+    kept : (m,) columns
     typical : (m,) values of the baseline
+    power : (m,) by which standard deviations follow values
     """
-    value, std = getattr(history, kind), getattr(history, f"{kind}_std")
+    value, std = getattr(history, kind)[:, kept], getattr(history, f"{kind}_std")[:, kept]
     good = np.where(value > 0.0, value, np.nan)
-    relative = std / good if kind == "frequency" else std / np.sqrt(good * typical)
+    relative = std / (good**power * typical ** (1.0 - power))
     return np.log(good / typical), np.where(relative > 0.0, relative, np.nan)
+
+
+def std_power(history: History, kind: Kind, kept: npt.NDArray[np.intp]) -> FloatArray:
+    """Return the power by which stated standard deviations follow values, (m,), from neighbouring records."""
+    out = np.ones(len(kept))
+    near = np.diff(history.days) < _NEAR_DAYS
+    for k, q in enumerate(kept):
+        value, std = getattr(history, kind)[:, q], getattr(history, f"{kind}_std")[:, q]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            moved, with_it = (np.diff(np.log(x))[near] for x in (value, std))
+        both = np.isfinite(moved) & np.isfinite(with_it)
+        both[both] &= np.abs(moved[both]) < 4.0 * np.median(np.abs(moved[both])) if both.any() else False
+        if both.sum() >= _FEWEST_PAIRS:
+            square = float(moved[both] @ moved[both])
+            out[k] = np.clip(moved[both] @ with_it[both] / square, 0.0, 1.0) if square > 0.0 else 1.0
+    return out

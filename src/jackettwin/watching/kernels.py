@@ -2,9 +2,9 @@
 
 The state of m quantities with p regressors each is
 
-    coefficients (m·p), quantity after quantity · short process (m) · long process (m)
+    coefficients (m·p), quantity after quantity · slow processes, from fast to slow (m each)
 
-and a row of a table observes quantity q as X·β_q + short_q + long_q + noise. Rows are taken one after
+and a row of a table observes quantity q as X·β_q + Σ process_q + noise. Rows are taken one after
 the other and quantities one after the other: the innovations over their standard deviations are z = L⁻¹r of
 the Cholesky factor of the whole series' covariance, without ever making it.
 """
@@ -43,22 +43,19 @@ def _age(mean, cov, response, first, keep, drive):
 def _through(vector, x, q, m):
     """Return H·vector for quantity q."""
     p = x.size
-    total = vector[m * p + q] + vector[m * p + m + q]
+    total = 0.0
     for k in range(p):
         total += vector[q * p + k] * x[k]
+    for i in range(m * p + q, vector.size, m):
+        total += vector[i]
     return total
 
 
 @compiled
 def _covariance_with(cov, x, q, m, g):
     """Fill g with the covariance of the state with quantity q."""
-    p = x.size
     for i in range(g.size):
-        row = cov[i]
-        total = row[m * p + q] + row[m * p + m + q]
-        for k in range(p):
-            total += row[q * p + k] * x[k]
-        g[i] = total
+        g[i] = _through(cov[i], x, q, m)
 
 
 @compiled
@@ -89,9 +86,7 @@ def _learn(mean, cov, g, nu, s):
 
 
 @compiled
-def filter_rows(
-    mean, cov, response, info, score, rows, values, noise, gaps, rates, short, long, innovation, spread
-):
+def filter_rows(mean, cov, response, info, score, rows, values, noise, gaps, rates, slow, innovation, spread):
     """Take some rows; change the state in place and return the log likelihood of the rows.
 
     Parameters
@@ -102,18 +97,18 @@ def filter_rows(
     rows : (n_rows, p) regressors
     values, noise : (n_rows, m) observations, NaN where missing, and the variances of their noise
     gaps : (n_rows,) days since the row before
-    rates : (2,) inverse time constants of both processes [1/day]
-    short, long : (m, m) stationary covariances of both processes
+    rates : (k,) inverse time constants of the processes [1/day]
+    slow : (k, m, m) their stationary covariances
     innovation, spread : (n_rows, m) filled with ν and its variance s, NaN where missing
     """
-    m, p = short.shape[0], rows.shape[1]
+    m, p = slow.shape[1], rows.shape[1]
     g, h = np.empty(mean.size), np.empty(m)
     log_likelihood = 0.0
     for r in range(rows.shape[0]):
         x = rows[r]
         if gaps[r] > 0.0:
-            _age(mean, cov, response, m * p, np.exp(-gaps[r] * rates[0]), short)
-            _age(mean, cov, response, m * p + m, np.exp(-gaps[r] * rates[1]), long)
+            for k in range(rates.size):
+                _age(mean, cov, response, m * p + k * m, np.exp(-gaps[r] * rates[k]), slow[k])
         for q in range(m):
             innovation[r, q] = np.nan
             spread[r, q] = np.nan

@@ -1,4 +1,4 @@
-"""What no condition explains: noise and two slow processes, learnt from the baseline with their uncertainty.
+"""What no condition explains: noise and slow processes, learnt from the baseline with their uncertainty.
 
 No single set of variances and time constants is believed. Several models, weighted by how well they predicted
 the baseline and whatever came after, predict together; a plugged-in estimate would be too sure of itself.
@@ -7,6 +7,7 @@ the baseline and whatever came after, predict together; a plugged-in estimate wo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -19,21 +20,31 @@ FloatArray = npt.NDArray[np.float64]
 
 SHORT_DAYS = (0.3, 1.0, 3.0, 8.0)
 """Time constants of the short process that are tried [days]."""
-LONG_DAYS = 30.0
-"""Time constant of the long process: a baseline of a year holds about ten independent values of it."""
-_LONG_PRIOR = (0.3, 0.7)
+LONG_DAYS = (8.0, 60.0)
+"""Time constants of the two parts of the long process [days]: weeks, and a season, of which a baseline of
+a year
+holds few independent values."""
+LONG_SHARES = (0.5, 0.15, 0.85)
+"""Shares of the slower part in the variance of the long process that are tried; each quantity alone is
+fitted with
+the first."""
+_LONG_PRIOR = (0.4, 0.8)
 """Median of the long process's standard deviation over the short one's, and its spread in ln."""
 _SCALE_STD, _SHORT_STD = 0.5, 1.5
 """Prior spread in ln of the factor on stated standard deviations, and of the short process."""
 _LEAST = 1e-3
 """The least standard deviation of a process, in those of the quantity."""
-LONG_FACTORS = (0.6, 1.0, 1.8)
-"""Other standard deviations of the long process that are kept beside the most likely one."""
+LONG_FACTORS = (0.6, 1.0, 1.8, 3.0)
+"""Other standard deviations of the long process that are tried beside the most likely one."""
 AGREEMENT = (1.0, 0.7)
-"""Shares of the estimated correlation between quantities that are kept beside each other."""
+"""Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
-MOST_MODELS = 6
+MOST_MODELS = 4
+GUARDS = ((1.8, 0.5, 0.12), (3.0, 0.85, 0.03))
+"""Factor on the long process, share of its slower part, and weight of models that the future may want
+although the
+baseline does not: a year cannot show what a season does only now and then."""
 _FEW_STEPS = 90
 
 
@@ -44,32 +55,33 @@ class Memory:
     Attributes
     ----------
     scale : (m,) factors on stated standard deviations
-    short_std, long_std : (m,) standard deviations of both processes
-    short_days, long_days : their time constants
-    correlation : (m, m) of either process between quantities
+    short_std, long_std : (m,) standard deviations of the short and the long process
+    short_days : time constant of the short one
+    slower : share of the slower part in the variance of the long one
+    correlation : (m, m) of each process between quantities
     """
 
     scale: FloatArray
     short_std: FloatArray
     long_std: FloatArray
     short_days: float
-    long_days: float
+    slower: float
     correlation: FloatArray
 
     @property
     def rates(self) -> FloatArray:
-        """Inverse time constants [1/day]."""
-        return np.array([1.0 / self.short_days, 1.0 / self.long_days])
+        """Inverse time constants [1/day], (3,)."""
+        return 1.0 / np.array([self.short_days, *LONG_DAYS])
 
     @property
-    def short(self) -> FloatArray:
-        """Covariance of the short process, (m, m)."""
-        return np.outer(self.short_std, self.short_std) * self.correlation
-
-    @property
-    def long(self) -> FloatArray:
-        """Covariance of the long process, (m, m)."""
-        return np.outer(self.long_std, self.long_std) * self.correlation
+    def slow(self) -> FloatArray:
+        """Covariances of the short process and of both parts of the long one, (3, m, m)."""
+        parts = (
+            self.short_std,
+            self.long_std * np.sqrt(1.0 - self.slower),
+            self.long_std * np.sqrt(self.slower),
+        )
+        return np.stack([np.outer(std, std) * self.correlation for std in parts])
 
 
 @dataclass(frozen=True)
@@ -88,10 +100,12 @@ def prior_belief(memory: Memory, coefficient_std: FloatArray) -> Belief:
     coefficient_std : (m, p)
     """
     m, p = coefficient_std.shape
-    cov = np.zeros((m * p + 2 * m, m * p + 2 * m))
+    slow = memory.slow
+    cov = np.zeros((m * (p + len(slow)), m * (p + len(slow))))
     cov[range(m * p), range(m * p)] = coefficient_std.ravel() ** 2
-    cov[m * p : m * p + m, m * p : m * p + m] = memory.short
-    cov[m * p + m :, m * p + m :] = memory.long
+    for k, one in enumerate(slow):
+        place = slice(m * (p + k), m * (p + k + 1))
+        cov[place, place] = one
     return Belief(np.zeros(len(cov)), cov)
 
 
@@ -142,7 +156,7 @@ def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day:
         mean, cov, grown.response, grown.info, grown.score,
         np.ascontiguousarray(hours.rows), np.ascontiguousarray(hours.values),
         np.ascontiguousarray(hours.noise * memory.scale**2), np.diff(hours.days, prepend=before),
-        memory.rates, memory.short, memory.long, innovation, spread,
+        memory.rates, memory.slow, innovation, spread,
     )  # fmt: skip
     return Filtered(Belief(mean, cov), grown, innovation, spread, likelihood + _scatter(memory, hours))
 
@@ -178,41 +192,82 @@ def learn(hours: Hours, coefficient_std: FloatArray) -> Learnt:
     coefficient_std : (m, p) prior standard deviations
     """
     m = coefficient_std.shape[0]
-    spread = np.nanstd(hours.values, axis=0)
-    alone = [[_alone(hours, q, coefficient_std[q], days, spread[q]) for days in SHORT_DAYS] for q in range(m)]
+    extent = np.nanstd(hours.values, axis=0)
+    alone = [[_alone(hours, q, coefficient_std[q], days, extent[q]) for days in SHORT_DAYS] for q in range(m)]
     total = np.array([[found[1] for found in row] for row in alone]).sum(axis=0)
     likely = np.flatnonzero(total > total.max() - 6.0)
-    likely = likely[np.argsort(-total[likely])][:3]
-    candidates = []
+    likely = likely[np.argsort(-total[likely])][:2]
+    candidates, kinds = [], []
     for k in likely:
         parts = np.array([alone[q][k][0] for q in range(m)])
-        base = Memory(parts[:, 0], parts[:, 1], parts[:, 2], SHORT_DAYS[k], LONG_DAYS, np.eye(m))
+        long_std = _alike(parts[:, 2])
+        base = Memory(parts[:, 0], parts[:, 1], long_std, SHORT_DAYS[k], LONG_SHARES[0], np.eye(m))
         correlation = _correlation(hours, base, coefficient_std)
         for agreement in AGREEMENT if m > 1 else (1.0,):
             shrunk = agreement * correlation + (1.0 - agreement) * np.eye(m)
-            candidates += [
-                replace(base, long_std=factor * base.long_std, correlation=shrunk) for factor in LONG_FACTORS
-            ]
-    return _weighed(candidates, hours, coefficient_std)
+            for kind in product(LONG_SHARES, LONG_FACTORS):
+                kinds.append(kind)
+                candidates.append(
+                    replace(base, slower=kind[0], long_std=kind[1] * base.long_std, correlation=shrunk)
+                )
+    return _weighed(candidates, kinds, hours, coefficient_std)
 
 
-def _weighed(candidates: list[Memory], hours: Hours, coefficient_std: FloatArray) -> Learnt:
+def _alike(std: FloatArray) -> FloatArray:
+    """Return standard deviations of the long process drawn half way to their geometric mean.
+
+    A baseline of a year knows each to about a factor 1.5; quantities of one kind are of like size, and the
+    mean of several is known better (shrinkage, Efron & Morris 1975).
+    """
+    return np.asarray(np.sqrt(std * np.exp(np.mean(np.log(std)))))
+
+
+def _weighed(
+    candidates: list[Memory], kinds: list[tuple[float, float]], hours: Hours, coefficient_std: FloatArray
+) -> Learnt:
     after, score = [], []
     for memory in candidates:
         prior = prior_belief(memory, coefficient_std)
         end = filtered(memory, prior, empty_bank(len(coefficient_std), prior.mean.size), hours, -np.inf)
         after.append(end.belief)
         score.append(end.log_likelihood + _log_prior(memory))
-    order = np.argsort(-np.array(score))[:MOST_MODELS]
-    weights = np.array(score)[order]
-    weights = weights - np.logaddexp.reduce(weights)
-    return Learnt(tuple(candidates[i] for i in order), tuple(after[i] for i in order), weights)
+    order, weights = _distinct(kinds, np.array(score))
+    best = candidates[order[0]]
+    guards = [replace(best, long_std=factor * best.long_std, slower=share) for factor, share, _ in GUARDS]
+    for guard in guards:
+        prior = prior_belief(guard, coefficient_std)
+        bank = empty_bank(len(coefficient_std), prior.mean.size)
+        after.append(filtered(guard, prior, bank, hours, -np.inf).belief)
+    floor = np.array([weight for *_, weight in GUARDS])
+    return Learnt(
+        (*(candidates[i] for i in order), *guards),
+        (*(after[i] for i in order), *after[-len(guards) :]),
+        np.concatenate([weights + np.log1p(-floor.sum()), np.log(floor)]),
+    )
+
+
+def _distinct(kinds: list[tuple[float, float]], score: FloatArray) -> tuple[list[int], FloatArray]:
+    """Return the models to keep, the likeliest first, and ln of their weights.
+
+    Models that differ in the long process differ in what they expect of the future, however alike they fit
+    the baseline: of each kind of it the best stands for all. Each share of the slower part keeps at least
+    one.
+    """
+    members = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in dict.fromkeys(kinds)}
+    mass = {kind: float(np.logaddexp.reduce(score[chosen])) for kind, chosen in members.items()}
+    ranked = sorted(members, key=lambda kind: -mass[kind])
+    kept = [next(kind for kind in ranked if kind[0] == share) for share in LONG_SHARES]
+    kept += [kind for kind in ranked if kind not in kept][: MOST_MODELS - len(kept)]
+    kept.sort(key=lambda kind: -mass[kind])
+    weights = np.array([mass[kind] for kind in kept])
+    best = [max(members[kind], key=lambda i: score[i]) for kind in kept]
+    return best, weights - np.logaddexp.reduce(weights)
 
 
 def _log_prior(memory: Memory) -> float:
-    """Return ln of the prior of the long process given the short one."""
+    """Return ln of the prior of the long process given the short one: one draw for all quantities."""
     off = np.log(memory.long_std / (_LONG_PRIOR[0] * memory.short_std)) / _LONG_PRIOR[1]
-    return float(-0.5 * np.sum(off**2))
+    return float(-0.5 * np.mean(off**2))
 
 
 def _alone(
@@ -230,7 +285,7 @@ def _alone(
         y = np.clip(x, [-3.0, np.log(_LEAST * spread), np.log(_LEAST * spread)], np.log(10.0 * spread + 10.0))
         scale, short, long = np.exp(y)
         stds = [np.array([v]) for v in (scale, short, long)]
-        memory = Memory(stds[0], stds[1], stds[2], short_days, LONG_DAYS, np.eye(1))
+        memory = Memory(stds[0], stds[1], stds[2], short_days, LONG_SHARES[0], np.eye(1))
         prior = prior_belief(memory, coefficient_std[None])
         end = filtered(memory, prior, empty_bank(1, prior.mean.size), own, -np.inf)
         penalty = (y[0] / _SCALE_STD) ** 2 + ((y[1] - start[1]) / _SHORT_STD) ** 2

@@ -40,12 +40,14 @@ from jackettwin.watching.scatter import STRONGER
 FloatArray = npt.NDArray[np.float64]
 
 YEAR_DAYS = 365.25
-MOST_BEGINS = 48
+MOST_BEGINS = 32
 """Begins that are kept; the day's cost grows with them."""
 _RECENT = 10
 """The last begins, which are never merged."""
 FEWEST_DAYS = 10
 """Days with records that a baseline needs."""
+_LOOSE = 1.0
+"""Precision of what other quantities do while some are judged: they may change by anything."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping")
 
 
@@ -135,6 +137,25 @@ class Change:
     log_scatter: FloatArray
     log_r: float
     by_mode: FloatArray
+
+    def restricted(self, chosen: npt.NDArray[np.bool_]) -> Change:
+        """Return what is known of some quantities whatever the others do."""
+        if chosen.all():
+            return self
+        other = ~chosen
+        inner = self.info[:, other][:, :, other] + _LOOSE * np.eye(int(other.sum()))
+        cross = self.info[:, chosen][:, :, other]
+        weight = np.swapaxes(np.linalg.solve(inner, np.swapaxes(cross, 1, 2)), 1, 2)
+        return replace(
+            self,
+            members=self.members[chosen],
+            size=self.size[chosen],
+            size_std=self.size_std[chosen],
+            info=self.info[:, chosen][:, :, chosen] - weight @ np.swapaxes(cross, 1, 2),
+            score=self.score[:, chosen] - np.einsum("tij,tj->ti", weight, self.score[:, other]),
+            log_scatter=self.log_scatter[:, chosen],
+            by_mode=self.by_mode[chosen],
+        )
 
 
 @dataclass(frozen=True)

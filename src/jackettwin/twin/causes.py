@@ -1,0 +1,331 @@
+"""The causes of a change as directions, from a structure that stands on ground of uncertain stiffness.
+
+The feet's stiffness is fitted to the frequencies of the baseline; what the fit leaves open, and what the
+model misses, makes the draws of every direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import least_squares
+
+from jackettwin.errors import InputError
+from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.response.labels import LOCAL, mode_kinds, mode_labels
+from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.response.mode_tracking import track_modes
+from jackettwin.response.system import build_system
+from jackettwin.soil.support import Spring, Support
+from jackettwin.structure import Structure, assemble
+from jackettwin.twin.changed_structures import Happening, Standing, happenings
+from jackettwin.updating.next_measurement import Measurement
+from jackettwin.watching import (
+    Cause,
+    Diagnosis,
+    Verdict,
+    expected_information,
+    lognormal_sizes,
+    sensor_noise,
+)
+from jackettwin.watching.diagnosis import MISFIT
+
+FloatArray = npt.NDArray[np.float64]
+
+MODES = 8
+"""Modes of the model that are computed."""
+_DRAWS = 6
+_TYPICAL_STIFFNESS = 2.5e9
+"""Of a foot [N/m], before anything is known: give or take a factor e."""
+_MODEL_ERROR = 0.01
+"""Relative standard deviation by which the model misses frequencies."""
+_LOSS = (0.08, 0.4)
+"""Loss factor of the ground: median and spread in ln."""
+_ALIKE = 0.995
+"""Cosine between directions of one family from which they are one cause."""
+_RECORDS, _RECORD_S, _SHOWN = 144, 600.0, 5
+"""Ten-minute records of a further measurement, and how many are named."""
+_TRACE = 1e-5
+"""A change of all logarithms below this leaves no trace."""
+
+
+@dataclass(frozen=True)
+class ModelCauses:
+    """Causes and what each does to all modes of a model.
+
+    Attributes
+    ----------
+    labels : of the model's modes
+    frequency_hz : (n_modes,) of the fitted model
+    causes : their draws are over ln f of all modes, then ln ζ of all modes
+    traceless : names of what leaves no trace in frequencies and damping
+    """
+
+    labels: tuple[str, ...]
+    frequency_hz: FloatArray
+    causes: tuple[Cause, ...]
+    traceless: tuple[str, ...]
+
+
+def model_causes(
+    structure: Structure,
+    labels: Sequence[str],
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    *,
+    gravity: bool = True,
+    seed: int = 0,
+) -> ModelCauses:
+    """Return what may have happened to a structure whose modes are known by label.
+
+    Parameters
+    ----------
+    labels, frequency_hz, damping_ratio : (n,) of the baseline; NaN where ζ is not known
+
+    Raises
+    ------
+    InputError
+        If no label is that of a mode of the model.
+    """
+    typical = Standing(structure, *(np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS) for _ in "hv"))
+    named = _Modes.of(typical, gravity)
+    places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
+    if max(places, default=-1) < 0:
+        raise InputError(
+            "no mode of the model has such a label", field="label", value=", ".join(labels),
+            allowed=", ".join(named.labels), remedy="label modes as `jackettwin modes` does",
+        )  # fmt: skip
+    rng = np.random.default_rng((77, seed))
+    stands, fitted = _standings(typical, named, places, frequency_hz, gravity, rng)
+    zeta = np.full(MODES, 0.01)
+    for place, value in zip(places, damping_ratio, strict=True):
+        if place >= 0 and np.isfinite(value):
+            zeta[place] = value
+    loss = _LOSS[0] * np.exp(_LOSS[1] * rng.standard_normal(_DRAWS))
+    bases = [_Modes.of(standing, gravity, like=named) for standing in stands]
+    found: list[tuple[str, Cause]] = []
+    traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
+    for event in happenings(typical):
+        draws = np.array([
+            _effect(event, standing, base, eta, zeta, gravity)
+            for standing, base, eta in zip(stands, bases, loss, strict=True)
+        ])  # fmt: skip
+        if np.abs(draws * event.median).max() < _TRACE:
+            traceless.append(event.name)
+        else:
+            sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
+            found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit)))
+    causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
+    return ModelCauses(named.labels, fitted, causes, tuple(traceless))
+
+
+@dataclass(frozen=True)
+class _Modes:
+    """Modes of a standing structure, in the order of another's.
+
+    ``soil_share`` is the share of the strain energy in the ground.
+    """
+
+    labels: tuple[str, ...]
+    modes: UndampedModes
+    mass: object
+    soil_share: FloatArray
+
+    @classmethod
+    def of(cls, standing: Standing, gravity: bool, like: _Modes | None = None) -> _Modes:
+        structure = standing.structure
+        assembly = assemble(structure, gravity=gravity)
+        springs = tuple(
+            Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0]))
+            for node, h, v in zip(
+                structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True
+            )
+        )
+        modes = undamped_modes(build_system(assembly, Support(springs)), MODES if like is None else MODES + 6)
+        if like is not None:
+            order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
+            order = np.where(order < 0, np.arange(MODES), order)
+            modes = UndampedModes(modes.omega[order], modes.shapes[:, order])
+        labels = mode_labels(mode_kinds(assembly, modes.shapes)) if like is None else like.labels
+        feet = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
+        energy = np.zeros(len(modes.omega))
+        for spring in springs:
+            u = feet[assembly.mesh.node_names.index(spring.node)]
+            energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
+        return cls(labels, modes, assembly.mass, energy / modes.omega**2)
+
+
+def _effect(
+    event: Happening, standing: Standing, base: _Modes, eta: float, zeta: FloatArray, gravity: bool
+) -> FloatArray:
+    """Return the change of ln f and ln ζ by one unit of an event, (2·MODES,).
+
+    The ground's part of ζ is ½η times its share of the strain energy.
+    """
+    after = _Modes.of(event.apply(standing), gravity, like=base)
+    ln_f = np.log(after.modes.omega / base.modes.omega)
+    more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
+    return np.concatenate([ln_f, more / zeta]) / event.per
+
+
+def _standings(
+    typical: Standing,
+    named: _Modes,
+    places: Sequence[int],
+    frequency_hz: FloatArray,
+    gravity: bool,
+    rng: np.random.Generator,
+) -> tuple[list[Standing], FloatArray]:
+    """Return draws of the feet's stiffness that agree with the measured frequencies, and the fitted ones."""
+    known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
+
+    def at(x: FloatArray) -> Standing:
+        return replace(
+            typical, horizontal=typical.horizontal * np.exp(x[0]), vertical=typical.vertical * np.exp(x[1])
+        )
+
+    def residual(x: FloatArray) -> FloatArray:
+        omega = _Modes.of(at(x), gravity, like=named).modes.omega
+        off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
+        return np.array([*off, *x])
+
+    fit = least_squares(residual, np.zeros(2), diff_step=[1e-3, 1e-3], max_nfev=12, bounds=(-3.0, 3.0))
+    slope: FloatArray = np.asarray(fit.jac)
+    covariance = np.linalg.inv(slope.T @ slope)
+    points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
+    best = _Modes.of(at(fit.x), gravity, like=named)
+    return [at(x) for x in points], best.modes.frequency_hz
+
+
+def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
+    """Return the causes, those of one family and direction as one; a family has one prior weight."""
+    out: list[Cause] = []
+    for family in dict.fromkeys(name for name, _ in found):
+        members = [cause for name, cause in found if name == family]
+        groups: list[list[Cause]] = []
+        for cause in members:
+            near = next((g for g in groups if _cosine(g[0], cause) > _ALIKE), None)
+            if near is None:
+                groups.append([cause])
+            else:
+                near.append(cause)
+        for group in groups:
+            first, more = group[0], len(group) - 1
+            name = first.name if not more else f"{first.name} (or {more} alike)"
+            out.append(replace(first, name=name, prior=len(group) / len(members)))
+    return tuple(out)
+
+
+def _cosine(one: Cause, other: Cause) -> float:
+    a, b = (c.draws.mean(axis=0) for c in (one, other))
+    scale = np.concatenate([np.ones(MODES), np.full(MODES, 0.02)])  # ζ is known fifty times less well
+    a, b = a * scale, b * scale
+    nearness = float(a @ b / np.sqrt((a @ a) * (b @ b)))
+    length = float(np.sqrt((a @ a) / (b @ b)))
+    return nearness if max(length, 1.0 / length) < 1.0 + MISFIT else 0.0
+
+
+def _clock() -> Cause:
+    """Return a clock that runs wrong: all frequencies alike, no damping."""
+    sizes, weights = lognormal_sizes(1e-3, 1.2, both_ways=True)
+    direction = np.concatenate([np.ones(MODES), np.zeros(MODES)])[None]
+    return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
+
+
+def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> tuple[Cause, ...]:
+    """Return a yaw angle that is read wrong: it mixes the frequencies and damping of each bending pair."""
+    direction = np.zeros(2 * MODES)
+    for number in (1, 2):
+        try:
+            i, j = labels.index(f"fore_aft_{number}"), labels.index(f"side_side_{number}")
+        except ValueError:
+            continue
+        direction[i] = np.log(frequency_hz[j] / frequency_hz[i])
+        direction[j] = -direction[i]
+        direction[MODES + i] = (zeta[j] - zeta[i]) / zeta[i]
+        direction[MODES + j] = (zeta[i] - zeta[j]) / zeta[j]
+    if not direction.any():
+        return ()
+    sizes, weights = lognormal_sizes(0.05, 1.0)  # sin² of the angle: 13°
+    return (Cause("sensor: yaw misread", direction[None], sizes, weights, "sin² of the angle", prior=0.5),)
+
+
+@dataclass(frozen=True)
+class SeenCauses:
+    """Causes over the quantities that are watched.
+
+    Attributes
+    ----------
+    causes : over the known quantities; the last is a failing sensor
+    known : (m,) which watched quantities belong to modes of the model
+    further : what else could be measured: name, and index into the model's quantities
+    model : all that the causes do
+    """
+
+    causes: tuple[Cause, ...]
+    known: npt.NDArray[np.bool_]
+    further: tuple[tuple[str, int], ...]
+    model: ModelCauses
+
+
+def seen_causes(
+    model: ModelCauses, quantities: Sequence[tuple[str, int]], labels: Sequence[str]
+) -> SeenCauses:
+    """Return the causes over watched quantities.
+
+    Parameters
+    ----------
+    quantities : (m,) kind and mode of each watched quantity
+    labels : of the modes
+    """
+    known = np.array([labels[mode] in model.labels for _, mode in quantities], dtype=np.bool_)
+    columns = [
+        model.labels.index(labels[mode]) + (0 if kind == "frequency" else MODES)
+        for (kind, mode), good in zip(quantities, known, strict=True)
+        if good
+    ]
+    kept = [pair for pair, good in zip(quantities, known, strict=True) if good]
+    causes = tuple(replace(cause, draws=cause.draws[:, columns]) for cause in model.causes)
+    further = tuple(
+        (f"{what} of {label}", i + shift)
+        for what, shift in (("frequency", 0), ("damping", MODES))
+        for i, label in enumerate(model.labels)
+        if i + shift not in columns and not label.startswith(LOCAL)
+    )
+    return SeenCauses((*causes, sensor_noise(kept)), known, further, model)
+
+
+def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measurement, ...]:
+    """Return which further quantity would tell the likely causes apart, the most telling first.
+
+    Each as 144 ten-minute records before and after tell it at the precision no method can beat (Au 2014).
+    """
+    by_name = {v.cause: v for v in diagnosis.verdicts}
+    likely = [c for c in seen.model.causes if by_name[c.name].probability > 0.01]
+    if len(likely) < 2:
+        return ()
+    share = np.array([by_name[c.name].probability for c in likely])
+    zeta = 0.01
+    limits = np.sqrt(2.0) * long_data_limits(seen.model.frequency_hz, zeta, _RECORDS * _RECORD_S)
+    found = []
+    for what, column in seen.further:
+        noise = limits[0 if column < MODES else 1][column % MODES]
+        each = [_predicted(c, by_name[c.name], column, float(noise)) for c in likely]
+        mean, std = np.array(each).T
+        gain = expected_information(share / share.sum(), mean, std)
+        found.append(Measurement(what, gain, np.zeros(0)))
+    return tuple(sorted(found, key=lambda m: -m.gain_nats)[:_SHOWN])
+
+
+def _predicted(cause: Cause, verdict: Verdict, column: int, noise: float) -> tuple[float, float]:
+    """Return mean and standard deviation of what a cause does to one quantity, at the size it would have."""
+    per = cause.draws[:, column]
+    low, high = verdict.interval_90
+    size_std = (high - low) / 3.29
+    spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
+    misfit = MISFIT * np.sqrt(np.mean(cause.draws**2)) * abs(verdict.size) if column < MODES else 0.0
+    return float(np.mean(per) * verdict.size), float(np.sqrt(spread**2 + noise**2 + misfit**2))

@@ -1,0 +1,237 @@
+"""What may happen to a jacket, each as the structure and the ground after it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.structure import Material, Section, Structure
+from jackettwin.structure.model import Member, PointMass
+
+FloatArray = npt.NDArray[np.float64]
+
+_LEG = 0.9
+"""A member of the jacket that climbs by more of its length is a leg."""
+_SEA_WATER, _GROWTH = 1025.0, 1325.0
+"""Densities [kg/m³]; of marine growth after DNV-RP-C205 (2021), section 6.7.4."""
+_SCOUR_HORIZONTAL, _SCOUR_VERTICAL = 0.12, 0.03
+"""ln of the stiffness that pile heads lose a metre of scour: Winkler piles of 2 to 3.5 m in sand and clay
+lose 8 to
+16 % of lateral and 2 to 4 % of axial stiffness."""
+_SPLASH = (-3.0, 6.0)
+"""Splash zone about mean sea level [m]."""
+_GONE = 1e-3
+"""Share of a lost member's stiffness that is kept, so that no node hangs loose."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A structure and the stiffness of its feet.
+
+    Attributes
+    ----------
+    horizontal, vertical : (n_feet,) [N/m]
+    """
+
+    structure: Structure
+    horizontal: FloatArray
+    vertical: FloatArray
+
+
+@dataclass(frozen=True)
+class Happening:
+    """Something that may happen.
+
+    Attributes
+    ----------
+    family : what kind, ``brace lost``
+    name : which one
+    apply : the structure after it
+    per : size at which ``apply`` is evaluated
+    median, spread : of its size, lognormal
+    unit : of the size
+    both_ways : whether it may be negative as well
+    damps : damping ratio a unit of the logarithm of frequency lost: friction in a loose joint
+    """
+
+    family: str
+    name: str
+    apply: Callable[[Standing], Standing]
+    per: float
+    median: float
+    spread: float
+    unit: str
+    both_ways: bool = False
+    damps: float = 0.0
+
+
+def happenings(standing: Standing) -> tuple[Happening, ...]:
+    """Return all that may happen to a structure."""
+    structure = standing.structure
+    return (
+        *_grounds(structure),
+        *_braces(structure),
+        Happening("growth", "marine growth", _grown, 0.05, 0.05, 0.8, "m"),
+        *_tops(structure),
+        Happening("corrosion", "corrosion of the splash zone", _corroded, 0.002, 0.003, 0.8, "m"),
+        Happening("connection", "grouted or bolted connection", _loosened, 0.3, 0.3, 0.8, "-", damps=0.5),
+    )
+
+
+def _grounds(structure: Structure) -> Iterator[Happening]:
+    yield Happening("scour", "scour at all feet", lambda s: _scoured(s, None), 1.0, 1.0, 0.8, "m")
+    for i, node in enumerate(structure.reaction_nodes):
+        yield Happening("scour at one foot", f"scour at {node}", _scoured_at(i), 1.0, 1.5, 0.8, "m")
+    yield Happening("soil", "soil softening", _softened, 0.1, 0.1, 0.8, "-")
+
+
+def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
+    return lambda s: _scoured(s, foot)
+
+
+def _scoured(standing: Standing, foot: int | None) -> Standing:
+    chosen = np.ones(standing.horizontal.size) if foot is None else np.eye(standing.horizontal.size)[foot]
+    return replace(
+        standing,
+        horizontal=standing.horizontal * np.exp(-_SCOUR_HORIZONTAL * chosen),
+        vertical=standing.vertical * np.exp(-_SCOUR_VERTICAL * chosen),
+    )
+
+
+def _softened(standing: Standing) -> Standing:
+    return replace(standing, horizontal=0.9 * standing.horizontal, vertical=0.9 * standing.vertical)
+
+
+def _braces(structure: Structure) -> Iterator[Happening]:
+    for members in braces(structure):
+        name = members[0]
+        yield Happening("brace lost", f"{name} lost", _scaled(members, _GONE), 1.0, 1.0, 0.05, "-")
+        yield Happening("brace weakened", f"{name} weakened", _scaled(members, 0.7), 0.3, 0.3, 0.5, "-")
+        yield Happening("flooded", f"{name} flooded", _flooded(members), 1.0, 1.0, 0.05, "-")
+
+
+def braces(structure: Structure) -> tuple[tuple[str, ...], ...]:
+    """Return the names of the members of each brace: those in one line that share nodes."""
+    jacket = [m for m in structure.members if m.part in ("jacket", "") and _climb(structure, m) <= _LEG]
+    lines: list[list[Member]] = []
+    for member in jacket:
+        joined = [line for line in lines if any(_in_line(structure, member, other) for other in line)]
+        merged = [m for line in joined for m in line] + [member]
+        lines = [line for line in lines if line not in joined] + [merged]
+    return tuple(tuple(m.name for m in line) for line in lines)
+
+
+def _direction(structure: Structure, member: Member) -> FloatArray:
+    along = np.subtract(structure.nodes[member.end], structure.nodes[member.start])
+    return np.asarray(along / np.linalg.norm(along))
+
+
+def _climb(structure: Structure, member: Member) -> float:
+    return float(abs(_direction(structure, member)[2]))
+
+
+def _in_line(structure: Structure, one: Member, other: Member) -> bool:
+    shared = {one.start, one.end} & {other.start, other.end}
+    aligned = abs(_direction(structure, one) @ _direction(structure, other))
+    return bool(shared) and bool(aligned > 0.999)
+
+
+def _scaled(members: tuple[str, ...], factor: float) -> Callable[[Standing], Standing]:
+    def apply(standing: Standing) -> Standing:
+        return _with_members(standing, members, lambda m: _softer(m, factor))
+
+    return apply
+
+
+def _softer(member: Member, factor: float) -> Member:
+    m = member.material
+    softer = Material(m.youngs_modulus_pa * factor, m.shear_modulus_pa * factor, m.density_kg_m3)
+    return replace(member, material=softer)
+
+
+def _with_members(
+    standing: Standing, chosen: tuple[str, ...], change: Callable[[Member], Member]
+) -> Standing:
+    members = tuple(change(m) if m.name in chosen else m for m in standing.structure.members)
+    return replace(standing, structure=replace(standing.structure, members=members))
+
+
+def _flooded(members: tuple[str, ...]) -> Callable[[Standing], Standing]:
+    def apply(standing: Standing) -> Standing:
+        def inside(member: Member) -> float:
+            s = member.section_start
+            return _SEA_WATER * 0.25 * pi * (s.outer_diameter_m - 2.0 * s.thickness_m) ** 2
+
+        return _heavier(standing, [m for m in standing.structure.members if m.name in members], inside)
+
+    return apply
+
+
+def _grown(standing: Standing) -> Standing:
+    thickness = 0.05
+
+    def more(member: Member) -> float:
+        outer = member.section_start.outer_diameter_m
+        ring = 0.25 * pi * ((outer + 2.0 * thickness) ** 2 - outer**2)
+        return ring * (_GROWTH + _SEA_WATER)  # the growth, and the water moved aside by it: C_a = 1
+
+    return _heavier(standing, list(standing.structure.members), more)
+
+
+def _heavier(standing: Standing, members: list[Member], per_metre: Callable[[Member], float]) -> Standing:
+    """Return the structure with mass on the submerged length of some members, half at either end."""
+    structure = standing.structure
+    masses = list(structure.masses)
+    for member in members:
+        a, b = (np.array(structure.nodes[n]) for n in (member.start, member.end))
+        low, high = sorted((a[2], b[2]))
+        sea = structure.sea_level_z_m
+        wet = 1.0 if high <= sea else max(0.0, (sea - low) / (high - low)) if high > low else 0.0
+        mass = 0.5 * wet * float(np.linalg.norm(b - a)) * per_metre(member)
+        if mass > 0.0:
+            masses += [PointMass(member.start, mass), PointMass(member.end, mass)]
+    return replace(standing, structure=structure.with_masses(tuple(masses)))
+
+
+def _tops(structure: Structure) -> Iterator[Happening]:
+    if not structure.masses:
+        return
+    heaviest = max(range(len(structure.masses)), key=lambda i: structure.masses[i].mass_kg)
+    mass = structure.masses[heaviest].mass_kg
+
+    def apply(standing: Standing) -> Standing:
+        masses = list(standing.structure.masses)
+        masses[heaviest] = replace(masses[heaviest], mass_kg=1.01 * mass)
+        return replace(standing, structure=standing.structure.with_masses(tuple(masses)))
+
+    yield Happening("mass", "mass of the RNA", apply, 0.01 * mass, 0.01 * mass, 0.8, "kg", both_ways=True)
+
+
+def _corroded(standing: Standing) -> Standing:
+    structure = standing.structure
+    low, high = (structure.sea_level_z_m + z for z in _SPLASH)
+
+    def inside(member: Member) -> bool:
+        z = sorted(structure.nodes[n][2] for n in (member.start, member.end))
+        return member.part in ("jacket", "") and z[0] < high and z[1] > low
+
+    def thinner(section: Section) -> Section:
+        return Section(section.outer_diameter_m, max(section.thickness_m - 0.002, 0.2 * section.thickness_m))
+
+    chosen = tuple(m.name for m in structure.members if inside(m))
+    return _with_members(
+        standing,
+        chosen,
+        lambda m: replace(m, section_start=thinner(m.section_start), section_end=thinner(m.section_end)),
+    )
+
+
+def _loosened(standing: Standing) -> Standing:
+    structure = standing.structure
+    piece = tuple(m.name for m in structure.members if m.part == "transition_piece")
+    near = tuple(m.name for m in structure.members if {m.start, m.end} & set(structure.interface_nodes))
+    return _with_members(standing, piece or near, lambda m: _softer(m, 0.7))

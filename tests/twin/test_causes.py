@@ -1,0 +1,64 @@
+"""Directions of causes on the reference jacket: closed forms, signs, and what cannot be told apart."""
+
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.structure import read_structure
+from jackettwin.twin import causes
+from jackettwin.twin.causes import MODES, ModelCauses, model_causes, seen_causes
+from jackettwin.twin.changed_structures import braces
+
+LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
+
+
+@pytest.fixture(scope="module")
+def model() -> ModelCauses:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(causes, "_DRAWS", 1)
+        structure = read_structure("jacket15")
+        return model_causes(structure, LABELS, np.array([0.1806, 0.1835, 0.571]), np.full(3, 0.01))
+
+
+def direction(model: ModelCauses, start: str) -> np.ndarray:
+    (cause,) = [c for c in model.causes if c.name.startswith(start)]
+    return cause.draws.mean(axis=0)
+
+
+def test_every_line_of_the_jacket_is_one_brace() -> None:
+    found = braces(read_structure("jacket15"))
+    assert len(found) == 36  # four faces of four bays of crosses, and four at the mudline
+    assert sum(len(line) for line in found) > len(found)
+
+
+def test_soil_and_scour_soften_and_lost_braces_bend_one_plane(model: ModelCauses) -> None:
+    for name in ("scour at all feet", "soil softening", "marine growth", "corrosion"):
+        assert np.all(direction(model, name)[:2] < 0.0)
+    plane = direction(model, "brace_1_1_1 lost")[:2]
+    assert max(plane / plane.sum()) > 0.8
+
+
+def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -> None:
+    """Δ ln f = −½ Δm φ²: one per cent of the RNA is worth about 0.4 % in bending, and nothing in torsion."""
+    one_percent = direction(model, "mass of the RNA") * 0.01 * 809000.0
+    np.testing.assert_allclose(one_percent[:2], -0.0043, atol=5e-4)
+    assert abs(one_percent[2]) < 1e-4
+
+
+def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:
+    assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * MODES
+    assert "sensor: gain" in model.traceless
+
+
+def test_watched_quantities_are_found_by_label(model: ModelCauses) -> None:
+    quantities = (("frequency", 1), ("damping", 0), ("frequency", 2))
+    seen = seen_causes(model, quantities, ("fore_aft_1", "side_side_1", "unheard_of"))
+    assert seen.known.tolist() == [True, True, False]
+    place = model.labels.index("side_side_1"), MODES + model.labels.index("fore_aft_1")
+    np.testing.assert_array_equal(seen.causes[0].draws, model.causes[0].draws[:, place])
+    assert not any(what.endswith("side_side_1") and what.startswith("frequency") for what, _ in seen.further)
+
+
+def test_labels_that_no_mode_has_are_refused() -> None:
+    with pytest.raises(InputError, match="no mode of the model"):
+        model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))
