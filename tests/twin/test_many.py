@@ -118,9 +118,9 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
 
 
 def counted(function, started: list[str]):
-    def one(work, file: Path):
+    def one(work, file: Path, keep):
         started.append(file.name)
-        return function(work, file)
+        return function(work, file, keep)
 
     return one
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 from rich.table import Table
 
+from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.files import atomic_folder, write_json
+from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.twin import read_twin
 from jackettwin.twin.follow import Each, follow_twin
@@ -37,9 +38,16 @@ from jackettwin.twin.followed import Followed
     type=click.Path(path_type=Path, file_okay=False),
     help="Folder for followed.json (the next run's prior) and report.html.",
 )
+@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print what followed.json holds.")
 def follow_command(
-    twin: str, law: str | None, each: Each, prior_file: Path | None, out: Path | None, as_json: bool
+    twin: str,
+    law: str | None,
+    each: Each,
+    prior_file: Path | None,
+    out: Path | None,
+    fresh: bool,
+    as_json: bool,
 ) -> None:
     """Update the supports of TWIN day after day; say whether their stiffness drifts.
 
@@ -47,9 +55,11 @@ def follow_command(
     with --prior.
     """
     config = read_twin(twin)
+    if out is not None:
+        check_room(out)
     prior = None if prior_file is None else read_followed(prior_file)
     with progress(2 * len(config.records), config.name) as step:
-        followed = follow_twin(config, law=law, each=each, prior=prior, step=step)
+        followed = follow_twin(config, law=law, each=each, prior=prior, step=step, keep=keeping(fresh=fresh))
     document = follow_document(followed)
     if out is not None:
         with atomic_folder(out) as temporary:

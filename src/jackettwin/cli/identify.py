@@ -12,6 +12,7 @@ from typing import Any
 import click
 from rich.table import Table
 
+from jackettwin.cli.cache import MOST_RECORDS, keeping
 from jackettwin.cli.console import messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import check_room, read_mapping, read_yaml, write_json
@@ -24,6 +25,7 @@ from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import examine_file, observation_document
 from jackettwin.twin.export import WRITERS, export_modes
+from jackettwin.twin.identified import not_kept
 from jackettwin.twin.long_records import LONG, PIECE_S, without_long
 from jackettwin.twin.many import observe_many, record_files
 from jackettwin.twin.many_document import many_document
@@ -66,6 +68,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
 @click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
 @click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
+@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option(
     "--whole", is_flag=True, help="Take records longer than an hour as one, not in ten-minute pieces."
 )
@@ -84,6 +87,7 @@ def identify_command(
     unit: str | None,
     gain: float | None,
     zone: str | None,
+    fresh: bool,
     whole: bool,
     workers: int | None,
     as_json: bool,
@@ -107,9 +111,15 @@ def identify_command(
         if not whole:
             files = _without_long(files, Path(passing) / "pieces", how["unsaid"])
         if len(files) == 1:
-            _deliver(_one(files[0], settings, how, compare, report), out, as_json, _print_one)
+            _deliver(
+                _one(files[0], settings, {**how, "keep": keeping(fresh=fresh)}, compare, report),
+                out,
+                as_json,
+                _print_one,
+            )
             return
         kept = Path(passing) if out is None or not _folder(out) else out / "records"
+        how["keep"] = keeping(fresh=fresh) if len(files) <= MOST_RECORDS else not_kept
         _deliver(_many(files, settings, how, kept, workers, report), out, as_json, _print_many)
 
 

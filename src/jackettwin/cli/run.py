@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, check_room, write_json
@@ -30,6 +31,7 @@ SIMULATED_TWIN = "simulated"
     "--all-laws", is_flag=True, help="Sample the posterior of every law and compare them by evidence; slower."
 )
 @click.option("--compare", is_flag=True, help="Identify the first record by every method, side by side.")
+@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def run_command(
     twin: str | None,
@@ -38,6 +40,7 @@ def run_command(
     set_file: str,
     all_laws: bool,
     compare: bool,
+    fresh: bool,
     as_json: bool,
 ) -> None:
     """Go from records to modes to updated supports: report.html, result.json, figures.
@@ -59,6 +62,7 @@ def run_command(
             posteriors="all" if all_laws else "first",
             step=step,
             within=step.within,
+            keep=keeping(fresh=fresh),
         )
         step("write the report")
         document = run_document(result, report=str(folder / "report.html"))

@@ -6,6 +6,7 @@ import click
 import numpy as np
 from rich.table import Table
 
+from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
 from jackettwin.twin.result import MeasuredMode
@@ -18,13 +19,14 @@ DEFAULT_TWIN = "openfast_pile"
 @click.command("update")
 @click.argument("twin", default=DEFAULT_TWIN)
 @click.option("--law", help="Only this law; default: the first of the twin file.")
+@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def update_command(twin: str, law: str | None, as_json: bool) -> None:
+def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> None:
     """Update the supports of TWIN under one law; writes nothing."""
     config = read_twin(twin)
     laws = (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
-        result = run_twin(config, laws=laws, step=step, within=step.within)
+        result = run_twin(config, laws=laws, step=step, within=step.within, keep=keeping(fresh=fresh))
     if as_json:
         print_json(update_document(result, 0))
     else:

@@ -27,6 +27,7 @@ from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
+from jackettwin.twin.identified import Identified, Keep, identified_key, not_kept
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""
@@ -75,6 +76,7 @@ def examine_file(
     picks: tuple[Pick, ...] = (),
     unsaid: Unsaid | None = None,
     compare: bool = False,
+    keep: Keep = not_kept,
 ) -> Examination:
     """Read and examine one record; ``unsaid`` holds rate and unit for a file that does not say them.
 
@@ -85,7 +87,7 @@ def examine_file(
     """
     record = read_record(path, unsaid)
     with located(file=path):
-        return examine(record, settings, sensors=sensors, picks=picks, compare=compare)
+        return examine(record, settings, sensors=sensors, picks=picks, compare=compare, keep=keep)
 
 
 def examine(
@@ -95,6 +97,7 @@ def examine(
     sensors: tuple[Sensor, ...] = (),
     picks: tuple[Pick, ...] = (),
     compare: bool = False,
+    keep: Keep = not_kept,
 ) -> Examination:
     """Judge, repair, turn to the rotor's axes and identify one record.
 
@@ -106,6 +109,8 @@ def examine(
         Poles to take instead of the automatic selection, for the records they name.
     compare : bool
         Identify by every method as well.
+    keep : callable
+        Keeps what was identified for the next time.
 
     Raises
     ------
@@ -126,14 +131,21 @@ def examine(
         *_unplaced(chosen),
         *(() if sensors else (*_unclear(source), *_set_aside(source, chosen))),
     )
-    found = _beside_orders(identify(ready, settings, picks=picks), findings)
-    if knows_yaw(source) or source.metadata.get("axes") == "rotor":
-        found = along_axes(found)
-    warnings = (str(f) for f in findings if f.severity != "info")
-    notes = (str(f) for f in findings if f.severity == "info")
-    found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
-    compared = compare_methods(ready, found, settings) if compare and found.modes else None
-    return Examination(ready, quality, found, findings, compared)
+    in_axes = knows_yaw(source) or source.metadata.get("axes") == "rotor"
+
+    def compute() -> Identified:
+        found = _beside_orders(identify(ready, settings, picks=picks), findings)
+        found = along_axes(found) if in_axes else found
+        warnings = (str(f) for f in findings if f.severity != "info")
+        notes = (str(f) for f in findings if f.severity == "info")
+        found = replace(found, warnings=(*warnings, *found.warnings), notes=(*found.notes, *notes))
+        compared = compare_methods(ready, found, settings) if compare and found.modes else None
+        return Identified.of(found, compared)
+
+    kept = keep(
+        identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes), compute
+    )
+    return Examination(ready, quality, kept.found, findings, kept.comparison)
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:

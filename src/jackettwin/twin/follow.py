@@ -23,10 +23,11 @@ from jackettwin.twin.advance import advance
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
+from jackettwin.twin.identified import Keep, not_kept
 from jackettwin.twin.many import failure
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.observation import Observation
-from jackettwin.twin.observe import observe
+from jackettwin.twin.observe import examined, observed
 from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
@@ -56,6 +57,7 @@ def follow_twin(
     each: Each = "day",
     prior: Followed | None = None,
     step: Callable[[str], None] = lambda _: None,
+    keep: Keep = not_kept,
 ) -> Followed:
     """Return what is known after each day of a twin's records.
 
@@ -69,6 +71,8 @@ def follow_twin(
         To go on from; records that are in it already are left out, whatever their files are called.
     step : callable
         Told what is being done: once a record, then once a day.
+    keep : callable
+        Keeps what was identified for the next run.
 
     Raises
     ------
@@ -78,7 +82,7 @@ def follow_twin(
     if not config.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     model = twin_model(config)
-    observations, warnings = _observed(config, model, prior, step)
+    observations, warnings = _observed(config, model, prior, step, keep)
     followed = follow_observations(config, model, observations, law=law, each=each, prior=prior, step=step)
     return replace(followed, warnings=(*warnings, *followed.warnings))
 
@@ -133,7 +137,11 @@ def follow_observations(
 
 
 def _observed(
-    config: TwinConfig, model: TwinModel, prior: Followed | None, step: Callable[[str], None]
+    config: TwinConfig,
+    model: TwinModel,
+    prior: Followed | None,
+    step: Callable[[str], None],
+    keep: Keep,
 ) -> tuple[list[Observation], tuple[str, ...]]:
     """Return what the records show that the prior does not know, and what is worth saying of them."""
     known = set() if prior is None else {own for day in prior.state.days.values() for own in day.records}
@@ -144,12 +152,12 @@ def _observed(
     for path in config.records:
         step(f"identify {path.name}")
         try:
-            record = read_record(path)
+            record = read_record(path, config.unsaid)
             if record_id(record) in known:
                 continue
             new += 1
             with located(file=path):
-                observations.append(observe(record, model))
+                observations.append(observed(record, examined(record, model, keep=keep), model))
         except Exception as error:  # of many records, one that fails must not stop the others
             if not path.exists():
                 raise

@@ -27,6 +27,7 @@ from jackettwin.processes import in_processes
 from jackettwin.records.readers import FORMATS, description_file
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.examine import Examination, examine_file
+from jackettwin.twin.identified import Keep, not_kept
 from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 6
@@ -141,6 +142,7 @@ def observe_many(
     unsaid: Unsaid | None = None,
     workers: int | None = None,
     step: Callable[[str], None] = lambda _: None,
+    keep: Keep = not_kept,
 ) -> Batch:
     """Observe records on all cores; one that cannot be identified is listed and stops nothing.
 
@@ -156,6 +158,8 @@ def observe_many(
         Processes; default one a core. One works in this process.
     step : callable
         Told the name of every record that is done.
+    keep : callable
+        Keeps what was identified for the next time; goes to other processes.
     """
     work = _Work(settings, picks, unsaid or Unsaid())
     places = [_place(folder, file, work) for file in files]
@@ -166,7 +170,7 @@ def observe_many(
         else:
             left.append(i)
     failed: dict[int, Failed] = {}
-    for i, result in _computed(files, left, work, workers):
+    for i, result in _computed(files, left, work, workers, keep):
         if isinstance(result, Failed):
             failed[i] = result
         else:
@@ -188,21 +192,22 @@ def _computed(
     left: list[int],
     work: _Work,
     workers: int | None,
+    keep: Keep,
 ) -> Iterator[tuple[int, Seen | Failed]]:
     """Yield results as they come, with a bounded number of records under way."""
     n_workers = min(workers or os.cpu_count() or 1, len(left))
     if n_workers < 2 or (workers is None and len(left) < FEWEST_FOR_PROCESSES):
         for i in left:
-            yield i, _one(work, files[i])
+            yield i, _one(work, files[i], keep)
         return
-    for k, result in in_processes(partial(_one, work), [files[i] for i in left], n_workers):
+    for k, result in in_processes(partial(_one, work, keep=keep), [files[i] for i in left], n_workers):
         yield left[k], result or Failed(str(files[left[k]]), _DIED)
 
 
-def _one(work: _Work, file: Path) -> Seen | Failed:
+def _one(work: _Work, file: Path, keep: Keep = not_kept) -> Seen | Failed:
     """Return what a record shows, or why it shows nothing, whatever went wrong."""
     try:
-        seen = examine_file(file, work.settings, picks=work.picks, unsaid=work.unsaid)
+        seen = examine_file(file, work.settings, picks=work.picks, unsaid=work.unsaid, keep=keep)
         return kept(seen)
     except Exception as error:  # one record must not end a batch; alone it shows the traceback
         return failure(file, error)

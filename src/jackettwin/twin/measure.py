@@ -14,6 +14,7 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.twin.advance import advance_all
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.examine import Examination
+from jackettwin.twin.identified import Keep, not_kept
 from jackettwin.twin.many import Failed, failure
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation
@@ -60,7 +61,12 @@ class Measured:
 
 
 def measure(
-    config: TwinConfig, model: TwinModel, *, compare: bool = False, step: Callable[[str], None]
+    config: TwinConfig,
+    model: TwinModel,
+    *,
+    compare: bool = False,
+    step: Callable[[str], None],
+    keep: Keep = not_kept,
 ) -> Measured:
     """Return what every record of a twin shows, and the state that they make.
 
@@ -71,7 +77,7 @@ def measure(
     InputError
         If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
-    records, examinations, failed = _examined(config, model, compare=compare, step=step)
+    records, examinations, failed = _examined(config, model, compare=compare, step=step, keep=keep)
     with located(file=config.path):
         feet = model.likest_feet(examinations)
         observations = [
@@ -89,7 +95,12 @@ def measure(
 
 
 def _examined(
-    config: TwinConfig, model: TwinModel, *, compare: bool, step: Callable[[str], None]
+    config: TwinConfig,
+    model: TwinModel,
+    *,
+    compare: bool,
+    step: Callable[[str], None],
+    keep: Keep,
 ) -> tuple[list[Record], list[Examination], tuple[Failed, ...]]:
     """Return what the records show, and those that show nothing; the error of the first if none does."""
     records: list[Record] = []
@@ -101,7 +112,7 @@ def _examined(
         try:
             record = read_record(path, config.unsaid)
             with located(file=path):
-                seen = examined(record, model, compare=compare and not examinations)
+                seen = examined(record, model, compare=compare and not examinations, keep=keep)
         except Exception as error:  # of many records, one that fails must not stop the others
             if not path.exists():
                 raise

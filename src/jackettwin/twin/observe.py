@@ -9,6 +9,7 @@ from jackettwin.identification.storage import slim
 from jackettwin.records import Record
 from jackettwin.records.identity import record_id
 from jackettwin.twin.examine import Examination, examine
+from jackettwin.twin.identified import Keep, not_kept
 from jackettwin.twin.model import TwinModel, placed_sensors
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.sensor_polarity import sensor_polarity
@@ -28,7 +29,9 @@ def observe(record: Record, model: TwinModel) -> Observation:
     return observed(record, examined(record, model), model)
 
 
-def examined(record: Record, model: TwinModel, *, compare: bool = False) -> Examination:
+def examined(
+    record: Record, model: TwinModel, *, compare: bool = False, keep: Keep = not_kept
+) -> Examination:
     """Return a record examined with a model's settings: what figures need, and an observation leaves out.
 
     Raises
@@ -42,6 +45,7 @@ def examined(record: Record, model: TwinModel, *, compare: bool = False) -> Exam
         sensors=model.sensors,
         picks=model.picks,
         compare=compare,
+        keep=keep,
     )
 
 

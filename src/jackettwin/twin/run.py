@@ -10,6 +10,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
+from jackettwin.twin.identified import Keep, not_kept
 from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
@@ -30,6 +31,7 @@ def run_twin(
     posteriors: Posteriors = "all",
     step: Callable[[str], None] = lambda _: None,
     within: Callable[[str], None] = lambda _: None,
+    keep: Keep = not_kept,
 ) -> TwinResult:
     """Identify the records of a twin (or take its targets) and update its supports under each law.
 
@@ -45,6 +47,8 @@ def run_twin(
         Told what is being done, once a step; ``count_steps`` says how many there are.
     within : callable
         Told how far a step is, as often as there is something to say.
+    keep : callable
+        Keeps what was identified for the next run.
 
     Raises
     ------
@@ -55,7 +59,7 @@ def run_twin(
     step("assemble the structure")
     model = twin_model(config)
     assembly, numbered, labels = model.structure, model.modes, model.labels
-    found = measure(config, model, compare=compare, step=step) if config.records else None
+    found = measure(config, model, compare=compare, step=step, keep=keep) if config.records else None
     state = None if found is None else found.state
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
