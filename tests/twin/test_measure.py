@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.twin import measure as module
+from jackettwin.records import Record
 from jackettwin.twin import read_twin
-from jackettwin.twin.assembled import assembled
-from jackettwin.twin.config import PAIRED_MODES, TwinConfig
+from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import cautions
-from jackettwin.updating import numbered_modes
+
+module = import_module("jackettwin.twin.measure")
 
 
 def measured(config: TwinConfig) -> Measured:
-    assembly = assembled(config)
-    return measure(config, assembly, numbered_modes(assembly, PAIRED_MODES), step=lambda _: None)
+    return measure(config, twin_model(config), step=lambda _: None)
 
 
 @pytest.fixture
@@ -32,21 +33,21 @@ def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_
     broken = tmp_path / "broken.parquet"
     broken.write_bytes(b"not a parquet file")
     found = measured(replace(config, records=(broken, config.records[0])))
-    assert [seen.record.name for seen in found.observations] == [config.records[0].stem]
-    assert found.sightings
+    assert [seen.name for seen in found.observations] == [config.records[0].stem]
+    assert found.observations[0].modes
     assert "broken.parquet" in found.failed[0].problem
     assert cautions(config, found, (), ())[0].startswith("left out: ")
 
 
 def test_a_fault_of_ours_costs_one_record(config: TwinConfig, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = module.observe
+    whole = module.examined
 
-    def faulty(path: Path, *rest, **more):
-        if path == config.records[1]:
+    def faulty(record: Record, *rest, **more):
+        if record.name == config.records[1].stem:
             raise ValueError("shapes disagree")
-        return whole(path, *rest, **more)
+        return whole(record, *rest, **more)
 
-    monkeypatch.setattr(module, "observe", faulty)
+    monkeypatch.setattr(module, "examined", faulty)
     found = measured(config)
     assert len(found.observations) == 1
     assert "ValueError: shapes disagree" in found.failed[0].problem
