@@ -21,9 +21,11 @@ def test_every_public_name_is_there_and_documented(name: str) -> None:
 
 def test_the_list_of_public_names() -> None:
     assert sorted(jackettwin.__all__) == [
-        "Channel", "IdentificationSettings", "Rayleigh", "Record", "assemble", "build_report", "build_system",
-        "damped_modes", "identify", "jacket", "read_record", "read_structure", "read_support", "read_twin",
-        "run_twin", "undamped_modes", "write_record",
+        "Channel", "IdentificationSettings", "Observation", "Posterior", "Rayleigh", "Record", "TwinModel",
+        "TwinState", "advance", "assemble", "build_report", "build_system", "damped_modes", "empty_state",
+        "follow", "identify", "jacket", "observe", "read_record", "read_structure", "read_support",
+        "read_twin", "run_twin", "to_arviz", "to_dataframe", "to_xarray", "twin_model", "undamped_modes",
+        "write_record",
     ]  # fmt: skip
 
 

@@ -13,10 +13,10 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record, assess, decimate, detrend, read_record, repair, write_record
-from jackettwin.records.readers import FORMATS
+from jackettwin.records.readers import formats
 
 DATA = Path(__file__).parent / "data"
-WRITABLE = [form.extensions[0] for form in FORMATS if form.write]
+WRITABLE = [form.extensions[0] for form in formats() if form.write]
 
 
 def put_through(record: Record) -> None:
@@ -87,7 +87,7 @@ def test_damaged_descriptions(seed: int, record: Record, tmp_path: Path) -> None
     read_or_refuse(tmp_path / "r.parquet")
 
 
-@pytest.mark.parametrize("extension", [e for form in FORMATS for e in form.extensions])
+@pytest.mark.parametrize("extension", [e for form in formats() for e in form.extensions])
 def test_bytes_without_any_meaning(extension: str, tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     for size in (1, 7, 600, 5000):

@@ -24,7 +24,7 @@ from jackettwin.identification import Identification, IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.processes import in_processes
-from jackettwin.records.readers import FORMATS, description_file
+from jackettwin.records.readers import description_file, formats
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.examine import Examination, examine_file
 from jackettwin.twin.identified import Keep, not_kept
@@ -111,7 +111,7 @@ def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
     InputError
         If a path does not exist or a folder holds no record.
     """
-    known = {extension for form in FORMATS for extension in form.extensions}
+    known = {extension for form in formats() for extension in form.extensions}
     files: list[Path] = []
     for source in map(Path, sources):
         if not source.is_dir():

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from jackettwin.updating.families import DEFAULT_LAWS, Parameter, family
     from jackettwin.updating.joint import joint, single
     from jackettwin.updating.model import SupportModel
+    from jackettwin.updating.posterior import Posterior
     from jackettwin.updating.problem import Problem
     from jackettwin.updating.targets import Residuals, Target
     from jackettwin.updating.update import Update, law_probability, update
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "DEFAULT_LAWS",
     "Parameter",
+    "Posterior",
     "Problem",
     "Residuals",
     "SupportModel",
@@ -39,6 +41,7 @@ door(
         "families": "DEFAULT_LAWS Parameter family",
         "joint": "joint single",
         "model": "SupportModel",
+        "posterior": "Posterior",
         "problem": "Problem",
         "targets": "Residuals Target",
         "update": "Update law_probability update",

@@ -86,6 +86,10 @@ class Family:
     rows: Callable[[FloatArray, float], tuple[FloatArray, FloatArray]]
     relaxes: bool = True
 
+    def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
+        """A law crosses processes by its name: every process has the same laws."""
+        return family, (self.name,)
+
 
 def _kelvin_voigt_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
     rows, slopes = _empty(values, branches=0)

@@ -51,6 +51,9 @@ class Posterior:
         Mean over the islands and its standard deviation.
     evidence_known : bool
         Whether the islands agree on it.
+    names : of the parameters
+    runs : int
+        Independent ones, each as long, one after the other.
     convergence : Convergence
         How well the islands agree.
     """
@@ -62,6 +65,8 @@ class Posterior:
     log_evidence_std: float
     convergence: Convergence
     evidence_known: bool = True
+    names: tuple[str, ...] = ()
+    runs: int = 1
 
     def interval(self, level: float = 0.9) -> FloatArray:
         """Return the central interval of every parameter, (n_parameters, 2)."""
@@ -174,6 +179,8 @@ def gathered(
         log_evidence_std=spread / np.sqrt(log_z.size),
         convergence=found,
         evidence_known=spread <= _LARGEST_SPREAD,
+        names=tuple(p.name for p in problem.parameters),
+        runs=len(z),
     )
 
 

@@ -1,12 +1,13 @@
 """Files in and out: one small reader a format behind one registry."""
 
 from jackettwin.records.readers.pieces import read_record_pieces
-from jackettwin.records.readers.registry import FORMATS, description_file, read_record, write_record
+from jackettwin.records.readers.registry import Format, description_file, formats, read_record, write_record
 from jackettwin.records.readers.sep005 import from_sep005, to_sep005
 
 __all__ = [
-    "FORMATS",
+    "Format",
     "description_file",
+    "formats",
     "from_sep005",
     "read_record",
     "read_record_pieces",

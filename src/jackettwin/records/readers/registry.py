@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import entry_points
 from pathlib import Path
 
 from jackettwin.errors import InputError, JackettwinError, did_you_mean
@@ -53,6 +55,17 @@ FORMATS = (
     Format("OpenFAST text output", (".out",), openfast.read_text),
     Format("OpenFAST binary output", (".outb",), openfast.read_binary),
 )
+
+
+PLUGINS = "jackettwin.readers"
+"""Group of entry points, each a :class:`Format`: readers that other packages bring."""
+
+
+@cache
+def formats() -> tuple[Format, ...]:
+    """Return every format: ours, then those that installed packages bring."""
+    brought = (point.load() for point in entry_points(group=PLUGINS))
+    return (*FORMATS, *(form for form in brought if isinstance(form, Format)))
 
 
 def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
@@ -141,7 +154,7 @@ def write_record(record: Record, path: Path | str) -> None:
         raise InputError(
             f"{form.name} is read, not written",
             file=path,
-            allowed=", ".join(e for f in FORMATS if f.write for e in f.extensions),
+            allowed=", ".join(e for f in formats() if f.write for e in f.extensions),
             remedy="use .parquet",
         )
     with atomic_path(path) as temporary:
@@ -153,7 +166,7 @@ def write_record(record: Record, path: Path | str) -> None:
 
 def _format_of(path: Path) -> Format:
     extension = path.suffix.lower()
-    known = [e for form in FORMATS for e in form.extensions]
+    known = [e for form in formats() for e in form.extensions]
     if extension not in known:
         remedy = "give the data file, not its description" if extension == ".json" else "convert the file"
         raise InputError(
@@ -164,7 +177,7 @@ def _format_of(path: Path) -> Format:
             allowed=", ".join(known),
             remedy=did_you_mean(extension, known) or remedy,
         )
-    return next(form for form in FORMATS if extension in form.extensions)
+    return next(form for form in formats() if extension in form.extensions)
 
 
 def _refuse_unreadable(path: Path) -> None:
