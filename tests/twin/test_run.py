@@ -169,7 +169,7 @@ def test_given_shapes_are_data_beside_frequencies(tmp_path: Path) -> None:
     config = read_twin(path)
     assembly = assembled(config)
     numbered = numbered_modes(assembly, 4)
-    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
     measured = target_modes(config, labels, pinned_hz=numbered.frequency_hz)
     states = {"": (residuals(config, measured), {})}
     problem = law_problem(config, Evidence(assembly, None, states, RotorDamping({}, {})), "kelvin-voigt")

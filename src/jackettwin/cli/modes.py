@@ -150,7 +150,7 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
     static = track_modes(M, undamped.omega, undamped.shapes, damped.shapes)
     of_damped = {int(column): row for row, column in enumerate(static) if column >= 0}
     numbers = _numbers(assembly, damped, number)
-    labels = mode_labels(mode_kinds(assembly, damped.shapes))
+    labels = mode_labels(mode_kinds(assembly, damped.shapes, damped.frequency_hz))
     rows: list[dict[str, Any]] = []
     others: list[dict[str, Any]] = []
     for i, (f, zeta) in enumerate(zip(damped.frequency_hz, damped.damping_ratio, strict=True)):

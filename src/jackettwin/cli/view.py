@@ -163,14 +163,14 @@ def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
     still = undamped_modes(system, number + DOFS_PER_NODE)
     shown = range(still.n_at_rest, min(still.n_at_rest + number, still.omega.size))
     still = UndampedModes(still.omega[shown], still.shapes[:, shown])
-    labels = mode_labels(mode_kinds(assembly, still.shapes))
+    labels = mode_labels(mode_kinds(assembly, still.shapes, still.frequency_hz))
     motions = [
         undamped_motion(assembly, f"{k + 1} {label.replace('_', ' ')}", float(f), still.shapes[:, k])
         for k, (f, label) in enumerate(zip(still.frequency_hz, labels, strict=True))
     ]
     damped = damped_modes(system, below_hz=1.02 * float(still.frequency_hz[-1]))
     lively = np.flatnonzero((damped.damping_ratio < _OVERDAMPED) & (damped.damping_ratio > 1e-9))[:number]
-    labels = mode_labels(mode_kinds(assembly, damped.shapes[:, lively]))
+    labels = mode_labels(mode_kinds(assembly, damped.shapes[:, lively], damped.frequency_hz[lively]))
     return motions + [
         damped_motion(
             assembly,

@@ -64,7 +64,7 @@ def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[Section
     """Return the gallery's sections: every listed figure of the thesis, from the same code as the report."""
     assembly = assemble(read_structure("jacket15"))
     pinned = numbered_modes(assembly, 8)
-    labels = mode_labels(mode_kinds(assembly, pinned.shapes))
+    labels = mode_labels(mode_kinds(assembly, pinned.shapes, pinned.frequency_hz))
     jacket = _Jacket(assembly, Rayleigh.minimum(0.01, float(pinned.frequency_hz[0])), pinned, labels)
     with as_file(files("jackettwin.data") / "records") as directory:
         record = read_record(directory / f"{RECORD}.parquet")

@@ -43,6 +43,9 @@ STEP = 1e-6
 """Newton converges cubically: a last step this small leaves an error at rounding level."""
 SAME = 1e-8
 """Poles nearer than this (relative) with parallel shapes are one."""
+_TOGETHER = 1e-3
+"""If one by one they do not add up, starts nearer than this (relative) are refined together: two may have
+ended in one pole."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +79,9 @@ def all_modes(model: Condensed, rows: FloatArray, rayleigh: FloatArray) -> AllMo
     rayleigh : (2,) a, b
     """
     found = _attempt(model, rows, rayleigh, exact=False)
-    if not found.certified:
-        found = _attempt(model, rows, rayleigh, exact=True)
+    for together in (False, True):
+        if not found.certified:
+            found = _attempt(model, rows, rayleigh, exact=True, together=together)
     return found
 
 
@@ -109,15 +113,18 @@ def kernels() -> Any:
     return condensed_kernels
 
 
-def _attempt(model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact: bool) -> AllModes:
+def _attempt(
+    model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact: bool, together: bool = False
+) -> AllModes:
     values, vectors = _starts(model, rows, rayleigh, exact=exact)
     starts = np.ascontiguousarray(vectors.T)
     oscillating = (values.imag > REAL * np.abs(values)) & (np.abs(values) <= 1.3 * model.radius)
-    poles, shapes = values[oscillating], np.ascontiguousarray(starts[oscillating])
-    which = np.zeros(poles.size, dtype=np.int64)
+    poles, shapes = values[oscillating], starts[oscillating]
     done = kernels().refine(
-        model.arrays(), rows[None], np.ascontiguousarray(rayleigh)[None], which, poles, shapes, STEP
-    )
+        model.arrays(), rows[None], np.ascontiguousarray(rayleigh)[None],
+        np.arange(poles.size) if not together else np.zeros(poles.size, dtype=np.intp),
+        poles[None], shapes[None], _TOGETHER, STEP,
+    )[0]  # fmt: skip
     done &= poles.imag > REAL * np.abs(poles)
     poles, shapes = _distinct(poles[done], shapes[done])
     real = values[np.abs(values.imag) <= _NEARLY_REAL * np.abs(values)].real

@@ -22,6 +22,7 @@ the truncated modes from static solutions. Nothing is approximated but the tail 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, pi
 from typing import Any
 
@@ -34,6 +35,7 @@ import scipy.sparse.linalg as spla
 from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modal import UndampedModes
+from jackettwin.response.multiple import axis_levels, inseparable, turning
 from jackettwin.response.system import Group, Matrix, Pencil, System
 from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Prony
@@ -95,6 +97,11 @@ class Condensed:
     basis_mid: FloatArray
     coupling_mid: FloatArray
     basis_rest: FloatArray
+
+    @cached_property
+    def remembered(self) -> dict[Any, Any]:
+        """What was found of the structure once and is asked for again: families by mode numbers."""
+        return {}
 
     @property
     def n(self) -> int:
@@ -176,7 +183,7 @@ def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()
         pencil=pencil,
         basis=system.expand(T),
         boundary=system.free[b],
-        pinned=_pinned(pencil, _held(system, system.free[b])),
+        pinned=_pinned(pencil, _held(system, system.free[b]), system, system.expand(T)),
         radius=radius,
         terms=terms,
         mid=mid,
@@ -309,12 +316,17 @@ def _held(system: System, boundary: IntArray) -> IntArray:
     return np.flatnonzero(np.isin(boundary, pins))
 
 
-def _pinned(pencil: Pencil, held: IntArray) -> UndampedModes:
+def _pinned(pencil: Pencil, held: IntArray, system: System, basis: FloatArray) -> UndampedModes:
     free = np.setdiff1d(np.arange(pencil.n), held)
     w, x = la.eigh(pencil.K[np.ix_(free, free)], pencil.M[np.ix_(free, free)])
     shapes = np.zeros((pencil.n, free.size))
     shapes[free] = x
-    return UndampedModes(np.sqrt(np.maximum(w, 0.0)), shapes)
+    omega = np.sqrt(np.maximum(w, 0.0))
+    levels = axis_levels(system.assembly)
+    for pair in inseparable(omega):
+        full = basis @ shapes[:, pair]
+        shapes[:, pair] = shapes[:, pair] @ turning(system.assembly, levels, full, np.eye(pair.size))
+    return UndampedModes(omega, shapes)
 
 
 def _placed(system: System, i: IntArray, x: FloatArray) -> FloatArray:

@@ -25,6 +25,20 @@ _MAX_STEPS = 30
 _MAX_DEPTH = 24
 _NEAR = 0.05
 """A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
+_COARSE = 1e-4
+"""A cluster has come to rest as a whole when its mean moves less than this (relative): its poles are then
+known to the square of that and of their distance, and each can be refined from its own start."""
+_INSEPARABLE = 1e-5
+"""Poles nearer than this (relative) stay together to the end: the block's error, their distance squared, is
+rounding."""
+_PARALLEL = 1.0 - 5e-7
+"""Two shapes of one pole with a larger cosine are one mode found twice."""
+_SKEWED = 1e3
+"""Condition number from which modes of a multiple pole hardly resemble pinned ones: they are not turned."""
+_CLEARLY = 1.0 + 1e-9
+"""An exchange must be better by more than rounding."""
+_EQUAL = 1e-9
+"""Poles nearer than this (relative) are one multiple pole."""
 
 
 @compiled
@@ -254,6 +268,15 @@ def times(A, x, y):
 
 
 @compiled
+def _product(x, y):
+    """Return xᵀy."""
+    total = 0.0j
+    for i in range(x.size):
+        total += x[i] * y[i]
+    return total
+
+
+@compiled
 def _matrices(n):
     """Return room for F, dF/ds and what elimination leaves of F."""
     shape = (n, n)
@@ -276,51 +299,399 @@ def _bounded(step, s):
 
 
 @compiled
-def refine(model, rows, rayleigh, which, values, vectors, tolerance):
-    """Refine starts in place by inverse iteration with the Rayleigh functional (cubic: F is symmetric).
-
-    ``which`` (n_starts,) is the parameter set of each start. Returns (n_starts,) booleans: converged.
-    """
-    n = vectors.shape[1]
-    n_pairs, w2 = model[0].shape[1], model[4]
+def _room(model, size):
+    """Return what refining ``size`` poles together works with."""
+    n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
     F, dF, G = _matrices(n)
     s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
-    u, y, room = np.empty(n, np.complex128), np.empty(n, np.complex128), np.empty(n, np.complex128)
-    pivot, place = np.empty(n, np.int64), np.empty(w2.size, np.int64)
-    done = np.zeros(values.size, np.bool_)
-    for m in range(values.size):
-        laws, a, b = rows[which[m]], rayleigh[which[m], 0], rayleigh[which[m], 1]
-        x, s = vectors[m], values[m]
-        _normalise(x)
-        # the start's shape knows its pole better than its value does
+    pivot, place = np.empty(n, np.int64), np.empty(n_retained, np.int64)
+    U, W = np.empty((size, n), np.complex128), np.empty((size, n), np.complex128)
+    return F, dF, G, s0, s1, pivot, place, U, W, np.empty(n, np.complex128)
+
+
+@compiled
+def _refine_one(model, laws, a, b, s, x, tolerance, room):
+    """Refine one start by inverse iteration with the Rayleigh functional (cubic: F is symmetric); x in place.
+
+    Return the pole and whether it came to rest.
+    """
+    F, dF, G, s0, s1, pivot, place, U, W, z = room
+    w2, u, y = model[4], U[0], W[0]
+    _normalise(x)
+    # the start's shape knows its pole better than its value does
+    fill(model, laws, a, b, s, F, dF, s0, s1)
+    step = times(F, x, y) / times(dF, x, y)
+    if np.isfinite(abs(step)):
+        s -= _bounded(step, s)
+    for _ in range(_MAX_STEPS):
         fill(model, laws, a, b, s, F, dF, s0, s1)
-        step = times(F, x, y) / times(dF, x, y)
-        if np.isfinite(abs(step)):
-            s -= _bounded(step, s)
-        for _ in range(_MAX_STEPS):
-            fill(model, laws, a, b, s, F, dF, s0, s1)
-            times(dF, x, y)
+        times(dF, x, y)
+        left, _ = eliminate(F, w2, place, G)
+        if factor(G, left, pivot) == 0.0:
+            return s, True
+        u[:] = y
+        solve_eliminated(F, place, G, left, pivot, u, z)
+        top = _product(u, y)
+        step = top / times(dF, u, y)
+        _normalise(u)
+        x[:] = u
+        if not np.isfinite(abs(step)):
+            return s, False
+        step = _bounded(step, s)
+        s -= step
+        if abs(step) <= tolerance * abs(s):
+            return s, True
+    return s, False
+
+
+@compiled
+def _orthonormalise(U, W):
+    """Make the rows of U orthonormal, the rows of W following."""
+    for j in range(U.shape[0]):
+        for _ in range(2):  # twice is enough: nearly parallel rows lose their digits once
+            for i in range(j):
+                c = 0.0j
+                for k in range(U.shape[1]):
+                    c += np.conj(U[i, k]) * U[j, k]
+                U[j] -= c * U[i]
+                W[j] -= c * W[i]
+        size = 0.0
+        for k in range(U.shape[1]):
+            size += U[j, k].real ** 2 + U[j, k].imag ** 2
+        U[j] *= 1.0 / np.sqrt(size)
+        W[j] *= 1.0 / np.sqrt(size)
+
+
+@compiled
+def _ritz(dF, U, W, y, s, values, vectors):
+    """Fill the Rayleigh–Ritz values and vectors about s in the span of U (W is F U); return their step."""
+    m = values.size
+    A, B = np.empty((m, m), np.complex128), np.empty((m, m), np.complex128)
+    _orthonormalise(U, W)
+    for j in range(m):
+        times(dF, U[j], y)
+        for i in range(m):
+            A[i, j] = 0.0j
+            B[i, j] = 0.0j
+            for k in range(y.size):
+                A[i, j] -= U[i, k] * W[j, k]
+                B[i, j] += U[i, k] * y[k]
+    if not (np.isfinite(A).all() and np.isfinite(B).all()) or abs(np.linalg.det(B)) == 0.0:
+        return complex(np.nan, 0.0)
+    delta, Y = np.linalg.eig(np.linalg.solve(B, A))
+    step = _bounded(delta.mean(), s)
+    spread = np.abs(delta - delta.mean()).max()
+    if spread > 0.3 * abs(s):
+        delta *= 0.3 * abs(s) / spread
+    vectors[:] = U
+    if spread > _EQUAL * abs(s):
+        # vectors of equal values would be rounding's, and might be parallel
+        vectors[:] = 0.0
+        for j in range(m):
+            for i in range(m):
+                vectors[j] += Y[i, j] * U[i]
+            _normalise(vectors[j])
+    values[:] = s + step + (delta - delta.mean())
+    return step
+
+
+@compiled
+def _refine_together(model, laws, a, b, values, vectors, tolerance, room):
+    """Refine nearly equal poles by block inverse iteration about their mean; return whether it came to rest.
+
+    What is left is the square of their distance from each other.
+    """
+    F, dF, G, s0, s1, pivot, place, every_U, every_W, z = room
+    m, w2 = values.size, model[4]
+    U, W, y = every_U[:m], every_W[:m], np.empty_like(z)
+    for round_ in range(_MAX_STEPS):
+        s = values.mean()
+        fill(model, laws, a, b, s, F, dF, s0, s1)
+        if round_ == 0:
+            # as with one pole: the starts' shapes know the poles better than their values do
+            for j in range(m):
+                U[j] = vectors[j]
+                times(F, U[j], W[j])
+        else:
+            for j in range(m):
+                times(dF, vectors[j], W[j])
             left, _ = eliminate(F, w2, place, G)
             if factor(G, left, pivot) == 0.0:
-                done[m] = True
-                break
-            u[:] = y
-            solve_eliminated(F, place, G, left, pivot, u, room)
-            top = 0.0j
-            for i in range(n):
-                top += u[i] * y[i]
-            step = top / times(dF, u, y)
-            _normalise(u)
-            x[:] = u
-            if not np.isfinite(abs(step)):
-                break
-            step = _bounded(step, s)
-            s -= step
-            if abs(step) <= tolerance * abs(s):
-                done[m] = True
-                break
-        values[m] = s
+                return True
+            for j in range(m):
+                U[j] = W[j]
+                solve_eliminated(F, place, G, left, pivot, U[j], z)
+        step = _ritz(dF, U, W, y, s, values, vectors)
+        if not np.isfinite(abs(step)):
+            return False
+        if round_ > 0 and abs(step) <= tolerance * abs(s):
+            return True
+    return False
+
+
+@compiled
+def _next_cluster(values, start, stop, near):
+    """Return where the poles that follow ``start``, each within ``near`` (relative) of the last, end."""
+    end = start + 1
+    while end < stop and abs(values[end] - values[end - 1]) <= near * abs(values[end]):
+        end += 1
+    return end
+
+
+@compiled
+def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
+    """Refine poles of one cluster: first together, then those that stand clear of the others alone.
+
+    Values and vectors end in the order of |λ|, not in that of the starts.
+    """
+    m = values.size
+    if m == 1:
+        values[0], done = _refine_one(model, laws, a, b, values[0], vectors[0], tolerance, room)
+        return done
+    if not _refine_together(model, laws, a, b, values, vectors, _COARSE, room):
+        return False
+    order = np.argsort(np.abs(values))
+    values[:] = values[order]
+    vectors[:] = vectors[order]
+    i = 0
+    while i < m:
+        j = _next_cluster(values, i, m, _INSEPARABLE)
+        if j == i + 1:
+            values[i], done = _refine_one(model, laws, a, b, values[i], vectors[i], tolerance, room)
+        else:
+            done = _refine_together(model, laws, a, b, values[i:j], vectors[i:j], tolerance, room)
+        if not done:
+            return False
+        i = j
+    return True
+
+
+@compiled
+def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
+    """Refine starts of every set in place; those of one family that are near each other go together.
+
+    ``family`` (n_modes,) ascends; a mode without a start is NaN. A family ends in the order of |λ|.
+    Returns (n_sets, n_modes) booleans: converged.
+    """
+    n_sets, n_modes = values.shape
+    room = _room(model, n_modes)
+    done = np.zeros((n_sets, n_modes), np.bool_)
+    own = np.empty(n_modes, np.complex128)
+    x = np.empty((n_modes, vectors.shape[2]), np.complex128)
+    for k in range(n_sets):
+        first = 0
+        while first < n_modes:
+            last = first + 1
+            while last < n_modes and family[last] == family[first]:
+                last += 1
+            known = first + np.flatnonzero(np.isfinite(np.abs(values[k, first:last])))
+            known = known[np.argsort(np.abs(values[k][known]))]
+            for i in range(known.size):
+                own[i] = values[k, known[i]]
+                x[i] = vectors[k, known[i]]
+            i = 0
+            while i < known.size:
+                j = _next_cluster(own, i, known.size, near)
+                ok = _refine_cluster(
+                    model, rows[k], rayleigh[k, 0], rayleigh[k, 1], own[i:j], x[i:j], tolerance, room
+                )
+                done[k][known[i:j]] = ok
+                i = j
+            for i in range(known.size):
+                values[k, known[i]] = own[i]
+                vectors[k, known[i]] = x[i]
+            first = last
     return done
+
+
+@compiled
+def _weighed(M, x, y):
+    """Fill y with M x; M is real."""
+    for i in range(x.size):
+        total = 0.0j
+        for j in range(x.size):
+            total += M[i, j] * x[j]
+        y[i] = total
+
+
+@compiled
+def _likeness(x, y):
+    """Return xᴴy."""
+    total = 0.0j
+    for i in range(x.size):
+        total += np.conj(x[i]) * y[i]
+    return total
+
+
+@compiled
+def _members(family, values, first, own):
+    """Fill ``own`` with the known modes of the family that begins at ``first``.
+
+    Return how many there are and where the next family begins.
+    """
+    last, m = first, 0
+    while last < values.size and family[last] == family[first]:
+        if np.isfinite(values[last].real):
+            own[m] = last
+            m += 1
+        last += 1
+    return m, last
+
+
+@compiled
+def _among(M, starts, shapes, own, m, heavy, room, pivot):
+    """Return the least share, by mass, of any of m modes that lies in the space of their starts."""
+    gram, part, across = room[: m * m].reshape(m, m), room[m * m : m * (m + 1)], room[m * (m + 1) :]
+    for i in range(m):
+        _weighed(M, starts[own[i]], heavy[i])
+        for j in range(m):
+            gram[j, i] = _likeness(starts[own[j]], heavy[i])
+    factor(gram, m, pivot)
+    least = 1.0
+    for j in range(m):
+        x = shapes[own[j]]
+        for i in range(m):
+            part[i] = np.conj(_likeness(x, heavy[i]))
+            across[i] = part[i]
+        solve(gram, m, pivot, across)
+        share = 0.0
+        for i in range(m):
+            share += (np.conj(part[i]) * across[i]).real
+        _weighed(M, x, heavy[m])
+        least = min(least, share / _likeness(x, heavy[m]).real)
+    return least
+
+
+@compiled
+def recognised(M, family, starts, values, shapes, least, same):
+    """Tell in which sets every mode lies, by mass, in the space of its family's starts, and none is twice.
+
+    ``least`` is the share of it that must; poles nearer than ``same`` (relative) with parallel shapes are one
+    mode. Modes that are NaN are left out.
+    """
+    n_sets, n_modes, n = shapes.shape
+    good = np.ones(n_sets, np.bool_)
+    heavy = np.empty((n_modes + 1, n), np.complex128)
+    room, pivot = np.empty(n_modes * (n_modes + 2), np.complex128), np.empty(n_modes, np.int64)
+    own = np.empty(n_modes, np.int64)
+    for k in range(n_sets):
+        first = 0
+        while first < n_modes:
+            m, last = _members(family, values[k], first, own)
+            if m:
+                good[k] &= _among(M, starts[k], shapes[k], own, m, heavy, room, pivot) >= least
+            first = last
+        for i in range(n_modes):
+            for j in range(i):
+                if abs(values[k, i] - values[k, j]) <= same * abs(values[k, i]):
+                    good[k] &= abs(_likeness(shapes[k, i], shapes[k, j])) < _PARALLEL
+    return good
+
+
+@compiled
+def _exchange(values, shapes, a, b):
+    """Let two modes take each other's place."""
+    values[a], values[b] = values[b], values[a]
+    for i in range(shapes.shape[1]):
+        shapes[a, i], shapes[b, i] = shapes[b, i], shapes[a, i]
+
+
+@compiled
+def _sort(own, m, values, shapes):
+    """Put m modes in the order of |λ|."""
+    for i in range(1, m):
+        for j in range(i, 0, -1):
+            if abs(values[own[j]]) < abs(values[own[j - 1]]):
+                _exchange(values, shapes, own[j], own[j - 1])
+
+
+@compiled
+def _name(like, own, m, values, shapes, likeness):
+    """Put each of m modes of a family in the place it resembles most.
+
+    From the order of |λ| on, two modes exchange places until no exchange makes the sum of the likenesses
+    larger: what comes out depends on the modes alone, not on how they were found.
+    """
+    _sort(own, m, values, shapes)
+    for j in range(m):
+        for i in range(m):
+            # shapes of one family have about the same modal mass: their unit norm does for weighing
+            likeness[i, j] = abs(_product(shapes[own[j]], like[own[i]])) ** 2
+    better = True
+    while better:
+        better = False
+        for i in range(m):
+            for j in range(i):
+                now, then = likeness[i, i] + likeness[j, j], likeness[i, j] + likeness[j, i]
+                if then > _CLEARLY * now:
+                    _exchange(values, shapes, own[i], own[j])
+                    for n in range(m):
+                        likeness[n, i], likeness[n, j] = likeness[n, j], likeness[n, i]
+                    better = True
+
+
+@compiled
+def _turn(like, own, m, values, shapes):
+    """Mix m modes of a multiple pole until each has a part of its own pinned mode and none of the others'.
+
+    Modes that hardly resemble these are left as they are.
+    """
+    n = shapes.shape[1]
+    part, pivot = np.empty((m, m), np.complex128), np.empty(m, np.int64)
+    column, mixed = np.empty(m, np.complex128), np.zeros((m, n), np.complex128)
+    largest, mean = 0.0, 0.0j
+    for j in range(m):
+        mean += values[own[j]] / m
+        for i in range(m):
+            part[i, j] = _product(shapes[own[j]], like[own[i]])
+            largest = max(largest, abs(part[i, j]))
+    if factor(part, m, pivot) == 0.0:
+        return
+    for i in range(m):
+        column[:] = 0.0
+        column[i] = largest
+        solve(part, m, pivot, column)
+        if not np.abs(column).max() < _SKEWED:
+            return
+        for j in range(m):
+            mixed[i] += column[j] * shapes[own[j]]
+    for i in range(m):
+        _normalise(mixed[i])
+        shapes[own[i]] = mixed[i]
+        values[own[i]] = mean
+
+
+@compiled
+def arrange(like, family, values, shapes, same):
+    """Name the modes of every family in every set and turn those of multiple poles, in place.
+
+    ``like`` (n_modes, n) is φᵀM of the pinned modes that name them. Returns (n_sets, n_modes) numbers, the
+    same for the modes of one multiple pole: those nearer than ``same`` (relative).
+    """
+    n_sets, n_modes = values.shape
+    number = np.empty((n_sets, n_modes), np.int64)
+    own, equal = np.empty(n_modes, np.int64), np.empty(n_modes, np.int64)
+    likeness = np.empty((n_modes, n_modes))
+    for k in range(n_sets):
+        for i in range(n_modes):
+            number[k, i] = k * n_modes + i
+        first = 0
+        while first < n_modes:
+            m, last = _members(family, values[k], first, own)
+            if m > 1:
+                _name(like, own, m, values[k], shapes[k], likeness)
+            for i in range(m):
+                n_equal = 0
+                for j in range(i, m):
+                    near = abs(values[k, own[j]] - values[k, own[i]]) <= same * abs(values[k, own[i]])
+                    if near and number[k, own[j]] == k * n_modes + own[j]:
+                        number[k, own[j]] = number[k, own[i]]
+                        equal[n_equal] = own[j]
+                        n_equal += 1
+                if n_equal > 1:
+                    _turn(like, equal, n_equal, values[k], shapes[k])
+            first = last
+    return number
 
 
 @compiled
@@ -373,41 +744,66 @@ def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
 
 
 @compiled
-def slopes(model, rows, rayleigh, which, values, vectors, jacobian, rayleigh_jacobian, dvalues, dvectors):
+def _border(F, Y, X, bordered, pivot):
+    """Factor [F, F′X; Xᴴ, 0] with Y = F′X, rows of Y and X being modes of one multiple pole."""
+    m, n = X.shape
+    bordered[n : n + m, n : n + m] = 0.0
+    bordered[:n, :n] = F
+    for j in range(m):
+        bordered[:n, n + j] = Y[j]
+        bordered[n + j, :n] = np.conj(X[j])
+    factor(bordered, n + m, pivot)
+
+
+@compiled
+def slopes(
+    model, rows, rayleigh, which, multiple, values, vectors, jacobian, rayleigh_jacobian, dvalues, dvectors
+):
     """Fill dλ/dz and dx/dz (without a component along x) for every mode and parameter z.
 
     ``jacobian`` (n_sets, n_groups, width, n_z) and ``rayleigh_jacobian`` (n_sets, 2, n_z) say how the law
-    rows and (a, b) depend on z. An empty ``dvectors`` asks for the eigenvalues alone.
+    rows and (a, b) depend on z. An empty ``dvectors`` asks for the eigenvalues alone. Neighbours in the list
+    with the same number in ``multiple`` (n_values,) are modes of one multiple pole: the diagonal of its
+    derivative (Xᵀ F′X)⁻¹ Xᵀ(−∂F/∂z)X holds their slopes, whose sum is that of the poles whatever the vectors,
+    and dx has no component along any of them.
     """
-    n = vectors.shape[1]
+    n_values, n = vectors.shape
     n_pairs = model[0].shape[1]
     n_groups, width, n_z = jacobian.shape[1], jacobian.shape[2], jacobian.shape[3]
     F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
     s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
     law = np.empty(width, np.complex128)
-    forces, loads = np.empty((n_groups + 2, n), np.complex128), np.zeros((n_z, n + 1), np.complex128)
-    bordered, pivot = np.zeros((n + 1, n + 1), np.complex128), np.empty(n + 1, np.int64)
-    y = np.empty(n, np.complex128)
-    for m in range(values.size):
-        k, s, x = which[m], values[m], vectors[m]
+    forces, loads = np.empty((n_groups + 2, n), np.complex128), np.empty((n_z, n), np.complex128)
+    first = 0
+    while first < n_values:
+        last = first + 1
+        while last < n_values and multiple[last] == multiple[first]:
+            last += 1
+        k, m, s, X = which[first], last - first, values[first:last].mean(), vectors[first:last]
         mu = fill(model, rows[k], rayleigh[k, 0], rayleigh[k, 1], s, F, dF, s0, s1)
-        _forces(model, s, mu, s0, s1, x, forces)
-        _loads(rows[k], s, jacobian[k], rayleigh_jacobian[k], forces, law, loads)
-        scale = times(dF, x, y)
-        for z in range(n_z):
-            total = 0.0j
-            for i in range(n):
-                total += x[i] * loads[z, i]
-            dvalues[m, z] = total / scale
-        if dvectors.size == 0:
-            continue
-        # [F, F'x; xᴴ, 0] [dx; dλ] = [−(∂F/∂z)x; 0]
-        bordered[:n, :n], bordered[:n, n], bordered[n, :n] = F, y, np.conj(x)
-        bordered[n, n] = 0.0
-        factor(bordered, n + 1, pivot)
-        for z in range(n_z):
-            solve(bordered, n + 1, pivot, loads[z])
-            dvectors[m, z] = loads[z, :n]
+        Y, B, g = np.empty((m, n), np.complex128), np.empty((m, m), np.complex128), np.empty(m, np.complex128)
+        small, pivot = np.empty(m, np.int64), np.empty(n + m, np.int64)
+        bordered, full = np.empty((n + m, n + m), np.complex128), np.zeros(n + m, np.complex128)
+        for j in range(m):
+            times(dF, X[j], Y[j])
+            for i in range(m):
+                B[i, j] = _product(X[i], Y[j])
+        factor(B, m, small)
+        if dvectors.size:
+            _border(F, Y, X, bordered, pivot)
+        for j in range(m):
+            _forces(model, s, mu, s0, s1, X[j], forces)
+            _loads(rows[k], s, jacobian[k], rayleigh_jacobian[k], forces, law, loads)
+            for z in range(n_z):
+                for i in range(m):
+                    g[i] = _product(X[i], loads[z])
+                solve(B, m, small, g)
+                dvalues[first + j, z] = g[j]
+                if dvectors.size:
+                    full[:n], full[n:] = loads[z], 0.0
+                    solve(bordered, n + m, pivot, full)
+                    dvectors[first + j, z] = full[:n]
+        first = last
 
 
 @compiled

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
+from jackettwin.response.multiple import aligned
 from jackettwin.response.poles import REAL, poles_below
 from jackettwin.response.system import System
 from jackettwin.structure.eigen import AT_REST, below_zero, lowest_modes
@@ -19,7 +20,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class UndampedModes:
-    """Real modes of (K + D(0)) φ = ω² M φ.
+    """Real modes of (K + D(0)) φ = ω² M φ; those of one frequency are turned to the global axes.
 
     Attributes
     ----------
@@ -43,7 +44,7 @@ class UndampedModes:
 
 @dataclass(frozen=True)
 class DampedModes:
-    """Complex modes F(λ)x = 0.
+    """Complex modes F(λ)x = 0; those of one pole are turned to the global axes.
 
     Attributes
     ----------
@@ -79,7 +80,7 @@ def undamped_modes(system: System, number: int) -> UndampedModes:
     """
     pencil = system.pencil
     w, x = lowest_modes(pencil.static_stiffness(), pencil.M, number, shift=below_zero(pencil.K, pencil.M))
-    return UndampedModes(w, system.expand(x))
+    return UndampedModes(w, aligned(system.assembly, w, system.expand(x)))
 
 
 def damped_modes(system: System, *, below_hz: float) -> DampedModes:
@@ -98,9 +99,10 @@ def damped_modes(system: System, *, below_hz: float) -> DampedModes:
         raise InputError("must be positive", field="below_hz", value=below_hz, allowed="> 0")
     pairs = poles_below(system.pencil, 2.0 * pi * below_hz)
     oscillating = [pair for pair in pairs if pair[0].imag > REAL * abs(pair[0])]
+    values = np.array([value for value, _ in oscillating], dtype=np.complex128)
     shapes = np.array([x for _, x in oscillating], dtype=np.complex128).reshape(-1, system.pencil.n).T
     return DampedModes(
-        np.array([value for value, _ in oscillating], dtype=np.complex128),
-        system.expand(shapes),
+        values,
+        aligned(system.assembly, values, system.expand(shapes)),
         np.array([value.real for value, _ in pairs if abs(value.imag) <= REAL * abs(value)]),
     )

@@ -3,31 +3,35 @@
 This is the one function behind updating, sampling, root locus and cost surfaces. A cold start finds every
 mode and certifies that it has (:mod:`jackettwin.response.certified`). A warm start refines the modes of a
 neighbouring set and recognises them by shape; whatever is in doubt starts cold.
+
+Modes that are close on pinned supports are a family, such as the bending pair of a symmetric structure. A
+family is followed whole, recognised by the subspace of its shapes, and its members take the names of the
+pinned modes they resemble most. Those of one multiple pole, of which any mixture is a mode, are turned until
+each resembles one pinned mode alone; the pinned ones are turned to the global axes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from jackettwin.response.certified import REAL, SAME, STEP, AllModes, all_modes, kernels
+from jackettwin.response.certified import AllModes, all_modes, kernels
 from jackettwin.response.condensed import Condensed, check_rayleigh
+from jackettwin.response.families import families_of
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.soil.coefficients import static_rows
 from jackettwin.structure.damping import Rayleigh
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.intp]
 
 _BYSTANDERS = 2
 """Modes beyond the last one wanted that may claim a shape, too."""
-_KIN = 0.8
-"""Mass-weighted MAC to the neighbour's mode by which a warm start is recognised."""
 
 
 class Status(IntEnum):
@@ -86,18 +90,55 @@ class NumberedModes:
 
     Attributes
     ----------
+    modes : mode numbers, those asked for
     poles : (n_sets, n_modes) λ [rad/s]
     shapes : (n_sets, n_modes, n) condensed coordinates, unit norm
     slopes : (n_sets, n_modes, n_z) dλ/dz
-    shape_slopes : (n_sets, n_modes, n_z, n) dx/dz without a component along x; empty unless asked for
+    shape_slopes : (n_sets, n_modes, n_z, n) dx/dz without a component along x, nor along other modes of the
+        same pole; empty unless asked for
     status : (n_sets,) of :class:`Status`
+    beside : mode numbers of their families' other members
+    beside_poles : (n_sets, n_beside)
+    beside_shapes : (n_sets, n_beside, n)
     """
 
+    modes: tuple[int, ...]
     poles: ComplexArray
     shapes: ComplexArray
     slopes: ComplexArray
     shape_slopes: ComplexArray
     status: IntArray
+    beside: tuple[int, ...]
+    beside_poles: ComplexArray
+    beside_shapes: ComplexArray
+
+    def some(self, which: npt.NDArray[Any]) -> NumberedModes:
+        """Return some of the sets, or the same ones in another order."""
+        return self._with({name: getattr(self, name)[which] for name in self._filled()})
+
+    def joined(self, other: NumberedModes) -> NumberedModes:
+        """Return these sets and then those of another result for the same modes."""
+        names = self._filled()
+        return self._with({n: np.concatenate([getattr(self, n), getattr(other, n)]) for n in names})
+
+    def _with(self, arrays: dict[str, Any]) -> NumberedModes:
+        return replace(self, **arrays)
+
+    def starts(self, modes: tuple[int, ...]) -> tuple[ComplexArray, ComplexArray]:
+        """Return the poles and shapes of modes by number; NaN where a mode is not among these."""
+        poles = np.concatenate([self.poles, self.beside_poles], axis=1)
+        shapes = np.concatenate([self.shapes, self.beside_shapes], axis=1)
+        place = {mode: i for i, mode in enumerate((*self.modes, *self.beside))}
+        which = np.array([place.get(mode, -1) for mode in modes])
+        unknown = which < 0
+        poles, shapes = poles[:, which], shapes[:, which]
+        poles[:, unknown], shapes[:, unknown] = np.nan, np.nan
+        return poles, shapes
+
+    def _filled(self) -> list[str]:
+        """Return the names of the arrays that have an entry for each set."""
+        names = ["poles", "shapes", "slopes", "status", "beside_poles", "beside_shapes"]
+        return [*names, "shape_slopes"] if len(self.shape_slopes) == len(self.poles) else names
 
 
 def numbered_poles(
@@ -112,36 +153,52 @@ def numbered_poles(
 
     .. math:: dλ/dz = -\frac{x^T (∂F/∂z) x}{x^T F'(λ) x}
 
-    (Adhikari 2001; F is symmetric), shapes from the same system bordered by F′x.
+    (Adhikari 2001; F is symmetric), shapes from the same system bordered by F′x; a multiple pole's from the
+    border of all its modes.
 
     Parameters
     ----------
     modes : mode numbers, counted from 1 on pinned supports
     near : NumberedModes, optional
-        A result for the same ``modes``, of one set or as many as there are points, to start from.
+        A result for these modes, of one set or as many as there are points, to start from.
     shape_slopes : bool
         Return dx/dz too.
     """
     check_rayleigh(points.rayleigh, model.radius)
-    n_sets, n_modes = len(points.rows), len(modes)
-    poles = np.full((n_sets, n_modes), np.nan, dtype=np.complex128)
-    shapes = np.full((n_sets, n_modes, model.n), np.nan, dtype=np.complex128)
+    families = families_of(model, modes)
+    followed = families.modes
+    n_sets, n_followed = len(points.rows), len(followed)
+    poles = np.full((n_sets, n_followed), np.nan, dtype=np.complex128)
+    shapes = np.full((n_sets, n_followed, model.n), np.nan, dtype=np.complex128)
     status = np.full(n_sets, int(Status.UNCERTIFIED), dtype=np.intp)
     cold = np.ones(n_sets, dtype=np.bool_)
     if near is not None:
-        cold = ~_continue(model, points, near, poles, shapes)
+        starts = near.starts(followed)
+        cold = ~families.continued(model, points.rows, points.rayleigh, starts, poles, shapes)
         doubtful = np.broadcast_to(near.status == Status.UNCERTIFIED, n_sets)
         status[~cold] = np.where(doubtful, Status.UNCERTIFIED, Status.NEIGHBOUR)[~cold]
     for k in np.flatnonzero(cold):
         found = all_modes(model, points.rows[k], points.rayleigh[k])
-        successor = _successors(model, found, modes)
+        successor = _successors(model, found, followed)
         known = successor >= 0
         poles[k] = np.where(known, found.poles[successor] if found.poles.size else np.nan, np.nan)
         if known.any():
             shapes[k, known] = found.shapes[successor[known]]
         status[k] = Status.CERTIFIED if found.certified else Status.UNCERTIFIED
-    slopes, dx = _slopes(model, points, poles, shapes, shape_slopes)
-    return NumberedModes(poles, shapes, slopes, dx, status)
+    multiple = families.arrange(poles, shapes)
+    slopes, dx = _slopes(model, points, poles, shapes, multiple, shape_slopes)
+    own, beside = families.wanted, families.beside
+    return NumberedModes(
+        modes,
+        poles[:, own],
+        shapes[:, own],
+        slopes[:, own],
+        dx[:, own] if shape_slopes else dx,
+        status,
+        tuple(followed[i] for i in beside),
+        poles[:, beside],
+        shapes[:, beside],
+    )
 
 
 def _successors(model: Condensed, found: AllModes, modes: tuple[int, ...]) -> IntArray:
@@ -153,37 +210,13 @@ def _successors(model: Condensed, found: AllModes, modes: tuple[int, ...]) -> In
     return np.asarray(successor[np.array(modes) - 1])
 
 
-def _continue(
-    model: Condensed, points: Points, near: NumberedModes, poles: ComplexArray, shapes: ComplexArray
-) -> BoolArray:
-    """Fill poles and shapes continued from a neighbour; return which sets can be trusted."""
-    n_sets, n_modes = poles.shape
-    starts = np.ascontiguousarray(np.broadcast_to(near.shapes, shapes.shape))
-    values: ComplexArray = np.array(np.broadcast_to(near.poles, poles.shape)).reshape(-1)
-    vectors = starts.reshape(-1, model.n).copy()
-    which = np.repeat(np.arange(n_sets), n_modes)
-    done = (
-        kernels()
-        .refine(model.arrays(), points.rows, points.rayleigh, which, values, vectors, STEP)
-        .reshape(n_sets, n_modes)
-    )
-    found, x = values.reshape(n_sets, n_modes), vectors.reshape(shapes.shape)
-    M = model.pencil.M
-    cross = np.abs(np.einsum("kmi,kmi->km", starts.conj() @ M, x)) ** 2
-    own = np.einsum("kmi,kmi->km", starts.conj() @ M, starts).real
-    new = np.einsum("kmi,kmi->km", x.conj() @ M, x).real
-    trusted = done & (cross >= _KIN * own * new) & (found.imag > REAL * np.abs(found))
-    trusted &= np.abs(found) <= model.radius
-    good: BoolArray = trusted.all(axis=1)
-    for i in range(n_modes):
-        for j in range(i):
-            good &= np.abs(found[:, i] - found[:, j]) > SAME * np.abs(found[:, i])
-    poles[good], shapes[good] = found[good], x[good]
-    return good
-
-
 def _slopes(
-    model: Condensed, points: Points, poles: ComplexArray, shapes: ComplexArray, shape_slopes: bool
+    model: Condensed,
+    points: Points,
+    poles: ComplexArray,
+    shapes: ComplexArray,
+    multiple: IntArray,
+    shape_slopes: bool,
 ) -> tuple[ComplexArray, ComplexArray]:
     n_sets, n_modes = poles.shape
     n_z = points.jacobian.shape[3]
@@ -191,10 +224,11 @@ def _slopes(
     dx = np.full((n_sets * n_modes, n_z, model.n) if shape_slopes else (0, n_z, model.n), np.nan + 0j)
     if n_z:
         known = np.flatnonzero(~np.isnan(poles.ravel()))
+        known = known[np.argsort(multiple.ravel()[known], kind="stable")]
         some = slopes[known]
         some_dx = dx[known] if shape_slopes else dx
         kernels().slopes(
-            model.arrays(), points.rows, points.rayleigh, known // n_modes,
+            model.arrays(), points.rows, points.rayleigh, known // n_modes, multiple.ravel()[known],
             poles.ravel()[known], shapes.reshape(-1, model.n)[known],
             points.jacobian, points.rayleigh_jacobian, some, some_dx,
         )  # fmt: skip

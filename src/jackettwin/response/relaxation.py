@@ -195,10 +195,13 @@ def _refined(model: Condensed, points: Points, start: Relaxation) -> Relaxation:
     """Return the relaxations on the exact F(λ), where the condensed structure reaches them."""
     inside = np.flatnonzero(start.rate < model.radius)
     rate, shapes, slopes = start.rate.copy(), start.shapes.copy(), start.slopes.copy()
-    poles = (-start.rate[inside]).astype(np.complex128)
-    x = np.ascontiguousarray(start.shapes[inside]).astype(np.complex128)
-    arrays = model.arrays()
-    done = kernels().refine(arrays, points.rows, points.rayleigh, inside, poles, x, STEP)
+    values = (-start.rate[inside, None]).astype(np.complex128)
+    vectors = np.ascontiguousarray(start.shapes[inside, None]).astype(np.complex128)
+    arrays, alone = model.arrays(), np.zeros(1, dtype=np.intp)
+    done = kernels().refine(
+        arrays, points.rows[inside], points.rayleigh[inside], alone, values, vectors, 0.0, STEP
+    )[:, 0]
+    poles, x = values[:, 0], vectors[:, 0]
     with np.errstate(invalid="ignore", divide="ignore"):
         done &= np.abs(poles.imag) <= REAL * np.abs(poles)
         done &= np.abs(np.log(-poles.real / start.rate[inside])) < _NEAR
@@ -208,7 +211,7 @@ def _refined(model: Condensed, points: Points, start: Relaxation) -> Relaxation:
         exact = np.empty((known.size, slopes.shape[1]), np.complex128)
         no_shapes = np.empty((0, slopes.shape[1], model.n), np.complex128)
         kernels().slopes(
-            arrays, points.rows, points.rayleigh, known, poles, x,
+            arrays, points.rows, points.rayleigh, known, np.arange(known.size), poles, x,
             points.jacobian, points.rayleigh_jacobian, exact, no_shapes,
         )  # fmt: skip
         slopes[known] = -exact.real

@@ -13,6 +13,7 @@ from jackettwin.loads.morison import morison_points
 from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
 from jackettwin.loads.water import water_mass
 from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.multiple import aligned
 from jackettwin.response.own_damping import own_damping
 from jackettwin.response.reduced import Reduced, reduced
 from jackettwin.response.state import state_matrix
@@ -163,7 +164,8 @@ def true_modes(model: Model, *, below_hz: float) -> tuple[TrueMode, ...]:
     keep &= -values.real < _OVERDAMPED * np.abs(values)
     order = np.flatnonzero(keep)[np.argsort(np.abs(values[keep]))]
     shapes = model.reduced.basis @ states[: pencil.n, order]
-    labels = mode_labels(mode_kinds(model.assembly, shapes))
+    shapes = aligned(model.assembly, values[order], shapes)
+    labels = mode_labels(mode_kinds(model.assembly, shapes, np.abs(values[order]) / (2.0 * pi)))
     return tuple(
         TrueMode(
             label,

@@ -20,6 +20,7 @@ import scipy.linalg as la
 
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.labels import mode_kinds
+from jackettwin.response.multiple import aligned
 from jackettwin.response.reduced import Reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group
@@ -88,7 +89,9 @@ def first_ratios(assembly: Assembly, small: Reduced, damping: FloatArray) -> Flo
     values, states = np.linalg.eig(state_matrix(pencil))
     oscillating = np.flatnonzero(values.imag > 0.0)
     lowest = oscillating[np.argsort(np.abs(values[oscillating]))[:8]]
-    kinds = mode_kinds(assembly, small.basis @ states[: small.n, lowest])
+    poles = values[lowest]
+    shapes = aligned(assembly, poles, small.basis @ states[: small.n, lowest])
+    kinds = mode_kinds(assembly, shapes, np.abs(poles) / (2.0 * np.pi))
     found = values[lowest[list(_first_of(kinds))]]
     return np.asarray(-found.real / np.abs(found))
 

@@ -17,7 +17,6 @@ import numpy.typing as npt
 from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response.numbered import NumberedModes
 from jackettwin.updating.convergence import Convergence, convergence
 from jackettwin.updating.evidence import bridged_evidence
 from jackettwin.updating.prior import Prior
@@ -88,7 +87,7 @@ class _Swarm:
             self.z[index],
             self.log_l[index],
             self.log_p[index],
-            tuple(_pick(modes, index) for modes in self.found),
+            tuple(modes.some(index) for modes in self.found),
         )
 
     def where(self, yes: BoolArray, other: _Swarm) -> _Swarm:
@@ -101,7 +100,7 @@ class _Swarm:
             np.concatenate([self.z, other.z]),
             np.concatenate([self.log_l, other.log_l]),
             np.concatenate([self.log_p, other.log_p]),
-            tuple(_both(*pair) for pair in zip(self.found, other.found, strict=True)),
+            tuple(a.joined(b) for a, b in zip(self.found, other.found, strict=True)),
         )
 
 
@@ -268,19 +267,3 @@ def _proposal(z: FloatArray, others: FloatArray, rng: np.random.Generator, *, wi
     gamma = 1.0 if wide else 2.38 / np.sqrt(2.0 * d) * rng.uniform(0.2, 1.0)
     jitter = 0.02 * others.std(axis=0) * rng.standard_normal(z.shape)
     return np.asarray(z + gamma * (others[a] - others[b]) + jitter)
-
-
-def _both(one: NumberedModes, other: NumberedModes) -> NumberedModes:
-    return NumberedModes(
-        np.concatenate([one.poles, other.poles]),
-        np.concatenate([one.shapes, other.shapes]),
-        np.concatenate([one.slopes, other.slopes]),
-        one.shape_slopes,
-        np.concatenate([one.status, other.status]),
-    )
-
-
-def _pick(found: NumberedModes, index: IntArray) -> NumberedModes:
-    return NumberedModes(
-        found.poles[index], found.shapes[index], found.slopes[index], found.shape_slopes, found.status[index]
-    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -210,7 +210,7 @@ class Problem:
             modes = state.residuals.modes
             start = None if near is None else near[i]
             if start is None and found and set(modes) <= set(self.states[0].residuals.modes):
-                start = _some(found[0], [self.states[0].residuals.modes.index(m) for m in modes])
+                start = found[0]
             vectors = self.vectors(z, state)
             found.append(
                 self.model.predict_many(
@@ -232,8 +232,7 @@ class Problem:
         """Return which points have every mode and relaxation, (n,), and the residuals of these."""
         relaxed = self.relaxed(z, state)
         known = _complete(modes, relaxed)
-        some = replace(modes, poles=modes.poles[known], shapes=modes.shapes[known])
-        return known, state.values(z[known], some, tuple(found.some(known) for found in relaxed))
+        return known, state.values(z[known], modes.some(known), tuple(found.some(known) for found in relaxed))
 
 
 def _complete(modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> BoolArray:
@@ -242,13 +241,3 @@ def _complete(modes: NumberedModes, relaxed: tuple[Relaxation, ...]) -> BoolArra
     for found in relaxed:
         complete &= ~np.isnan(found.rate)
     return np.asarray(complete)
-
-
-def _some(found: NumberedModes, which: list[int]) -> NumberedModes:
-    """Return some of the modes."""
-    return replace(
-        found,
-        poles=found.poles[:, which],
-        shapes=found.shapes[:, which],
-        slopes=found.slopes[:, which],
-    )

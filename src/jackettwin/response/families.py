@@ -1,0 +1,109 @@
+"""Families of modes that are close on pinned supports, followed together from one set to the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.response.certified import REAL, SAME, STEP, kernels
+from jackettwin.response.condensed import Condensed
+from jackettwin.response.mode_tracking import near_degenerate
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+
+_KIN = 0.8
+"""Share of a mode, by mass, in the space of its family at the neighbour, by which a warm start is known."""
+_TOGETHER = 0.03
+"""Poles of a family nearer than this (relative) are refined together: apart, two might end in one."""
+
+
+@dataclass(frozen=True)
+class Families:
+    """The modes that are followed: those asked for, and the other members of their families.
+
+    Attributes
+    ----------
+    modes : mode numbers, ascending
+    wanted : (n_wanted,) places of those asked for, in their order
+    beside : (n_beside,) places of the others
+    of : (n_modes,) the family of each
+    like : (n_modes, n) φᵀM of the pinned modes; zero beyond the last
+    """
+
+    modes: tuple[int, ...]
+    wanted: IntArray
+    beside: IntArray
+    of: IntArray
+    like: FloatArray
+
+    def continued(
+        self,
+        model: Condensed,
+        rows: FloatArray,
+        rayleigh: FloatArray,
+        starts: tuple[ComplexArray, ComplexArray],
+        poles: ComplexArray,
+        shapes: ComplexArray,
+    ) -> BoolArray:
+        """Fill poles and shapes of the sets that a neighbour's lead to; return which sets these are.
+
+        Parameters
+        ----------
+        starts : (n_sets or 1, n_modes) poles and (…, n) shapes of the neighbour
+        """
+        # one memory layout: another would be compiled anew
+        values: ComplexArray = np.array(np.broadcast_to(starts[0], poles.shape), order="C")
+        first = np.ascontiguousarray(np.broadcast_to(starts[1], shapes.shape))
+        x = first.copy()
+        done = kernels().refine(model.arrays(), rows, rayleigh, self.of, values, x, _TOGETHER, STEP)
+        started = ~np.isnan(starts[0])
+        sound = done & (values.imag > REAL * np.abs(values)) & (np.abs(values) <= model.radius)
+        good: BoolArray = (sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1)
+        good &= kernels().recognised(model.pencil.M, self.of, first, values, x, _KIN, SAME)
+        poles[good], shapes[good] = values[good], x[good]
+        return good
+
+    def arrange(self, poles: ComplexArray, shapes: ComplexArray) -> IntArray:
+        """Name the members of every family and turn the modes of multiple poles to the pinned ones, in place.
+
+        Returns
+        -------
+        (n_sets, n_modes) numbers, the same for the modes of one multiple pole
+        """
+        found: IntArray = kernels().arrange(self.like, self.of, poles, shapes, SAME)
+        return found
+
+
+def families_of(model: Condensed, modes: tuple[int, ...]) -> Families:
+    """Return the families of mode numbers, counted from 1 on pinned supports."""
+    known: dict[tuple[int, ...], Families] = model.remembered
+    if modes not in known:
+        known[modes] = _families(model, modes)
+    return known[modes]
+
+
+def _families(model: Condensed, modes: tuple[int, ...]) -> Families:
+    omega, phi = model.pinned.omega, model.pinned.shapes
+    asked, followed, of = set(modes), [], []
+    groups = [[int(i) + 1 for i in group] for group in near_degenerate(omega)]
+    groups += [[mode] for mode in sorted(asked) if mode > omega.size]
+    for number, group in enumerate(groups):
+        if asked & set(group):
+            followed += group
+            of += [number] * len(group)
+    like = np.zeros((len(followed), model.n))
+    known = [i for i, mode in enumerate(followed) if mode <= omega.size]
+    like[known] = phi[:, [followed[i] - 1 for i in known]].T @ model.pencil.M
+    place = {mode: i for i, mode in enumerate(followed)}
+    return Families(
+        modes=tuple(followed),
+        wanted=np.array([place[mode] for mode in modes], dtype=np.intp),
+        beside=np.array([i for i, mode in enumerate(followed) if mode not in asked], dtype=np.intp),
+        of=np.array(of, dtype=np.intp),
+        like=like,
+    )

@@ -1,0 +1,93 @@
+"""Modes of equal frequency: a symmetric structure has them in pairs, and any mixture of a pair is one, too.
+
+Which mixtures a solver returns is rounding's choice. Here they are turned to the global axes, so that the
+first of a pair is the one along x, fore-aft, whatever the mesh, the weight or the solver.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+
+from jackettwin.structure.assemble import Assembly
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+INSEPARABLE = 1e-5
+"""Frequencies nearer than this (relative) are one: deviations of coordinates written to the millimetre, and
+rounding, part them by less; no measurement parts them."""
+_ELSEWHERE = 1e-6
+"""Weight of the other nodes' motion beside the axis': where the axis rests, it decides."""
+
+
+def axis_levels(assembly: Assembly) -> FloatArray:
+    """Return (n_levels, n_nodes): the mean over the nodes of the structure's axis at each height.
+
+    The axis is the nodes above and below the highest one; without a tower, the mean of the interface nodes.
+    """
+    mesh, structure = assembly.mesh, assembly.structure
+    x, y, _ = structure.nodes[structure.top_node]
+    size = max(1.0, float(np.ptp(mesh.coordinates[:, 2])))
+    every: FloatArray = np.eye(len(mesh.coordinates))
+    axis = np.flatnonzero((np.abs(mesh.coordinates[:, :2] - [x, y]) < 1e-6 * size).all(axis=1))
+    if axis.size > 1 or not structure.interface_nodes:
+        return every[axis]
+    interface = [mesh.node_names.index(name) for name in structure.interface_nodes]
+    mean: FloatArray = every[interface].mean(axis=0, keepdims=True)
+    return mean
+
+
+def inseparable(values: npt.NDArray[Any], closer_than: float = INSEPARABLE) -> list[IntArray]:
+    """Return groups, of two or more, of neighbours in the list that are nearer than a share of their size."""
+    if values.size < 2:
+        return []
+    cuts = np.flatnonzero(~(np.abs(np.diff(values)) <= closer_than * np.abs(values[1:]))) + 1
+    return [group for group in np.split(np.arange(values.size), cuts) if group.size > 1]
+
+
+def aligned(
+    assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any], *, among: IntArray | None = None
+) -> npt.NDArray[Any]:
+    """Return the shapes with those of inseparable values turned to the axes: first what moves most along x.
+
+    Parameters
+    ----------
+    values : (n_modes,) natural frequencies or poles, sorted
+    shapes : (assembly.n_dof, n_modes)
+    among : (n,), optional
+        Indices of the modes that matter, in the order of their values; default: all.
+    """
+    chosen = np.arange(values.size) if among is None else among
+    groups = [chosen[group] for group in inseparable(values[chosen])]
+    if not groups:
+        return shapes
+    turned, levels = shapes.copy(), axis_levels(assembly)
+    for group in groups:
+        x = shapes[:, group]
+        turned[:, group] = x @ turning(assembly, levels, x, x.conj().T @ (assembly.mass @ x))
+    return turned
+
+
+def turning(
+    assembly: Assembly, levels: FloatArray, shapes: npt.NDArray[Any], gram: npt.NDArray[Any]
+) -> npt.NDArray[Any]:
+    """Return the mixtures (n_modes, n_modes) of shapes that stand apart along x and y, those along x first.
+
+    They are the extremes of the energy of motion along x less that along y, at equal kinetic energy, and keep
+    the shapes' mean norm.
+
+    Parameters
+    ----------
+    shapes : (assembly.n_dof, n_modes)
+    gram : (n_modes, n_modes) their products xᴴMx
+    """
+    u = (assembly.expand @ shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
+    motion = np.concatenate([np.tensordot(levels, u[:, :2], 1), np.sqrt(_ELSEWHERE) * u[:, :2]])
+    along_x, along_y = (part.conj().T @ part for part in (motion[:, 0], motion[:, 1]))
+    difference, gram = (0.5 * (part + part.conj().T) for part in (along_x - along_y, gram))
+    _, mixtures = la.eigh(difference, gram)
+    return np.asarray(mixtures[:, ::-1] * np.sqrt(np.trace(gram).real / len(gram)))
