@@ -310,19 +310,20 @@ def _room(model, size):
 
 
 @compiled
-def _refine_one(model, laws, a, b, s, x, tolerance, room):
+def _refine_one(model, laws, a, b, s, x, tolerance, room, fresh):
     """Refine one start by inverse iteration with the Rayleigh functional (cubic: F is symmetric); x in place.
 
-    Return the pole and whether it came to rest.
+    A ``fresh`` start's shape knows its pole better than its value does. Return the pole and whether it came
+    to rest.
     """
     F, dF, G, s0, s1, pivot, place, U, W, z = room
     w2, u, y = model[4], U[0], W[0]
     _normalise(x)
-    # the start's shape knows its pole better than its value does
-    fill(model, laws, a, b, s, F, dF, s0, s1)
-    step = times(F, x, y) / times(dF, x, y)
-    if np.isfinite(abs(step)):
-        s -= _bounded(step, s)
+    if fresh:
+        fill(model, laws, a, b, s, F, dF, s0, s1)
+        step = times(F, x, y) / times(dF, x, y)
+        if np.isfinite(abs(step)):
+            s -= _bounded(step, s)
     for _ in range(_MAX_STEPS):
         fill(model, laws, a, b, s, F, dF, s0, s1)
         times(dF, x, y)
@@ -363,6 +364,29 @@ def _orthonormalise(U, W):
 
 
 @compiled
+def _small_eigen(A, B):
+    """Return δ and Y of A y = δ B y; NaN if B is singular. Two by two, as most are, in closed form."""
+    m = A.shape[0]
+    if m > 2:
+        if not (np.isfinite(A).all() and np.isfinite(B).all()) or abs(np.linalg.det(B)) == 0.0:
+            return np.full(m, np.nan + 0.0j), A
+        return np.linalg.eig(np.linalg.solve(B, A))
+    inverse = 1.0 / (B[0, 0] * B[1, 1] - B[0, 1] * B[1, 0])
+    c00 = (B[1, 1] * A[0, 0] - B[0, 1] * A[1, 0]) * inverse
+    c01 = (B[1, 1] * A[0, 1] - B[0, 1] * A[1, 1]) * inverse
+    c10 = (B[0, 0] * A[1, 0] - B[1, 0] * A[0, 0]) * inverse
+    c11 = (B[0, 0] * A[1, 1] - B[1, 0] * A[0, 1]) * inverse
+    middle, half = 0.5 * (c00 + c11), 0.5 * (c00 - c11)
+    root = np.sqrt(half * half + c01 * c10)
+    # of the two roots the one that adds to half, so that no digits are lost
+    top = half + root if abs(half + root) > abs(half - root) else half - root
+    delta, Y = np.empty(2, np.complex128), np.empty((2, 2), np.complex128)
+    delta[0], delta[1] = middle + (top - half), middle - (top - half)
+    Y[0, 0], Y[1, 0], Y[0, 1], Y[1, 1] = top, c10, -c01, top
+    return delta, Y
+
+
+@compiled
 def _ritz(dF, U, W, y, s, values, vectors):
     """Fill the Rayleigh–Ritz values and vectors about s in the span of U (W is F U); return their step."""
     m = values.size
@@ -376,11 +400,14 @@ def _ritz(dF, U, W, y, s, values, vectors):
             for k in range(y.size):
                 A[i, j] -= U[i, k] * W[j, k]
                 B[i, j] += U[i, k] * y[k]
-    if not (np.isfinite(A).all() and np.isfinite(B).all()) or abs(np.linalg.det(B)) == 0.0:
+    delta, Y = _small_eigen(A, B)
+    step, spread = delta.mean(), 0.0
+    for j in range(m):
+        spread = max(spread, abs(delta[j] - step))
+    if not np.isfinite(spread):
         return complex(np.nan, 0.0)
-    delta, Y = np.linalg.eig(np.linalg.solve(B, A))
-    step = _bounded(delta.mean(), s)
-    spread = np.abs(delta - delta.mean()).max()
+    delta -= step
+    step = _bounded(step, s)
     if spread > 0.3 * abs(s):
         delta *= 0.3 * abs(s) / spread
     vectors[:] = U
@@ -391,24 +418,24 @@ def _ritz(dF, U, W, y, s, values, vectors):
             for i in range(m):
                 vectors[j] += Y[i, j] * U[i]
             _normalise(vectors[j])
-    values[:] = s + step + (delta - delta.mean())
+    values[:] = s + step + delta
     return step
 
 
 @compiled
-def _refine_together(model, laws, a, b, values, vectors, tolerance, room):
+def _refine_together(model, laws, a, b, values, vectors, tolerance, room, fresh):
     """Refine nearly equal poles by block inverse iteration about their mean; return whether it came to rest.
 
-    What is left is the square of their distance from each other.
+    What is left is the square of their distance from each other. The shapes of ``fresh`` starts know the
+    poles better than their values do.
     """
     F, dF, G, s0, s1, pivot, place, every_U, every_W, z = room
     m, w2 = values.size, model[4]
     U, W, y = every_U[:m], every_W[:m], np.empty_like(z)
-    for round_ in range(_MAX_STEPS):
+    for round_ in range(0 if fresh else 1, _MAX_STEPS):
         s = values.mean()
         fill(model, laws, a, b, s, F, dF, s0, s1)
         if round_ == 0:
-            # as with one pole: the starts' shapes know the poles better than their values do
             for j in range(m):
                 U[j] = vectors[j]
                 times(F, U[j], W[j])
@@ -446,9 +473,9 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     """
     m = values.size
     if m == 1:
-        values[0], done = _refine_one(model, laws, a, b, values[0], vectors[0], tolerance, room)
+        values[0], done = _refine_one(model, laws, a, b, values[0], vectors[0], tolerance, room, True)
         return done
-    if not _refine_together(model, laws, a, b, values, vectors, _COARSE, room):
+    if not _refine_together(model, laws, a, b, values, vectors, _COARSE, room, True):
         return False
     order = np.argsort(np.abs(values))
     values[:] = values[order]
@@ -457,9 +484,9 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     while i < m:
         j = _next_cluster(values, i, m, _INSEPARABLE)
         if j == i + 1:
-            values[i], done = _refine_one(model, laws, a, b, values[i], vectors[i], tolerance, room)
+            values[i], done = _refine_one(model, laws, a, b, values[i], vectors[i], tolerance, room, False)
         else:
-            done = _refine_together(model, laws, a, b, values[i:j], vectors[i:j], tolerance, room)
+            done = _refine_together(model, laws, a, b, values[i:j], vectors[i:j], tolerance, room, False)
         if not done:
             return False
         i = j

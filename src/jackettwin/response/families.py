@@ -20,6 +20,29 @@ _KIN = 0.8
 """Share of a mode, by mass, in the space of its family at the neighbour, by which a warm start is known."""
 _TOGETHER = 0.03
 """Poles of a family nearer than this (relative) are refined together: apart, two might end in one."""
+_HALVINGS = 2
+"""Halves of a quarter of a way that was too long are hardly shorter than a cold start."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Sets whose modes are known, for as many others to start from.
+
+    Attributes
+    ----------
+    rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.numbered.Points`
+    poles : (n_sets, n_modes), NaN where a mode is not known
+    shapes : (n_sets, n_modes, n)
+    """
+
+    rows: FloatArray
+    rayleigh: FloatArray
+    poles: ComplexArray
+    shapes: ComplexArray
+
+    def some(self, which: IntArray) -> Start:
+        """Return some of the sets."""
+        return Start(self.rows[which], self.rayleigh[which], self.poles[which], self.shapes[which])
 
 
 @dataclass(frozen=True)
@@ -44,27 +67,56 @@ class Families:
     def continued(
         self,
         model: Condensed,
+        start: Start,
         rows: FloatArray,
         rayleigh: FloatArray,
-        starts: tuple[ComplexArray, ComplexArray],
         poles: ComplexArray,
         shapes: ComplexArray,
+        halvings: int = _HALVINGS,
     ) -> BoolArray:
         """Fill poles and shapes of the sets that a neighbour's lead to; return which sets these are.
 
         Parameters
         ----------
-        starts : (n_sets or 1, n_modes) poles and (…, n) shapes of the neighbour
+        rows, rayleigh : (n_sets, …) of the sets
+        halvings : int
+            A way that is too long is gone in halves, so many times over.
         """
-        # one memory layout: another would be compiled anew
-        values: ComplexArray = np.array(np.broadcast_to(starts[0], poles.shape), order="C")
-        first = np.ascontiguousarray(np.broadcast_to(starts[1], shapes.shape))
-        x = first.copy()
+        good = self._step(model, start, rows, rayleigh, poles, shapes)
+        far: IntArray = np.flatnonzero(~good & ~np.isnan(start.poles[:, self.wanted]).any(axis=1))
+        if halvings and far.size:
+            here, there = start.some(far), (rows[far], rayleigh[far])
+            middle = Start(
+                _between(here.rows, there[0]),
+                _between(here.rayleigh, there[1]),
+                np.full_like(here.poles, np.nan),
+                np.full_like(here.shapes, np.nan),
+            )
+            reached = self.continued(
+                model, here, middle.rows, middle.rayleigh, middle.poles, middle.shapes, halvings - 1
+            )
+            end_poles, end_shapes = np.full_like(here.poles, np.nan), np.full_like(here.shapes, np.nan)
+            reached &= self.continued(model, middle, *there, end_poles, end_shapes, halvings - 1)
+            good[far], poles[far[reached]] = reached, end_poles[reached]
+            shapes[far[reached]] = end_shapes[reached]
+        return good
+
+    def _step(
+        self,
+        model: Condensed,
+        start: Start,
+        rows: FloatArray,
+        rayleigh: FloatArray,
+        poles: ComplexArray,
+        shapes: ComplexArray,
+    ) -> BoolArray:
+        """Fill the sets in whose modes the neighbour's are recognised; return which these are."""
+        values, x = start.poles.copy(), start.shapes.copy()
         done = kernels().refine(model.arrays(), rows, rayleigh, self.of, values, x, _TOGETHER, STEP)
-        started = ~np.isnan(starts[0])
+        started = ~np.isnan(start.poles)
         sound = done & (values.imag > REAL * np.abs(values)) & (np.abs(values) <= model.radius)
         good: BoolArray = (sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1)
-        good &= kernels().recognised(model.pencil.M, self.of, first, values, x, _KIN, SAME)
+        good &= kernels().recognised(model.pencil.M, self.of, start.shapes, values, x, _KIN, SAME)
         poles[good], shapes[good] = values[good], x[good]
         return good
 
@@ -107,3 +159,8 @@ def _families(model: Condensed, modes: tuple[int, ...]) -> Families:
         of=np.array(of, dtype=np.intp),
         like=like,
     )
+
+
+def _between(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the numbers half-way: the geometric mean, or the arithmetic one where either is zero."""
+    return np.where((one > 0.0) & (other > 0.0), np.sqrt(np.abs(one * other)), 0.5 * (one + other))

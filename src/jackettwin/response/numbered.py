@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from jackettwin.response.certified import AllModes, all_modes, kernels
 from jackettwin.response.condensed import Condensed, check_rayleigh
-from jackettwin.response.families import families_of
+from jackettwin.response.families import Start, families_of
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.soil.coefficients import static_rows
 from jackettwin.structure.damping import Rayleigh
@@ -100,6 +100,7 @@ class NumberedModes:
     beside : mode numbers of their families' other members
     beside_poles : (n_sets, n_beside)
     beside_shapes : (n_sets, n_beside, n)
+    rows, rayleigh : of the sets, as in :class:`Points`
     """
 
     modes: tuple[int, ...]
@@ -111,6 +112,8 @@ class NumberedModes:
     beside: tuple[int, ...]
     beside_poles: ComplexArray
     beside_shapes: ComplexArray
+    rows: FloatArray
+    rayleigh: FloatArray
 
     def some(self, which: npt.NDArray[Any]) -> NumberedModes:
         """Return some of the sets, or the same ones in another order."""
@@ -124,20 +127,20 @@ class NumberedModes:
     def _with(self, arrays: dict[str, Any]) -> NumberedModes:
         return replace(self, **arrays)
 
-    def starts(self, modes: tuple[int, ...]) -> tuple[ComplexArray, ComplexArray]:
-        """Return the poles and shapes of modes by number; NaN where a mode is not among these."""
+    def start(self, modes: tuple[int, ...], n_sets: int) -> Start:
+        """Return where the continuation of modes by number starts; a mode that is not among these is NaN."""
         poles = np.concatenate([self.poles, self.beside_poles], axis=1)
         shapes = np.concatenate([self.shapes, self.beside_shapes], axis=1)
         place = {mode: i for i, mode in enumerate((*self.modes, *self.beside))}
         which = np.array([place.get(mode, -1) for mode in modes])
-        unknown = which < 0
         poles, shapes = poles[:, which], shapes[:, which]
-        poles[:, unknown], shapes[:, unknown] = np.nan, np.nan
-        return poles, shapes
+        poles[:, which < 0], shapes[:, which < 0] = np.nan, np.nan
+        parts = (self.rows, self.rayleigh, poles, shapes)
+        return Start(*(np.ascontiguousarray(np.broadcast_to(p, (n_sets, *p.shape[1:]))) for p in parts))
 
     def _filled(self) -> list[str]:
         """Return the names of the arrays that have an entry for each set."""
-        names = ["poles", "shapes", "slopes", "status", "beside_poles", "beside_shapes"]
+        names = ["poles", "shapes", "slopes", "status", "beside_poles", "beside_shapes", "rows", "rayleigh"]
         return [*names, "shape_slopes"] if len(self.shape_slopes) == len(self.poles) else names
 
 
@@ -173,8 +176,8 @@ def numbered_poles(
     status = np.full(n_sets, int(Status.UNCERTIFIED), dtype=np.intp)
     cold = np.ones(n_sets, dtype=np.bool_)
     if near is not None:
-        starts = near.starts(followed)
-        cold = ~families.continued(model, points.rows, points.rayleigh, starts, poles, shapes)
+        start = near.start(followed, n_sets)
+        cold = ~families.continued(model, start, points.rows, points.rayleigh, poles, shapes)
         doubtful = np.broadcast_to(near.status == Status.UNCERTIFIED, n_sets)
         status[~cold] = np.where(doubtful, Status.UNCERTIFIED, Status.NEIGHBOUR)[~cold]
     for k in np.flatnonzero(cold):
@@ -198,6 +201,8 @@ def numbered_poles(
         tuple(followed[i] for i in beside),
         poles[:, beside],
         shapes[:, beside],
+        points.rows,
+        points.rayleigh,
     )
 
 

@@ -78,23 +78,21 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
     gives a valley one lowest point. Known solutions are deflated (Farrell et al. 2015): the residuals are
     multiplied by :math:`\prod_i (1 + σ²/\|z - z_i\|²)`, and the end is polished without that.
     """
-    taken = 0
+    taken, path = 0, Path(problem)
     if known:
-        start, taken = _least_squares(
-            problem, start, _deflated(problem, known), tolerance=1e-3, evaluations=60
-        )
+        start, taken = _least_squares(path, start, _deflated(problem, known), tolerance=1e-3, evaluations=60)
     z = start
     for tolerance in (1e-3, 1e-8):
-        here = Path(problem).total(z)
-        z, n = _least_squares(problem, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
+        here = path.total(z)
+        z, n = _least_squares(path, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
         taken += n
-    free, n = _least_squares(problem, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
+    free, n = _least_squares(path, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
     taken += n
     back = z
     if np.abs(free - z).max() >= _POINT:
         # in a valley it slides back; from a point that the pulled search was too slow to reach it does not
-        pull = _pulled(problem, problem.allowance(Path(problem).total(free)))
-        back, n = _least_squares(problem, free, pull, tolerance=1e-8)
+        pull = _pulled(problem, problem.allowance(path.total(free)))
+        back, n = _least_squares(path, free, pull, tolerance=1e-8)
         taken += n
     return replace(_judged(problem, free if np.abs(free - back).max() < _POINT else z), evaluations=taken)
 
@@ -107,7 +105,7 @@ def settle(problem: Problem, end: End) -> End:
     if weakest**2 > problem.negligible:
         return end
     pull = _pulled(problem, problem.allowance(end.cost))
-    z, _ = _least_squares(problem, end.z, pull, tolerance=1e-12, evaluations=1000)
+    z, _ = _least_squares(Path(problem), end.z, pull, tolerance=1e-12, evaluations=1000)
     return _judged(problem, z)
 
 
@@ -158,7 +156,7 @@ Rows = Callable[[FloatArray], FloatArray]
 
 
 def _least_squares(
-    problem: Problem,
+    path: Path,
     start: FloatArray,
     rows_of: Callable[[Path], tuple[Rows, Rows]],
     *,
@@ -166,12 +164,13 @@ def _least_squares(
     evaluations: int = _EVALUATIONS,
 ) -> tuple[FloatArray, int]:
     """Return where least squares end, and how many evaluations that took."""
-    values, jacobian = rows_of(Path(problem))
+    values, jacobian = rows_of(path)
+    prior = path.problem.prior
     fit = least_squares(
         values,
         start,
         jac=jacobian,
-        bounds=(problem.prior.low, problem.prior.high),
+        bounds=(prior.low, prior.high),
         x_scale="jac",
         xtol=tolerance,
         ftol=max(1e-2 * tolerance, 1e-14),

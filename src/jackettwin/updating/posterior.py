@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import KDTree
 from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
@@ -33,6 +34,8 @@ _MOVES = 12
 """Moves of every particle on every rung."""
 _KEPT = 3
 """On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
+_SCOUTS = 40
+"""So many particles of an island are evaluated first, for the others to start near one of them."""
 _LARGEST_SPREAD = 0.5
 """Standard deviation of log Z between islands beyond which it is not known."""
 
@@ -194,7 +197,9 @@ def _island(
     """Return the last swarms of one island."""
     prior = problem.prior
     z = prior.draw(n, rng)
-    swarm = _evaluate(problem, prior, z, problem.anchor(z.mean(axis=0)))
+    scouts = _evaluate(problem, prior, z[:_SCOUTS], problem.anchor(z.mean(axis=0)))
+    rest = z[_SCOUTS:]
+    swarm = scouts.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, scouts)))
     beta, kept = 0.0, [swarm]
     while beta < 1.0:
         step = _next_step(swarm.log_l, 1.0 - beta)
@@ -224,11 +229,19 @@ def _moved(
     for _ in range(2):
         z = _proposal(moving.z, still.z, rng, wide=wide)
         inside: BoolArray = np.isfinite(prior.log_density(z))
-        trial = _evaluate(problem, prior, np.where(inside[:, None], z, moving.z), moving.found)
+        z = np.where(inside[:, None], z, moving.z)
+        trial = _evaluate(problem, prior, z, _nearest(prior, z, moving.joined(still)))
         log_ratio = beta * (trial.log_l - moving.log_l) + trial.log_p - moving.log_p
         moving = moving.where(inside & (np.log1p(-rng.random(len(z))) < log_ratio), trial)
         still, moving = moving, still
     return still.joined(moving).take(np.argsort(order))
+
+
+def _nearest(prior: Prior, z: FloatArray, known: _Swarm) -> Found:
+    """Return for each point the modes of the nearest particle, in shares of the bounds, to start from."""
+    width = prior.high - prior.low
+    _, nearest = KDTree(known.z / width).query(z / width)
+    return tuple(modes.some(np.asarray(nearest)) for modes in known.found)
 
 
 def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> _Swarm:
