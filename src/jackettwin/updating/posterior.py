@@ -197,9 +197,10 @@ def _island(
     """Return the last swarms of one island."""
     prior = problem.prior
     z = prior.draw(n, rng)
-    scouts = _evaluate(problem, prior, z[:_SCOUTS], problem.anchor(z.mean(axis=0)))
-    rest = z[_SCOUTS:]
-    swarm = scouts.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, scouts)))
+    swarm = _evaluate(problem, prior, z[:_SCOUTS], problem.anchor(z.mean(axis=0)))
+    if n > _SCOUTS:
+        rest = z[_SCOUTS:]
+        swarm = swarm.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, swarm)))
     beta, kept = 0.0, [swarm]
     while beta < 1.0:
         step = _next_step(swarm.log_l, 1.0 - beta)
