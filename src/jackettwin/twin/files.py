@@ -69,7 +69,7 @@ def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
         return schema
     assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSchema()}), path))
     numbered = numbered_modes(assembly, PAIRED_MODES)
-    labels = mode_labels(mode_kinds(assembly, numbered.shapes))
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
     targets = []
     for i, target in enumerate(schema.targets):
         if isinstance(target.mode, str):
