@@ -35,7 +35,7 @@ import scipy.sparse.linalg as spla
 from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modal import UndampedModes
-from jackettwin.response.multiple import axis_levels, inseparable, turning
+from jackettwin.response.multiple import aligned_coordinates
 from jackettwin.response.system import Group, Matrix, Pencil, System
 from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Prony
@@ -322,11 +322,7 @@ def _pinned(pencil: Pencil, held: IntArray, system: System, basis: FloatArray) -
     shapes = np.zeros((pencil.n, free.size))
     shapes[free] = x
     omega = np.sqrt(np.maximum(w, 0.0))
-    levels = axis_levels(system.assembly)
-    for pair in inseparable(omega):
-        full = basis @ shapes[:, pair]
-        shapes[:, pair] = shapes[:, pair] @ turning(system.assembly, levels, full, np.eye(pair.size))
-    return UndampedModes(omega, shapes)
+    return UndampedModes(omega, aligned_coordinates(system.assembly, basis, omega, shapes))
 
 
 def _placed(system: System, i: IntArray, x: FloatArray) -> FloatArray:

@@ -49,26 +49,42 @@ def inseparable(values: npt.NDArray[Any], closer_than: float = INSEPARABLE) -> l
     return [group for group in np.split(np.arange(values.size), cuts) if group.size > 1]
 
 
-def aligned(
-    assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any], *, among: IntArray | None = None
-) -> npt.NDArray[Any]:
+def aligned(assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Return the shapes with those of inseparable values turned to the axes: first what moves most along x.
 
     Parameters
     ----------
     values : (n_modes,) natural frequencies or poles, sorted
     shapes : (assembly.n_dof, n_modes)
-    among : (n,), optional
-        Indices of the modes that matter, in the order of their values; default: all.
     """
-    chosen = np.arange(values.size) if among is None else among
-    groups = [chosen[group] for group in inseparable(values[chosen])]
+    groups = inseparable(values)
     if not groups:
         return shapes
     turned, levels = shapes.copy(), axis_levels(assembly)
     for group in groups:
         x = shapes[:, group]
         turned[:, group] = x @ turning(assembly, levels, x, x.conj().T @ (assembly.mass @ x))
+    return turned
+
+
+def aligned_coordinates(
+    assembly: Assembly, basis: FloatArray, omega: FloatArray, x: FloatArray
+) -> FloatArray:
+    """Return mass-normalised modes in coordinates of a basis, turned as :func:`aligned` turns shapes.
+
+    Parameters
+    ----------
+    basis : (assembly.n_dof, n)
+    omega : (n_modes,) ascending
+    x : (n, n_modes)
+    """
+    groups = inseparable(omega)
+    if not groups:
+        return x
+    turned, levels = x.copy(), axis_levels(assembly)
+    for group in groups:
+        mixtures = turning(assembly, levels, basis @ x[:, group], np.eye(group.size))
+        turned[:, group] = x[:, group] @ mixtures
     return turned
 
 

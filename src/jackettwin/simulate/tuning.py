@@ -20,7 +20,7 @@ import scipy.linalg as la
 
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.labels import mode_kinds
-from jackettwin.response.multiple import aligned
+from jackettwin.response.multiple import aligned, aligned_coordinates
 from jackettwin.response.reduced import Reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group
@@ -78,8 +78,10 @@ def _modes(assembly: Assembly, small: Reduced) -> tuple[FloatArray, FloatArray, 
     """Return ω, Mφ (n, n_modes) of the undamped modes, and which are the first fore-aft and side-side."""
     M = small.pencil.M
     w2, phi = la.eigh(small.pencil.static_stiffness(), M)
-    kinds = mode_kinds(assembly, small.basis @ phi[:, : min(8, phi.shape[1])])
-    return np.sqrt(np.maximum(w2, 0.0)), np.asarray(M @ phi), _first_of(kinds)
+    omega = np.sqrt(np.maximum(w2, 0.0))
+    phi = aligned_coordinates(assembly, small.basis, omega, phi)
+    kinds = mode_kinds(assembly, small.basis @ phi[:, :8], omega[:8] / (2.0 * np.pi))
+    return omega, np.asarray(M @ phi), _first_of(kinds)
 
 
 def first_ratios(assembly: Assembly, small: Reduced, damping: FloatArray) -> FloatArray:

@@ -150,7 +150,11 @@ class _Modes:
             order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
             order = np.where(order < 0, np.arange(MODES), order)
             modes = UndampedModes(modes.omega[order], modes.shapes[:, order])
-        labels = mode_labels(mode_kinds(assembly, modes.shapes)) if like is None else like.labels
+        labels = (
+            mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
+            if like is None
+            else like.labels
+        )
         feet = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
         energy = np.zeros(len(modes.omega))
         for spring in springs:
