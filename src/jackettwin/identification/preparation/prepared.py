@@ -23,6 +23,7 @@ from jackettwin.identification.preparation.resolve import (
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 from jackettwin.identification.preparation.whitening import accelerated
 from jackettwin.identification.tones.drifting_tones import drifting_tones
+from jackettwin.identification.tones.rotor_speed import estimated_speed
 from jackettwin.identification.tones.steady_tones import steady_tones
 from jackettwin.records import decimate, detrend
 
@@ -67,6 +68,8 @@ class Prepared:
     warnings : tuple of str
     differentiated : (n_channels,) int
         How often each channel was differentiated with respect to time.
+    rotor_orders : tuple of (order, low, high)
+        Where the orders of a rotor pass whose speed the record tells [Hz]; empty if it tells none.
     """
 
     channels: tuple[Channel, ...]
@@ -79,6 +82,7 @@ class Prepared:
     drifting: tuple[PhaseTrack, ...]
     warnings: tuple[str, ...]
     differentiated: IntArray
+    rotor_orders: tuple[tuple[int, float, float], ...] = ()
 
 
 def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
@@ -96,6 +100,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
     level, differentiated = accelerated(detrend(usable))
     top = _band_top_hz(level, settings) or np.inf
     level = _thinned(level, top, settings)
+    rotor = estimated_speed(level.data, level.sample_rate_hz)
     tones, wandering, without = steady_tones(level.data, level.sample_rate_hz)
     drifting, without = drifting_tones(without, level.sample_rate_hz, highest_hz=top)
     drifting = (*wandering, *drifting)
@@ -124,6 +129,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         drifting,
         warnings,
         differentiated,
+        () if rotor is None else rotor.orders,
     )
 
 

@@ -35,6 +35,10 @@ FEWEST_ORDERS = 5
 A_TONE = "steady tone: its envelope does not wander as that of a mode"
 TONE_REACH = 6.0
 """A tone nearer than this many half bandwidths disturbs a mode …"""
+ORDER_REACH = 2.0
+"""Half bandwidths of a mode within which an order of a rotor passes it …"""
+LEAST_REACH = 0.015
+"""… and this share of its frequency: the ends of the range of an estimated speed are hardly known."""
 TONE_WIDENING = 2.0
 """… whose standard deviations are multiplied by this."""
 
@@ -156,6 +160,21 @@ def find_tones(
             lines = transform(clean)
     passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
+
+
+def beside_orders(mode: ModalEstimate, orders: Iterable[tuple[int, float, float]]) -> ModalEstimate:
+    """Flag a mode that an order of a rotor passes, or that is one itself.
+
+    Parameters
+    ----------
+    orders : iterable of (order, low, high)
+    """
+    f = mode.frequency_hz
+    reach = max(ORDER_REACH * mode.damping_ratio, LEAST_REACH) * f
+    for order, low, high in orders:
+        if low - reach < f < high + reach:
+            mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("rotor_order_passes", params={"order": order}))
+    return mode
 
 
 def beside_tones(mode: ModalEstimate, tones_hz: Iterable[tuple[float, float]]) -> ModalEstimate:

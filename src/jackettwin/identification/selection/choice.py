@@ -14,7 +14,11 @@ from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fi
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
-from jackettwin.identification.selection.candidates import beside_tones, with_covariance
+from jackettwin.identification.selection.candidates import (
+    beside_orders,
+    beside_tones,
+    with_covariance,
+)
 from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
 from jackettwin.identification.status import ModeStatus
 
@@ -80,6 +84,8 @@ def chosen_modes(
     tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+    flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
+    found = replace(found, modes=tuple(flagged))
     if settings.refine:
         found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))

@@ -1,0 +1,178 @@
+r"""The speed of a rotor that nobody measured, from tones that move together.
+
+The orders 1P, 3P and 6P of a rotor have one angle: whatever the speed and the wind do to them, the phase of a
+higher order is a multiple of that of a lower one. In pairs of bands at f and r f, r = 2 for 3P and 6P, 3 for
+1P and 3P, the analytic signals a and b of the channels' best combination are compared by
+
+.. math:: C = \Bigl|\frac1T \int \frac{b\,\bar a^{\,r}}{|b|\,|a|^r} dt\Bigr| ,
+
+which is 1 for tones however they drift and swell, and small for two modes, whose phases random forces lead
+apart. What is small is told by the same record: b is shifted against a in time, which leaves
+each as it is and takes from two orders what they have in common.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy import fft
+
+from jackettwin.identification.tones.drifting_tones import band_of
+from jackettwin.identification.tones.sinusoid import transform
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+PAIRS = ((3, 1, 3), (2, 3, 6))
+"""Ratio of two orders that are compared, the lower order, and the higher."""
+ORDERS = (1, 3, 6)
+"""Multiples of the speed at which three blades excite a tower."""
+WIDTHS = (0.015, 0.05)
+"""Half widths of the bands, as a share of their middle …"""
+FEWEST_LINES = 5.0
+"""… and at least so many lines of the record."""
+STEP = 0.5
+"""From one band to the next, in half widths."""
+LEAST_SPEED_HZ, MOST_SPEED_HZ = 0.04, 0.6
+"""2.4 to 36 revolutions a minute."""
+SHIFTS = 16
+"""Of one signal against the other, at most so many parts of the record."""
+LEAST_COHERENCE = 0.6
+"""C of two orders, whose bands hold modes and noise as well …"""
+MARGIN = 0.3
+"""… and by how much it exceeds that of every shift."""
+CERTAIN = 0.93
+"""C of two orders that is believed without: tones that hardly drift are coherent however they are shifted."""
+PASSING = (2.0, 98.0)
+"""Percentiles of the speed between which an order passes."""
+SMOOTHED = 0.03
+"""Share of the record over which the phase is smoothed for the speed."""
+
+
+@dataclass(frozen=True)
+class EstimatedSpeed:
+    """The speed of a rotor, from two of its orders.
+
+    Attributes
+    ----------
+    speed_hz : (n_instants,)
+        Revolutions per second, evenly spread over the record.
+    coherence : float
+        C of the two orders.
+    seen : (low, high)
+        The orders it was seen in.
+    """
+
+    speed_hz: FloatArray
+    coherence: float
+    seen: tuple[int, int]
+
+    @property
+    def orders(self) -> tuple[tuple[int, float, float], ...]:
+        """Orders with the range of frequency each passes: (order, low, high)."""
+        return tuple((order, *self.swept_hz(order)) for order in ORDERS)
+
+    def swept_hz(self, order: int) -> tuple[float, float]:
+        """Return the range of frequency an order passes."""
+        low, high = np.percentile(order * self.speed_hz, PASSING)
+        return float(low), float(high)
+
+
+def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | None:
+    """Return the speed of a rotor two orders of which are in a record; None if no two move together.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean; NaN marks a missing sample and counts as zero.
+
+    Examples
+    --------
+    >>> t = np.arange(6000) / 10.0
+    >>> angle = 2 * np.pi * 0.1 * (t + 4.0 * np.sin(2 * np.pi * t / 300.0))
+    >>> noise = np.random.default_rng(1).standard_normal((2, 6000))
+    >>> found = estimated_speed(np.cos(angle) + np.cos(3 * angle + 1.0) + noise, 10.0)
+    >>> [round(f, 2) for f in found.swept_hz(3)]
+    [0.28, 0.32]
+    """
+    lines, duration = transform(y), y.shape[1] / sample_rate_hz
+    highest = 0.45 * sample_rate_hz
+    best: EstimatedSpeed | None = None
+    for ratio, lower, higher in PAIRS:
+        for width in WIDTHS:
+            for f in _middles(width, lower, duration):
+                half = max(width * f, FEWEST_LINES / duration)
+                if ratio * (f + 3.0 * half) > highest:
+                    break
+                found = _together(lines, duration, f, half, (ratio, lower, higher))
+                if found is not None and (best is None or found.coherence > best.coherence):
+                    best = found
+    return best
+
+
+def _middles(width: float, order: int, duration_s: float) -> Iterable[float]:
+    """Yield the middles of overlapping bands in which an order of the speeds may lie."""
+    f = max(order * LEAST_SPEED_HZ, 4.0 * FEWEST_LINES / duration_s)
+    while f < order * MOST_SPEED_HZ:
+        yield f
+        f += STEP * max(width * f, FEWEST_LINES / duration_s)
+
+
+def _together(
+    lines: ComplexArray, duration_s: float, f: float, half: float, pair: tuple[int, int, int]
+) -> EstimatedSpeed | None:
+    """Return the speed if the two orders of a pair are in the bands at f and at the multiple of it."""
+    ratio, lower, higher = pair
+    n = fft.next_fast_len(int(8.0 * ratio * half * duration_s) + 8)
+    a = _analytic(lines, duration_s, f, half, n)
+    b = _analytic(lines, duration_s, ratio * f, ratio * half, n)
+    unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
+    # both basebands are about their own middle line; the multiple of the one is not quite the other
+    low, high = _line(f, duration_s), _line(ratio * f, duration_s)
+    turn = np.exp(2j * np.pi * (high - ratio * low) * np.arange(n) / n)
+    product = unit_a.conj() ** ratio * turn
+    coherence = float(np.abs(np.mean(unit_b * product)))
+    if coherence < LEAST_COHERENCE:
+        return None
+    if coherence < CERTAIN and not _only_together(unit_b, product, coherence):
+        return None
+    angle = (np.unwrap(np.angle(b)) + 2.0 * np.pi * high * np.arange(n) / n) / higher
+    width = max(int(SMOOTHED * n), 3)
+    kernel = np.hanning(width + 2)[1:-1]
+    speed = np.gradient(angle) * n / (2.0 * np.pi * duration_s)
+    smooth = np.convolve(np.pad(speed, width, mode="reflect"), kernel / kernel.sum(), "same")[width:-width]
+    return EstimatedSpeed(np.asarray(smooth), float(coherence), (lower, higher))
+
+
+def _only_together(b: ComplexArray, product: ComplexArray, coherence: float) -> bool:
+    """Return whether no shift in time makes two signals as coherent."""
+    n = len(b)
+    shifts = [(k * n) // (SHIFTS + 1) for k in range(1, SHIFTS + 1)]
+    return bool(coherence > MARGIN + max(_any_offset(np.roll(b, k) * product, k, n) for k in shifts))
+
+
+def _any_offset(product: ComplexArray, shift: int, n: int) -> float:
+    """Return the mean of a shifted product, either part of the record for itself: the ends do not join."""
+    parts = [part for part in (product[:shift], product[shift:]) if len(part) > n // 4]
+    return max((float(np.abs(np.mean(part))) for part in parts), default=0.0)
+
+
+def _analytic(lines: ComplexArray, duration_s: float, f: float, half: float, n: int) -> ComplexArray:
+    """Return the analytic signal of the channels' best combination in a band, about its middle line, (n,)."""
+    combination = band_of(lines, duration_s, f, half).combination
+    middle = _line(f, duration_s)
+    reach = int(half * duration_s)
+    inside = np.arange(max(middle - reach, 1), min(middle + reach, lines.shape[1] - 1) + 1)
+    spread = np.zeros(n, dtype=complex)
+    spread[(inside - middle) % n] = combination.conj() @ lines[:, inside]
+    return np.asarray(fft.ifft(spread))
+
+
+def _line(f: float, duration_s: float) -> int:
+    return round(f * duration_s)
