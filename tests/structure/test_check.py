@@ -28,6 +28,19 @@ def test_deck_has_the_centre_of_gravity_that_subdyn_prints() -> None:
     np.testing.assert_allclose(found.center_of_mass_m, [0.0, -1.850090e-4, -6.946016], rtol=1e-4, atol=1e-6)
 
 
+def test_mass_of_a_support_is_told_apart() -> None:
+    """An SSI file's matrix belongs to the ground: neither the mass nor its centre is the steel's."""
+    structure = monopile_structure()
+    alone = check(assemble(structure))
+    ground = tuple(tuple(row) for row in np.diag([3e5, 3e5, 2e5, 1e6, 1e6, 1e6]).tolist())
+    foot = replace(structure.reactions[0], mass=ground)
+    found = check(assemble(replace(structure, reactions=(foot,))))
+    assert alone.support_mass_kg == 0.0
+    assert found.support_mass_kg == pytest.approx(2e5)
+    assert found.mass_kg == pytest.approx(alone.mass_kg, rel=1e-12)
+    np.testing.assert_allclose(found.center_of_mass_m, alone.center_of_mass_m, rtol=1e-9, atol=1e-9)
+
+
 def test_centre_of_gravity_in_closed_form() -> None:
     structure = monopile_structure()
     found = check(assemble(structure))

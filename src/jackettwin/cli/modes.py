@@ -166,6 +166,7 @@ def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]
     return {
         "structure": structure.name,
         "mass_kg": books.mass_kg,
+        "support_mass_kg": books.support_mass_kg,
         "center_of_mass_m": books.center_of_mass_m,
         "n_dof": system.pencil.n,
         "warnings": books.warnings,
@@ -204,7 +205,9 @@ def _print(document: dict[str, Any]) -> None:
         f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m in the structure's frame, "
         f"{document['n_dof']} degrees of freedom"
     )
-    output.print(f"support: {escape(document['support'])}")
+    carried = document["support_mass_kg"]
+    beside = f", which brings {carried / 1e3:,.1f} t along" if carried else ""
+    output.print(f"support: {escape(document['support'])}{beside}")
     for warning in document["warnings"]:
         output.print(f"warning: {escape(warning)}")
     table = Table("mode", "label", "f [Hz]", "ζ [%]", "undamped f [Hz]", "difference [%]")

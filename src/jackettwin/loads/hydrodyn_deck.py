@@ -106,7 +106,8 @@ def _simple(deck: Deck) -> tuple[Strip, Strip]:
     for at, line in enumerate(deck.lines):
         header = line.lower().split()
         if header[:1] == ["simplcd"] and at + 2 < len(deck.lines):
-            row = dict(zip(header, deck.lines[at + 2].split(), strict=False)) | {"#": str(at + 3)}
+            words = dict(zip(header, deck.lines[at + 2].split(), strict=False))
+            row = Row(words | {"#": str(at + 3)}, deck.path)
             return _strip(deck, row, "simpl", ""), _strip(deck, row, "simpl", "mg")
     raise InputError("table is missing", file=deck.path, field="SimplCd", remedy="give a HydroDyn input file")
 

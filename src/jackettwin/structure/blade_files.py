@@ -15,7 +15,7 @@ from jackettwin.files.windio import Part, WindIO, windio
 from jackettwin.files.yaml import read_text
 from jackettwin.structure.blades import BladeStructure
 from jackettwin.structure.rotor_modes import FlexibleRotor
-from jackettwin.structure.subdyn_tables import Deck, number, to_float
+from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -142,7 +142,7 @@ def read_elastodyn_blade(path: Path, *, length: float) -> BladeStructure:
         )
 
 
-def _stations(deck: Deck) -> list[dict[str, str]]:
+def _stations(deck: Deck) -> list[Row]:
     """Return the rows of the distributed properties: their table stands apart from its count."""
     for at, line in enumerate(deck.lines):
         header = line.lower().split()
@@ -150,7 +150,8 @@ def _stations(deck: Deck) -> list[dict[str, str]]:
             count = int(_value(deck, "NBlInpSt"))
             found = [deck.lines[k].split() for k in range(at + 2, min(at + 2 + count, len(deck.lines)))]
             return [
-                dict(zip(header, row, strict=False)) | {"#": str(at + 3 + k)} for k, row in enumerate(found)
+                Row(dict(zip(header, row, strict=False)) | {"#": str(at + 3 + k)}, deck.path)
+                for k, row in enumerate(found)
             ]
     raise InputError(
         "table is missing", file=deck.path, field="BlFract", remedy="give an ElastoDyn blade file"

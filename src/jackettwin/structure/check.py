@@ -32,7 +32,10 @@ class ModelCheck:
     Attributes
     ----------
     mass_kg : float
-    center_of_mass_m : (x, y, z) in the structure's frame
+        Of what stands: without the mass that supports bring along.
+    support_mass_kg : float
+        That of the supports (an SSI file's matrix), which vibrates with it.
+    center_of_mass_m : (x, y, z) of what stands, in the structure's frame
     rigid_body_modes : int
         Of the free structure without gravity; six for anything in one piece.
     warnings : tuple of str
@@ -40,6 +43,7 @@ class ModelCheck:
     """
 
     mass_kg: float
+    support_mass_kg: float
     center_of_mass_m: Vector
     rigid_body_modes: int
     warnings: tuple[str, ...]
@@ -54,17 +58,29 @@ def check(assembly: Assembly) -> ModelCheck:
         If the structure has no mass.
     """
     motion = rigid_body_motion(assembly)
-    body = motion.T @ (assembly.mass @ motion)
+    ground = _supports(assembly.structure)
+    body = motion.T @ (assembly.mass @ motion) - ground
     mass = float(body[2, 2])
     if not mass > 0.0:
         raise InputError("the structure has no mass", field="materials", value=mass, allowed="> 0 kg")
     centre = np.array([body[1, 5], body[2, 3], body[0, 4]]) / mass
     return ModelCheck(
         mass_kg=mass,
+        support_mass_kg=float(ground[2, 2]),
         center_of_mass_m=(float(centre[0]), float(centre[1]), float(centre[2])),
         rigid_body_modes=_rigid_body_modes(assembly),
         warnings=(*_warnings(assembly.structure), *_bodies(assembly.structure, mass)),
     )
+
+
+def _supports(structure: Structure) -> FloatArray:
+    """Return the rigid-body mass (6, 6) about the origin of what the reactions bring along."""
+    total = np.zeros((6, 6))
+    for reaction in structure.reactions:
+        if reaction.mass is not None:
+            move = rigid_transfer(np.array(structure.nodes[reaction.node]))
+            total += move.T @ np.array(reaction.mass) @ move
+    return total
 
 
 def rigid_body_motion(assembly: Assembly) -> FloatArray:

@@ -56,7 +56,10 @@ def read_subdyn(path: Path) -> Structure:
 
 def _interface(deck: Deck) -> tuple[str, ...]:
     keys = ("ijointid", *(f"itf{key}" for key in _FLAGS))
-    rows = deck.table("NInterf", columns=keys)
+    rows = deck.table("NInterf", columns=keys[:1], optional=keys[1:] + ("tpid",))
+    if any("tpid" in row for row in rows):
+        # OpenFAST 5 has the transition piece before the flags, one number more
+        rows = deck.table("NInterf", columns=keys[:1], optional=("tpid", *keys[1:]))
     for row in rows:
         if not all(flag(row, key, deck.path, default=True) for key in keys[1:]):
             raise InputError(
@@ -78,25 +81,26 @@ def _interface(deck: Deck) -> tuple[str, ...]:
 
 def _masses(deck: Deck) -> tuple[PointMass, ...]:
     bodies = []
-    for row in deck.table("NCmass"):
+    inertias = tuple(f"jm{axes}" for axes in ("xx", "yy", "zz"))
+    more = (*(f"jm{axes}" for axes in ("xy", "xz", "yz")), *(f"mcg{axis}" for axis in "xyz"))
+    for row in deck.table("NCmass", columns=("cmjointid", "jmass", *inertias), optional=more):
         mass, xx, yy, zz = (number(row, key, deck.path) for key in ("jmass", "jmxx", "jmyy", "jmzz"))
         xy, xz, yz = (_optional(row, f"jm{axes}", deck) for axes in ("xy", "xz", "yz"))
-        x, y, z = (_optional(row, f"mcg{axis}", deck, f"cg{axis}") for axis in "xyz")
+        x, y, z = (_optional(row, f"mcg{axis}", deck) for axis in "xyz")
         with located(file=deck.path, field=f"CMJointID {row['cmjointid']}"):
             bodies.append(PointMass(row["cmjointid"], mass, (x, y, z), (xx, yy, zz, xy, xz, yz)))
     return tuple(bodies)
 
 
-def _optional(row: Row, key: str, deck: Deck, older: str = "") -> float:
-    """Return the number in a column that older formats do not have, or name otherwise."""
-    present = next((name for name in (key, older) if name in row), None)
-    return 0.0 if present is None else number(row, present, deck.path)
+def _optional(row: Row, key: str, deck: Deck) -> float:
+    """Return the number in a column that older formats do not have."""
+    return number(row, key, deck.path) if key in row else 0.0
 
 
 def _reactions(deck: Deck) -> tuple[Reaction, ...]:
     reactions = []
     keys = tuple(f"rct{key}" for key in _FLAGS)
-    for row in deck.table("NReact", columns=("rjointid", *keys, "ssifile")):
+    for row in deck.table("NReact", columns=("rjointid",), optional=(*keys, "ssifile")):
         x, y, z, rx, ry, rz = (flag(row, key, deck.path, default=True) for key in keys)
         ssi = row.get("ssifile", "").strip("\"'")
         stiffness, mass = _read_ssi(deck.path.parent / ssi) if _is_file_name(ssi) else (None, None)

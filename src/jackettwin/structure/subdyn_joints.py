@@ -20,10 +20,35 @@ _RIGIDLY, _UNIVERSAL, _PIN, _BALL = "1", "2", "3", "4"
 Ends = dict[str, tuple[str, str]]
 
 
+def joint_rows(deck: Deck) -> tuple[Row, ...]:
+    """Return the rows of the table of joints."""
+    return deck.table(
+        "NJoints",
+        required=True,
+        columns=("jointid", "jointxss", "jointyss", "jointzss"),
+        optional=("jointtype", "jointdirx", "jointdiry", "jointdirz", "jointstiff"),
+    )
+
+
+def member_rows(deck: Deck) -> tuple[Row, ...]:
+    """Return the rows of the table of members.
+
+    The number behind a member's type is a cosine matrix up to OpenFAST 4.0, then a beam's spin; only the
+    header tells which.
+    """
+    turned = "cosmid" if deck.header("NMembers")[6:7] == ("cosmid",) else "mspin/cosmid"
+    return deck.table(
+        "NMembers",
+        required=True,
+        columns=("memberid", "mjointid1", "mjointid2", "mpropsetid1", "mpropsetid2"),
+        optional=("mtype", turned, "mdivsize"),
+    )
+
+
 def read_joints(deck: Deck) -> dict[str, Vector]:
     """Return {joint: its place}."""
     nodes: dict[str, Vector] = {}
-    for row in deck.table("NJoints", required=True, columns=("jointid", "jointxss", "jointyss", "jointzss")):
+    for row in joint_rows(deck):
         name = row["jointid"]
         if name in nodes:
             raise InputError("joint is given twice", file=deck.path, field="JointID", value=name)
@@ -35,7 +60,7 @@ def read_joints(deck: Deck) -> dict[str, Vector]:
 def member_ends(deck: Deck, nodes: dict[str, Vector]) -> Ends:
     """Return {member: its two joints}."""
     ends = {}
-    for row in deck.table("NMembers", required=True):
+    for row in member_rows(deck):
         ends[row["memberid"]] = pair = (row["mjointid1"], row["mjointid2"])
         for joint in pair:
             if joint not in nodes:
@@ -59,7 +84,7 @@ def with_hinges(
     """
     nodes, ends = dict(nodes), dict(ends)
     links, springs = [], []
-    for row in deck.table("NJoints", required=True):
+    for row in joint_rows(deck):
         joint, kind = row["jointid"], row.get("jointtype", _RIGIDLY)
         if kind == _RIGIDLY:
             continue

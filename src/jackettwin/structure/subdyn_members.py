@@ -15,7 +15,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, RigidLink, Section, Vector
 from jackettwin.structure.rectangles import rectangular_section
-from jackettwin.structure.subdyn_joints import link_groups, member_ends, read_joints, with_hinges
+from jackettwin.structure.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
 from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
 from jackettwin.structure.two_node import (
     BeamSection,
@@ -34,6 +34,9 @@ _BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)
 _REFUSED = {"-1": "rectangular section by its older number"}
 _RECTANGLE_KEYS = ("younge", "shearg", "matdens", "xsecsa", "xsecsb", "xsect")
 _TUBE_KEYS = ("younge", "shearg", "matdens", "xsecd", "xsect")
+_ARBITRARY_KEYS = (
+    "younge", "shearg", "matdens", "xseca", "xsecasx", "xsecasy", "xsecjxx", "xsecjyy", "xsecj0",
+)  # fmt: skip
 _SPRING_KEYS = tuple(f"k{i}{j}" for i in range(1, 7) for j in range(i, 7))
 
 
@@ -59,7 +62,7 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
     InputError
         If a member is of a kind that cannot be read, or names what is not there.
     """
-    rows = deck.table("NMembers", required=True)
+    rows = member_rows(deck)
     nodes = read_joints(deck)
     beams = [row["memberid"] for row in rows if _kind(row) in _BEAMS]
     nodes, ends, links, springs = with_hinges(deck, nodes, member_ends(deck, nodes), beams)
@@ -135,9 +138,10 @@ class _Tables:
 
 def _tables(deck: Deck) -> _Tables:
     def rows(
-        *keywords: str, key: str = "propsetid", columns: tuple[str, ...] = (), nth: int = 0
+        *keywords: str, columns: tuple[str, ...], optional: tuple[str, ...] = (), nth: int = 0
     ) -> dict[str, Row]:
-        return {row[key]: row for row in deck.table(*keywords, columns=columns, nth=nth)}
+        found = deck.table(*keywords, columns=columns, optional=optional, nth=nth)
+        return {row[columns[0]]: row for row in found}
 
     # OpenFAST 4 gave both tables of sections one keyword
     named = deck.find("NPropSetsRec") is not None
@@ -150,11 +154,11 @@ def _tables(deck: Deck) -> _Tables:
             columns=("propsetid", *_RECTANGLE_KEYS),
             nth=0 if named else 1,
         ),
-        arbitrary=rows("NXPropSets"),
-        cables=rows("NCablePropSets"),
-        rigid=rows("NRigidPropSets"),
-        springs=rows("NSpringPropSets"),
-        cosines=rows("NCOSMs", key="cosmid"),
+        arbitrary=rows("NXPropSets", columns=("propsetid", *_ARBITRARY_KEYS), optional=("xsecjt",)),
+        cables=rows("NCablePropSets", columns=("propsetid", "ea", "matdens", "t0")),
+        rigid=rows("NRigidPropSets", columns=("propsetid", "matdens")),
+        springs=rows("NSpringPropSets", columns=("propsetid", *_SPRING_KEYS)),
+        cosines=rows("NCOSMs", columns=("cosmid", *(f"cosm{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))),
     )
 
 
@@ -241,12 +245,10 @@ def _add_beam(
 def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of an arbitrary beam."""
     p = tables.find(tables.arbitrary, row, "mpropsetid1")
-    A, A_x, A_y, I_x, I_y, I_p = tables.values(
-        p, "xseca", "xsecasx", "xsecasy", "xsecjxx", "xsecjyy", "xsecj0"
-    )
+    E, G, rho, A, A_x, A_y, I_x, I_y, I_p = tables.values(p, *_ARBITRARY_KEYS)
     # decks before OpenFAST 4.1 have one number for inertia and torsion
     J = tables.values(p, "xsecjt")[0] if "xsecjt" in p else I_p
-    return tables.values(p, "younge", "shearg", "matdens"), BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
+    return [E, G, rho], BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
 
 
 def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
@@ -274,8 +276,7 @@ def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> Flo
 
 def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.cables, row, "mpropsetid1")
-    tension = next((key for key in p if key.startswith("t0")), "t0")
-    EA, rho, T = tables.values(p, "ea", "matdens", tension)
+    EA, rho, T = tables.values(p, "ea", "matdens", "t0")
     a, b = (np.array(parts.nodes[node]) for node in ends)
     K, M = cable_matrices(a, b, EA=EA, tension=T, mass_per_m=rho)
     return two_node_element(row["memberid"], "cable", ends, K, M)
@@ -297,7 +298,7 @@ def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> T
             allowed=", ".join(tables.cosines) or None,
             remedy="give a cosine matrix",
         )
-    axes = _axes(parts, tables, row | {"cosmid": chosen}, ends)
+    axes = _axes(parts, tables, Row({**row, "cosmid": chosen}, row.path), ends)
     # a spring's own order is x, y, z with z along it
     return two_node_element(row["memberid"], "spring", ends, spring_matrix(k, np.roll(axes, -1, axis=0)))
 

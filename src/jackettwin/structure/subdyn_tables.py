@@ -1,11 +1,13 @@
 """Lines, values and tables of an OpenFAST input file.
 
-Tables are found by the keyword of their count line and columns by their header, so the position of
-neither matters (formats of SubDyn 0.4 to OpenFAST 5).
+Tables are found by the keyword of their count line. SubDyn itself reads their columns by position, whatever
+the header says, and so do we where the columns are known (formats of SubDyn 0.4 to OpenFAST 5); elsewhere the
+header names them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +16,35 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
 
-Row = dict[str, str]
+
+class Row(dict[str, str]):
+    """A row of a table, column by column; ``#`` is the number of its line.
+
+    A column that the row does not have is the file's fault, and named.
+    """
+
+    def __init__(self, values: Mapping[str, str], path: Path) -> None:
+        super().__init__(values)
+        self.path = path
+
+    def __missing__(self, key: str) -> str:
+        """Refuse the row.
+
+        Raises
+        ------
+        InputError
+            Names file, line and column.
+        """
+        raise InputError(
+            "column is missing",
+            file=self.path,
+            field=f"line {self.get('#', '?')}.{key}",
+            remedy="give the row all its numbers and the table's header all its names",
+        )
+
+
+_TEXT = ("ssifile",)
+"""Optional columns that hold no number."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +77,21 @@ class Deck:
         return ()
 
     def table(
-        self, *keywords: str, required: bool = False, columns: tuple[str, ...] = (), nth: int = 0
+        self,
+        *keywords: str,
+        required: bool = False,
+        columns: tuple[str, ...] = (),
+        optional: tuple[str, ...] = (),
+        nth: int = 0,
     ) -> tuple[Row, ...]:
-        """Return the rows of the table whose count line has one of the keywords; keys are the header's.
+        """Return the rows of the table whose count line has one of the keywords.
 
-        ``columns`` are the first keys by position, for headers that name the first column only or name them
-        otherwise: SubDyn itself reads by position. ``nth`` tells tables of one keyword apart.
+        Parameters
+        ----------
+        columns, optional : keys by position
+            What every row must have, and what follows in some formats; none: the header's words are the keys.
+        nth : int
+            Tells tables of one keyword apart.
         """
         number = self.find(*keywords, nth=nth)
         if number is None:
@@ -65,23 +104,46 @@ class Deck:
                 )
             return ()
         count = to_integer(self.lines[number].split()[0], self.path, keywords[0])
+        if count > len(self.lines):
+            raise _short(self.path, keywords[0], count)
         header = self.lines[number + 1].lower().split() if number + 1 < len(self.lines) else []
-        keys = header if len(header) > 1 else list(columns)
-        if len(header) >= len(columns) and not set(columns) <= set(header):
-            keys = [*columns, *header[len(columns) :]]
-        return tuple(self._row(number + 3 + k, keys, keywords[0], count) for k in range(count))
+        keys = [*columns, *optional] if columns else header
+        rows = range(number + 3, number + 3 + count)
+        return tuple(self._row(at, keys, len(columns), keywords[0], count) for at in rows)
 
-    def _row(self, at: int, keys: list[str], keyword: str, count: int) -> Row:
+    def header(self, *keywords: str) -> tuple[str, ...]:
+        """Return the words of a table's header in lower case; none without the table."""
+        number = self.find(*keywords)
+        if number is None or number + 1 >= len(self.lines):
+            return ()
+        return tuple(self.lines[number + 1].lower().split())
+
+    def _row(self, at: int, keys: list[str], needed: int, keyword: str, count: int) -> Row:
         words = self.lines[at].split() if at < len(self.lines) else []
         if len(words) < min(len(keys), 2) or not words or words[0].startswith("---"):
-            raise InputError(
-                "table is shorter than its count",
-                file=self.path,
-                field=keyword,
-                value=count,
-                remedy="mend the count or the table",
-            )
-        return dict(zip(keys, words, strict=False)) | {"#": str(at + 1)}
+            raise _short(self.path, keyword, count)
+        if needed:
+            words = _without_remark(words, needed, keys)
+        return Row(dict(zip(keys, words, strict=False)) | {"#": str(at + 1)}, self.path)
+
+
+def _short(path: Path, keyword: str, count: int) -> InputError:
+    return InputError(
+        "table is shorter than its count",
+        file=path,
+        field=keyword,
+        value=count,
+        remedy="mend the count or the table",
+    )
+
+
+def _without_remark(words: list[str], needed: int, keys: list[str]) -> list[str]:
+    """Return the words up to a remark: behind what every row has are numbers, and at most a file's name."""
+    for at in range(needed, len(words)):
+        names_file = at < len(keys) and keys[at] in _TEXT
+        if words[at][0] in "!#" or words[at] == "-" or (words[at][0].isalpha() and not names_file):
+            return words[:at]
+    return words
 
 
 def read_deck(path: Path) -> Deck:
@@ -91,13 +153,6 @@ def read_deck(path: Path) -> Deck:
 
 def number(row: Row, key: str, path: Path) -> float:
     """Return the number in a column of a row."""
-    if key not in row:
-        raise InputError(
-            "column is missing",
-            file=path,
-            field=f"line {row['#']}.{key}",
-            remedy="give the row all its numbers and the table's header all its names",
-        )
     return to_float(row[key], path, f"line {row['#']}.{key}")
 
 
