@@ -1,7 +1,11 @@
 """Drag on relative velocity in time: against Morison's equation at an instant, and the motion it drives."""
 
-import numpy as np
+from pathlib import Path
 
+import numpy as np
+import pytest
+
+from jackettwin.errors import InputError
 from jackettwin.loads.morison import point_forces
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.model import build_model
@@ -68,3 +72,24 @@ def test_the_motion_is_stepped_under_it(scenario_file) -> None:
     # the legs of a jacket move little in the water: no more than 1 % of the motion hangs on this
     a, b = (m.states[:, :n] @ m.model.top[0] for m in (linear, full))
     np.testing.assert_allclose(b, a, atol=0.01 * np.abs(a).max())
+
+
+def test_a_given_elevation_drives_the_asset(tmp_path: Path, scenario_file) -> None:
+    """What a record says of its own waves, given back: the same elevation, Hs and T from the file."""
+    t = np.arange(0.0, 61.0, 0.1)
+    eta = 1.5 * np.cos(2.0 * np.pi * t / 10.0)
+    rows = "\n".join(f"{a:.3f},{b:.6f}" for a, b in zip(t, eta, strict=True))
+    (tmp_path / "eta.csv").write_text("time_s,elevation_m\n" + rows)
+    waves = {"type": "elevation", "file": str(tmp_path / "eta.csv"), "direction_deg": 30.0}
+    time = {"duration_s": 60.0, "step_s": 0.05}
+    scenario = read_scenario(scenario_file(waves=waves, water={}, time=time))
+    assert scenario.sea is not None
+    assert scenario.sea.height_m == pytest.approx(4.0 * 1.5 / np.sqrt(2.0), rel=0.01)
+    assert scenario.sea.period_s == pytest.approx(10.0, rel=0.05)
+    field = wave_field(scenario.sea, duration=60.0)
+    found = field.elevation(np.zeros((1, 3)), t[:-11])[:, 0]
+    np.testing.assert_allclose(found, eta[:-11], atol=0.02)
+    with pytest.raises(InputError, match="hs_m: does not belong"):
+        read_scenario(scenario_file(waves={**waves, "hs_m": 2.0}, water={}, time=time))
+    with pytest.raises(InputError, match="file belongs to waves of type elevation"):
+        read_scenario(scenario_file(waves={"type": "elevation"}, water={}, time=time))

@@ -12,6 +12,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
 from jackettwin.loads.files import read_rotor
+from jackettwin.loads.given_waves import Elevation, read_elevation
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
@@ -192,7 +193,8 @@ def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | No
     if w is None:
         return Sea(depth, coefficients, water, current=current, ends=ends)
     with located(field="waves"):
-        height, period = _size(w)
+        eta = _elevation(w, folder)
+        height, period = _size(w) if eta is None else (eta.significant_height_m, eta.peak_period_s)
         return Sea(
             depth_m=depth,
             coefficients=coefficients,
@@ -203,13 +205,36 @@ def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | No
             direction=radians(w.direction_deg),
             seed=w.seed,
             stretching=w.stretching or ("none" if w.type == "airy" else "wheeler"),
-            gamma=None if w.type in REGULAR else _peakedness(w),
+            gamma=None if eta is not None or w.type in REGULAR else _peakedness(w),
             spreading=w.spreading,
             relative_velocity=w.relative_velocity,
             diffraction=_scatters(w),
             current=current,
             ends=ends,
+            elevation=eta,
         )
+
+
+def _elevation(w: WavesSchema, folder: Path) -> Elevation | None:
+    """Return the elevation of waves that are given; refuse what does not belong to these."""
+    if (w.type == "elevation") != (w.file is not None):
+        raise InputError(
+            "a file belongs to waves of type elevation, and they need one",
+            field="file",
+            value=w.file,
+            remedy="give type: elevation and file, or height and period",
+        )
+    if w.file is None:
+        return None
+    for name in ("height_m", "period_s", "hs_m", "tp_s", "gamma", "spreading"):
+        if getattr(w, name) is not None:
+            raise InputError(
+                "does not belong to waves of type elevation",
+                field=name,
+                value=getattr(w, name),
+                remedy="leave it out: the file says it",
+            )
+    return read_elevation(folder / w.file)
 
 
 def depth_of(w: WaterSchema, structure: Structure) -> float:

@@ -13,6 +13,7 @@ from jackettwin.loads.bem import Control
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients
+from jackettwin.loads.given_waves import Elevation
 from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.turbulence import Coherent
@@ -69,6 +70,8 @@ class Sea:
     """How drag knows the motion of the structure: ``none``, ``linearised`` or ``full``."""
     current: Current | None = None
     ends: EndCoefficients = EndCoefficients()
+    elevation: Elevation | None = None
+    """Of waves that are given, from the start of what is discarded."""
 
 
 TOWER_DRAG = 0.5

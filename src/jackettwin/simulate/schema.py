@@ -70,9 +70,10 @@ class GroundSchema(Schema):
 
 
 class WavesSchema(Schema):
-    """``waves``: height and period of a regular wave, or Hs and Tp of a random sea."""
+    """``waves``: height and period of a regular wave, Hs and Tp of a random sea, or an elevation's file."""
 
-    type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz"]
+    type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz", "elevation"]
+    file: str | None = None
     height_m: Annotated[float, Field(gt=0.0, le=100.0)] | None = None
     period_s: Period | None = None
     hs_m: SignificantHeight | None = None

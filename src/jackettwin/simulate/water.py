@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from jackettwin.errors import InputError
 from jackettwin.loads.ends import Ends, member_ends
+from jackettwin.loads.given_waves import given_sea
 from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
 from jackettwin.loads.regular_waves import regular_wave
 from jackettwin.loads.wave_series import WaveSeries, wave_series
@@ -82,6 +83,14 @@ def wave_field(sea: Sea, *, duration: float) -> Waves | None:
             period=sea.period_s,
             depth=sea.depth_m,
             direction=sea.direction,
+        )
+    if sea.elevation is not None:
+        return given_sea(
+            sea.elevation,
+            depth=sea.depth_m,
+            duration=duration,
+            direction=sea.direction,
+            stretching=sea.stretching,
         )
     if duration < 2.0 * sea.period_s:
         raise InputError(

@@ -1,0 +1,117 @@
+"""A sea whose elevation is given: measured, or made by another program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.errors import InputError
+from jackettwin.files.yaml import read_text
+from jackettwin.loads.waves import AirySea
+
+FloatArray = npt.NDArray[np.float64]
+
+_LONGEST = 2_000_000
+"""Rows that a file of elevations may have."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elevation:
+    """An elevation at the structure's axis: growing times from the simulation's start [s], and η [m]."""
+
+    time_s: FloatArray
+    eta_m: FloatArray
+
+    def __post_init__(self) -> None:
+        if self.time_s.size < 8 or np.any(np.diff(self.time_s) <= 0.0):
+            raise InputError(
+                "times must grow", field="waves.file", value=int(self.time_s.size), allowed="8 rows or more"
+            )
+        if not np.isfinite(self.eta_m).all() or np.abs(self.eta_m).max() > 100.0:
+            raise InputError(
+                "no elevation",
+                field="waves.file",
+                value=float(np.nanmax(np.abs(self.eta_m))),
+                allowed="metres",
+            )
+
+    @property
+    def significant_height_m(self) -> float:
+        """4σ."""
+        return float(4.0 * np.std(self.eta_m))
+
+    @property
+    def peak_period_s(self) -> float:
+        """Period of the largest line of the spectrum, averaged over five."""
+        t = np.linspace(self.time_s[0], self.time_s[-1], self.time_s.size)
+        eta = np.interp(t, self.time_s, self.eta_m)
+        power = np.abs(np.fft.rfft(eta - eta.mean())) ** 2
+        smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
+        f = np.fft.rfftfreq(t.size, t[1] - t[0])
+        return float(1.0 / f[1:][np.argmax(smooth[1:])])
+
+
+def read_elevation(path: Path) -> Elevation:
+    """Read two columns, time [s] and elevation [m], below any lines of words: CSV, or a program's text.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or has no such columns.
+    """
+    rows = []
+    for line in read_text(path, what="file of wave elevations").splitlines()[:_LONGEST]:
+        words = line.replace(",", " ").replace(";", " ").split()
+        try:
+            rows.append((float(words[0]), float(words[1])))
+        except (ValueError, IndexError):
+            if rows and words:
+                raise InputError(
+                    "not two numbers", file=path, field="waves.file", value=line.strip()
+                ) from None
+    if not rows:
+        raise InputError("no rows of time and elevation", file=path, field="waves.file")
+    t, eta = np.array(rows).T
+    return Elevation(t, eta)
+
+
+def given_sea(
+    elevation: Elevation,
+    *,
+    depth: float,
+    duration: float,
+    direction: float = 0.0,
+    highest_hz: float = 0.6,
+    stretching: str = "wheeler",
+) -> AirySea:
+    """Return the long-crested sea of linear waves that has this elevation at the origin.
+
+    It repeats after ``duration`` [s], of which lines Δf = 1/duration up to ``highest_hz`` are kept; the mean
+    is the tide's, and left out.
+
+    Raises
+    ------
+    InputError
+        If the elevation does not cover the duration.
+    """
+    t = elevation.time_s
+    if t[0] > 1e-6 or t[-1] < duration * (1.0 - 1e-3) - 1.0:
+        raise InputError(
+            "the elevation does not cover the simulation",
+            field="waves.file",
+            value=[float(t[0]), float(t[-1])],
+            allowed=f"0 to {duration:g} s, what is discarded included",
+            remedy="shorten time.duration_s, or give more of it",
+        )
+    n = 2 * int(np.ceil(2.0 * highest_hz * duration))
+    at = np.arange(n) * (duration / n)
+    lines = np.fft.rfft(np.interp(at, t, elevation.eta_m)) * (2.0 / n)
+    f = np.arange(lines.size) / duration
+    kept = (f > 0.0) & (f <= highest_hz)
+    heading = np.full(int(kept.sum()), direction)
+    return AirySea(
+        np.abs(lines[kept]), 2.0 * np.pi * f[kept], heading, np.angle(lines[kept]), depth, stretching
+    )
