@@ -15,10 +15,10 @@ FloatArray = npt.NDArray[np.float64]
 SOMETHING_ELSE = "something else"
 SENSOR = "sensor"
 """What the names of sensors' causes begin with."""
-_SENSOR_SHIFT = 0.001
-"""Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; fifty times as
-much in ln ζ."""
-_DAMPING_OVER_FREQUENCY = 50.0
+_SENSOR_SHIFT = 0.002
+"""Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; two hundred
+times as much in ln ζ."""
+_DAMPING_OVER_FREQUENCY = 200.0
 
 
 @dataclass(frozen=True)

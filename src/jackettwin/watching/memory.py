@@ -41,7 +41,7 @@ AGREEMENT = (1.0, 0.7)
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
 MOST_MODELS = 4
-GUARDS = ((1.8, 0.5, 0.12), (3.0, 0.85, 0.03))
+GUARDS = ((1.8, 0.5, 0.05),)
 """Factor on the long process, share of its slower part, and weight of models that the future may want
 although the
 baseline does not: a year cannot show what a season does only now and then."""
