@@ -33,6 +33,39 @@ class Kind:
 CATALOGUE: dict[str, Kind] = {
     # records
     "gaps": Kind("info", "{share:.2%} of the samples are missing, at most {longest_s:.3g} s in a row"),
+    "gain_jump": Kind(
+        "warning",
+        "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest, against the others; "
+        "scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
+    ),
+    "clock_late": Kind(
+        "warning",
+        "{channels}: read {delay_s:.3g} ± {std_s:.2g} s {late} than the others, in all bands alike: "
+        "another clock; shifted",
+    ),
+    "clock_drift": Kind(
+        "warning",
+        "{channels}: the clock runs {drift_ppm:.0f} ± {std_ppm:.2g} ppm too {slow} against the others', "
+        "off by {delay_s:.3g} s in the middle; resampled",
+    ),
+    "clock_late_or_complex": Kind(
+        "info",
+        "{channels}: read {delay_s:.3g} s {late} than the others, or the modes are complex: too little to "
+        "tell; kept",
+    ),
+    "clock_jump": Kind(
+        "warning",
+        "{channels}: the clock jumps by {by_s:.3g} s against the others' between {from_s:.0f} and "
+        "{to_s:.0f} s",
+    ),
+    "clock_cut": Kind(
+        "warning", "only {from_s:.0f} to {to_s:.0f} s are used, the longest stretch without a jump of a clock"
+    ),
+    "clocks_wander": Kind(
+        "alarm",
+        "the clocks of the loggers wander against each other: no stretch is long enough to bring them into "
+        "step",
+    ),
     # identification
     "steady_tone_near": Kind(
         "warning", "a steady tone at {frequency_hz:.4g} Hz is too near to trust the damping"

@@ -82,21 +82,46 @@ def test_of_two_sensors_nobody_knows_which_changed(tower: SimpleNamespace) -> No
     record = changed(tower.record(5), 1, 6_000, 3.0).select(["acc_144_x", "acc_77_x"])
     (found,) = changes(record.data)
     assert not found.certain
-    quality = assess(record)
-    (finding,) = [f for f in quality.findings if f.fault == "changed"]
-    assert finding.text.endswith("or a channel like it changes; kept")
-    assert not quality.suspect.any()
+    # whichever it was, their ratio after the repair is that of the earlier half
+    ready = repair(record, assess(record)).data
+    sound = tower.record(5).select(["acc_144_x", "acc_77_x"]).data
+    ratio = [
+        np.nanstd(ready[1, part]) / np.nanstd(ready[0, part]) for part in (slice(5_000), slice(7_000, None))
+    ]
+    # two per cent of noise
+    assert ratio == pytest.approx([sound[1].std() / sound[0].std()] * 2, rel=0.1)
 
 
 def test_repair_keeps_the_longer_side(tower: SimpleNamespace) -> None:
-    record = changed(tower.record(6), 2, 4_200, 0.5, before=True)
+    """A sign that turns is not scaled back: what the shorter side meant is not known."""
+    record = changed(tower.record(6), 2, 4_200, -1.0, before=True)
     quality = assess(record)
     (finding,) = quality.findings
     assert (finding.fault, finding.channel, finding.repaired) == ("changed", "acc_41_x", True)
-    assert "0.5 times as sensitive until" in finding.text
+    assert "moves against its own sense until" in finding.text
     missing = np.flatnonzero(np.isnan(repair(record, quality).data[2]))
     assert missing[0] == 0
     assert 4_200 <= len(missing) <= 4_200 + PART
+
+
+@pytest.mark.parametrize("rows", [[2], [0, 1, 4, 5]])
+@pytest.mark.parametrize("factor", [0.5, 1.5])
+def test_a_gain_that_jumps_is_scaled_back(rows: list[int], factor: float, tower: SimpleNamespace) -> None:
+    """Of one channel, and of a logger's."""
+    sound = tower.record(6)
+    data = sound.data.copy()
+    data[rows, :4_200] *= factor
+    quality = assess(replace(sound, data=data))
+    (finding,) = quality.findings
+    assert (finding.fault, finding.repaired) == ("gain_jump", True)
+    ready = repair(replace(sound, data=data), quality).data
+    known = np.isfinite(ready)
+    # a window of a tenth of the record at most is lost; noise of two per cent moves the gain by less
+    assert known.mean() > 0.9
+    assert known[np.setdiff1d(range(8), rows)].all()
+    np.testing.assert_allclose(
+        ready[known], sound.data[known], atol=0.05 * sound.data.std(axis=1).max(), rtol=0.05
+    )
 
 
 def test_a_change_shows_beside_gaps(tower: SimpleNamespace) -> None:

@@ -136,7 +136,9 @@ def test_strong_second_bending_is_no_swapped_sign(tower: SimpleNamespace) -> Non
 def test_a_slower_sensor_is_recognised(tower: SimpleNamespace) -> None:
     record = tower.record(10)
     quality = assess(with_row(record, 5, np.repeat(record.data[5][::4], 4)))
-    assert faults_of(quality) == {("acc_77_y", "held")}
+    # a reading is half of three steps old on the average
+    assert faults_of(quality) == {("acc_77_y", "held"), (None, "clock_late")}
+    assert quality.clocks.late[0].delay_s == pytest.approx(1.5 / 20.0, rel=0.1)
     assert quality.channels[5].hold_length == 4
 
 

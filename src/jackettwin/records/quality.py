@@ -11,6 +11,7 @@ import numpy.typing as npt
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, sensor_polarity
 from jackettwin.records.changes import Change, changes, described
+from jackettwin.records.clock_findings import clock_findings, clocks_of, in_step
 from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
 from jackettwin.records.record import LARGEST
 from jackettwin.records.unit_errors import wrong_units
@@ -18,6 +19,7 @@ from jackettwin.records.unit_errors import wrong_units
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from jackettwin.records.logger_clocks import LoggerClocks
     from jackettwin.records.record import Record
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,12 +58,15 @@ class Quality:
     suspect : (n_channels, n_samples) bool array
         Samples that ``repair`` declares missing: spikes, frozen and unreadable ones, the shorter side of a
         change.
+    clocks : LoggerClocks
+        Channels that ``repair`` brings into step with the others, and the stretch without a jump of a clock.
     """
 
     score: float
     channels: tuple[ChannelQuality, ...]
     findings: tuple[Finding, ...]
     suspect: npt.NDArray[np.bool_]
+    clocks: LoggerClocks
 
     def summary(self) -> dict[str, Any]:
         """Return everything but the samples as plain JSON data."""
@@ -82,9 +87,12 @@ def assess(record: Record) -> Quality:
     held = [faults.hold_length(row) for row in record.data]
     spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
     slow_free = _without_slow(record, spikes)
-    groups = list(sensor_polarity.parallel_groups(record, slow_free))
+    clocks = clocks_of(record, slow_free)
+    # channels are held against each other in step, where they are
+    together = in_step(slow_free, clocks, record.sample_rate_hz)
+    groups = list(sensor_polarity.parallel_groups(record, together[:, clocks.start : clocks.stop]))
     swapped = sensor_polarity.swapped(record, groups)
-    changed = _changed(record, slow_free)
+    changed = _changed(record, together)
     judged = [
         _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))
         for i, channel in enumerate(record.channels)
@@ -95,10 +103,12 @@ def assess(record: Record) -> Quality:
     findings += [Finding("unit", str(wrong), name) for name, wrong in units.items()]
     findings += [Finding("file", str(text)) for text in record.metadata.get("remarks", ())]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
+    findings += clock_findings(record, clocks)
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
     scores = vibrating or [q.score for q in channels]
     suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
-    return Quality(float(np.mean(scores)) if scores else 0.0, channels, tuple(findings), suspect | unreadable)
+    score = float(np.mean(scores)) if scores else 0.0
+    return Quality(score, channels, tuple(findings), suspect | unreadable, clocks)
 
 
 def shortest_stuck(sample_rate_hz: float) -> int:

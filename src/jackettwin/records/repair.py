@@ -1,13 +1,14 @@
 """Take out of a record what is certainly wrong with it, and say so; nothing is invented.
 
 Samples known to be wrong become missing samples, channels that carry nothing are dropped, drift is
-taken out, and a sign is turned only if the other channels leave no doubt. Everything done is listed
-in ``metadata["repair"]``.
+taken out, loggers are brought into step, and a sign is turned only if the other channels leave no doubt.
+Everything done is listed in ``metadata["repair"]``.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters
+from jackettwin.records.clock_findings import in_step, stretch
 from jackettwin.records.quality import DRIFT_CYCLES, shortest_stuck
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ def repair(record: Record, quality: Quality) -> Record:
             data[i : i + 1] = filters.remove_slow(data[i : i + 1], DRIFT_CYCLES / data.shape[1])
         if (name, "sign") in fixed:
             data[i] = -data[i]
+    data = in_step(data, quality.clocks, record.sample_rate_hz)
     alive = [i for i, channel in enumerate(quality.channels) if not channel.dead]
     if not alive:
         raise InputError(
@@ -51,13 +54,25 @@ def repair(record: Record, quality: Quality) -> Record:
             allowed="at least one channel that varies",
             remedy="check sensors and logger",
         )
-    done = [f"{f.channel}: {f.text}" for f in quality.findings if f.repaired]
+    done = [f.text if f.channel is None else f"{f.channel}: {f.text}" for f in quality.findings if f.repaired]
     return replace(
         record,
         data=data[alive],
         channels=tuple(record.channels[i] for i in alive),
         metadata={**record.metadata, "repair": done} if done else record.metadata,
     )
+
+
+def common_time(record: Record, quality: Quality) -> Record:
+    """Return the record cut to the samples all channels have once their clocks are in step."""
+    n, rate = record.data.shape[1], record.sample_rate_hz
+    first, last = stretch(quality.clocks, n, rate)
+    if (first, last) == (0, n):
+        return record
+    start = record.start_utc
+    if start is not None:
+        start += timedelta(seconds=first / rate)
+    return replace(record, data=record.data[:, first:last], start_utc=start)
 
 
 def without_stuck(record: Record) -> tuple[Record, dict[str, float]]:

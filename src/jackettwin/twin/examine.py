@@ -24,6 +24,7 @@ from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
+from jackettwin.records.repair import common_time
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
@@ -124,6 +125,7 @@ def examine(
         partial(repaired, quality=quality),
         partial(in_rotor_axes, source=source),
         partial(without_rotor_orders, source=source),
+        partial(cut_to_common_time, quality=quality),
     )
     ready, findings = prepared(chosen, steps)
     findings = (
@@ -135,6 +137,7 @@ def examine(
 
     def compute() -> Identified:
         found = _beside_orders(identify(ready, settings, picks=picks), findings)
+        found = _out_of_step(found, findings)
         found = along_axes(found) if in_axes else found
         warnings = (str(f) for f in findings if f.severity != "info")
         notes = (str(f) for f in findings if f.severity == "info")
@@ -146,6 +149,14 @@ def examine(
         identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes), compute
     )
     return Examination(ready, quality, kept.found, findings, kept.comparison)
+
+
+def _out_of_step(found: Identification, findings: Findings) -> Identification:
+    """Doubt every mode of a record whose clocks could not be brought into step."""
+    reasons = [f for f in findings if f.code == "clocks_wander"]
+    if not reasons:
+        return found
+    return replace(found, modes=tuple(m.flagged(ModeStatus.DOUBTFUL, *reasons) for m in found.modes))
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
@@ -160,6 +171,11 @@ def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
 def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
     """Take out what the quality says is damaged; what was damaged stands in the quality."""
     return repair(record, quality), ()
+
+
+def cut_to_common_time(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
+    """Cut a record to what all loggers have once in step; earlier steps need the source's samples."""
+    return common_time(record, quality), () if quality.clocks.judged else (Finding("clocks_wander"),)
 
 
 def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:

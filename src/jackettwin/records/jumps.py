@@ -1,0 +1,92 @@
+"""Where series of a few windows, one a channel, leave their level or their line for another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+SIGMAS = 6.0
+"""Standard deviations, of the scatter between windows, beyond which a change counts."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of some series between two runs of windows.
+
+    Attributes
+    ----------
+    rows : tuple of int
+        Series that step.
+    by : (n_series,)
+        Level after over level before, of all series.
+    before, after : int
+        Windows: the end (excluded) of the run before, the first of the run after.
+    """
+
+    rows: tuple[int, ...]
+    by: FloatArray
+    before: int
+    after: int
+
+
+def scatter(series: FloatArray) -> FloatArray:
+    """Return the standard deviation of each series in a window, by the steps between windows.
+
+    Parameters
+    ----------
+    series : (n_windows, n_series)
+    """
+    steps = np.diff(series, axis=0)
+    spread = np.median(np.abs(steps - np.median(steps, axis=0)), axis=0)
+    return np.asarray(1.4826 * spread / np.sqrt(2.0))
+
+
+def lines(series: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return Theil's slope of each series, (n_series,), and the misfits, (n_windows, n_series)."""
+    n = len(series)
+    i, j = np.triu_indices(n, 1)
+    slope = np.median((series[j] - series[i]) / (j - i)[:, None], axis=0)
+    rest = series - slope * np.arange(n)[:, None]
+    return np.asarray(slope), np.asarray(rest - np.median(rest, axis=0))
+
+
+def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
+    """Return first and last window (excluded) of the runs between which a series leaves its line.
+
+    Examples
+    --------
+    >>> runs(np.repeat([[0.0], [1.0]], [4, 6], axis=0), 0.1)
+    [(0, 4), (4, 10)]
+    """
+    tolerance = _tolerance(series, reach)
+    _, rest = lines(series)
+    step = np.diff(series, axis=0)
+    step = step - np.median(step, axis=0)
+    # a line takes half of a jump in the middle
+    off = np.abs(rest).max(axis=0) > 0.5 * tolerance
+    broken = 1 + np.flatnonzero((off & (np.abs(step) > tolerance)).any(axis=1))
+    edges = [0, *(int(k) for k in broken), len(series)]
+    return [(a, b) for a, b in pairwise(edges) if b > a]
+
+
+def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[Step]:
+    """Return the steps between runs; a run of one window is the one in which a step lies."""
+    tolerance = _tolerance(series, reach)
+    kept = [run for run in between if run[1] - run[0] > 1] or between
+    out = []
+    for before, after in pairwise(kept):
+        by = np.median(series[slice(*after)], axis=0) - np.median(series[slice(*before)], axis=0)
+        rows = tuple(int(i) for i in np.flatnonzero(np.abs(by) > tolerance))
+        if rows:
+            out.append(Step(rows, by, before[1], after[0]))
+    return out
+
+
+def _tolerance(series: FloatArray, reach: float) -> FloatArray:
+    """Return the least step of each series that is a jump."""
+    return np.asarray(np.maximum(reach, SIGMAS * scatter(series)))

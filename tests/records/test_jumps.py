@@ -1,0 +1,42 @@
+"""Series that step are told from series that drift or scatter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.records.jumps import lines, runs, scatter, steps
+
+
+def test_noise_and_drift_are_no_steps(rng: np.random.Generator) -> None:
+    time = np.arange(12.0)[:, None]
+    for _ in range(100):
+        series = 0.01 * rng.standard_normal((12, 3)) + time * rng.normal(size=3)
+        # six standard deviations of a scatter that is itself known from ten steps
+        assert len(runs(series, 0.08)) == 1
+
+
+def test_a_step_is_found_where_it_is(rng: np.random.Generator) -> None:
+    series = 0.01 * rng.standard_normal((12, 3))
+    series[7:, 1] += 0.5
+    found = runs(series, 0.08)
+    assert found == [(0, 7), (7, 12)]
+    (step,) = steps(series, found, 0.08)
+    assert (step.rows, step.before, step.after) == ((1,), 7, 7)
+    # a mean of five of 0.01
+    assert step.by[1] == pytest.approx(0.5, abs=0.02)
+
+
+def test_the_window_a_step_lies_in_belongs_to_neither_side(rng: np.random.Generator) -> None:
+    series = 0.01 * rng.standard_normal((12, 1))
+    series[6] += 0.25
+    series[7:] += 0.5
+    (step,) = steps(series, runs(series, 0.08), 0.08)
+    assert (step.before, step.after) == (6, 7)
+
+
+def test_slope_and_scatter(rng: np.random.Generator) -> None:
+    series = np.arange(400.0)[:, None] * 0.3 + rng.standard_normal((400, 1))
+    # 1/√(n³/12) for the slope; 1.2/√n for a median absolute deviation
+    assert lines(series)[0] == pytest.approx(0.3, abs=0.002)
+    assert scatter(series) == pytest.approx(1.0, abs=0.25)

@@ -1,0 +1,122 @@
+"""Loggers out of step are found, brought into step or cut; structures that lag by nature are left alone.
+
+``qualify/logger_clocks.py`` counts both over many structures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jackettwin.records import Record, assess, repair
+from jackettwin.records.repair import common_time
+
+UPPER = [0, 1, 4, 5]
+LOWER = (2, 3, 6, 7)
+CODES = (
+    "clock_late",
+    "clock_drift",
+    "clock_jump",
+    "clock_cut",
+    "clock_late_or_complex",
+    "gain_jump",
+    "clocks_wander",
+)
+
+
+def said(record: Record) -> list[str]:
+    return [f.fault for f in assess(record).findings if f.fault in CODES]
+
+
+def moved(record: Record, rows: list[int], samples: int, start: int = 0) -> Record:
+    """The record with some rows late from a sample on."""
+    data = record.data.copy()
+    data[rows, start + samples :] = record.data[rows, start : record.data.shape[1] - samples]
+    return replace(record, data=data)
+
+
+def test_clocks_in_step_are_not_spoken_of(tower: SimpleNamespace) -> None:
+    for seed in range(20):
+        assert said(tower.record(seed)) == []
+
+
+@pytest.mark.parametrize("samples", [2, 4, 60, 400])
+def test_a_logger_that_is_late_is_brought_into_step(samples: int, tower: SimpleNamespace) -> None:
+    """Which of two halves is right is not known; in step they are."""
+    record = tower.record(1)
+    quality = assess(moved(record, UPPER, samples))
+    (late,) = quality.clocks.late
+    assert late.rows == LOWER
+    # four milliseconds: the phases of modes that noise bends
+    assert late.delay_s == pytest.approx(-samples / 20.0, abs=4e-3)
+    ready = common_time(repair(moved(record, UPPER, samples), quality), quality)
+    assert np.isfinite(ready.data).all()
+    y = record.data[:, : ready.data.shape[1]]
+    y -= y.mean(axis=1, keepdims=True)
+    # a hundredth of a second of the second mode, 0.75 Hz
+    assert np.abs(ready.data - y)[:, 400:-400].max() < 0.1 * y.std(axis=1).max()
+
+
+def test_one_channel_alone_is_late(tower: SimpleNamespace) -> None:
+    (late,) = assess(moved(tower.record(2), [6], 10)).clocks.late
+    assert late.rows == (6,)
+    assert late.certain
+    assert late.delay_s == pytest.approx(0.5, abs=5e-3)
+
+
+@pytest.mark.parametrize("start", [6_000, 6_700, 3_500])
+def test_a_clock_that_jumps_leaves_the_longer_part(start: int, tower: SimpleNamespace) -> None:
+    record = replace(tower.record(3), start_utc=datetime(2025, 1, 1, tzinfo=UTC))
+    broken = moved(record, UPPER, 4, start)
+    quality = assess(broken)
+    (jump,) = quality.clocks.jumps
+    assert abs(jump.by_s) == pytest.approx(0.2, abs=0.01)
+    assert jump.start <= start <= jump.stop
+    ready = common_time(repair(broken, quality), quality)
+    assert ready.duration_s >= 240.0
+    assert ready.start_utc is not None
+    # in step again: the upper sensors' phase against the lower ones is that of the sound record
+    assert [f for f in said(ready) if f != "clock_late_or_complex"] == []
+
+
+def test_a_clock_that_runs_fast_is_slowed_down(tower: SimpleNamespace) -> None:
+    record = tower.record(4, noise=0.005)
+    t = np.arange(record.data.shape[1])
+    data = record.data.copy()
+    for i in UPPER:
+        data[i] = np.interp(t * (1.0 - 200e-6), t, data[i])
+    (late,) = assess(replace(record, data=data)).clocks.late
+    assert set(late.rows) in ({*UPPER}, {*LOWER})
+    assert abs(late.drift) == pytest.approx(200e-6, abs=6.0 * late.drift_std)
+    assert late.drift_std < 20e-6
+
+
+def test_complex_modes_are_no_delay(tower: SimpleNamespace) -> None:
+    """Each mode lags in its own way between the sensors, up to ten degrees: 20 records."""
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        data = []
+        for f_1, f_2 in ((0.178, 0.76), (0.176, 0.74)):
+            modal = [tower.oscillator(rng.normal(size=24_000), f, 0.01, 20.0) for f in (f_1, f_2)]
+            lines = np.fft.rfft(modal, axis=1)
+            lag = np.exp(1j * np.radians(rng.uniform(-10.0, 10.0, (4, 2))))
+            data.append(np.fft.irfft((tower.shapes.T * lag) @ lines, axis=1)[:, 12_000:])
+        record = replace(tower.record(seed), data=np.vstack(data))
+        record = replace(
+            record, data=record.data + 0.02 * record.data.std() * rng.normal(size=record.data.shape)
+        )
+        assert said(record) == []
+
+
+def test_a_sensor_that_turns_or_dies_is_no_jump_of_its_clock(tower: SimpleNamespace) -> None:
+    record = tower.record(6)
+    for factor in (-1.0, 1e-3):
+        data = record.data.copy()
+        data[1, 6_000:] *= factor
+        quality = assess(replace(record, data=data))
+        assert not quality.clocks.jumps
+        assert not quality.clocks.late
