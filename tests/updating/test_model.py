@@ -1,5 +1,7 @@
 """The condensed model against the full one, and gradients against differences."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -142,3 +144,10 @@ def test_modes_that_the_steel_overdamps_are_named(jacket15: Assembly) -> None:
 def test_modes_that_the_structure_has_not_are_named(jacket15: Assembly) -> None:
     with pytest.raises(InputError, match=r"mode: the structure has fewer modes \(got 2000\)"):
         support_model(jacket15, family=family("kelvin-voigt"), rayleigh=Rayleigh(), highest_mode=2000)
+
+
+def test_a_model_survives_being_stored(models: dict[str, SupportModel]) -> None:
+    for model in models.values():
+        again = pickle.loads(pickle.dumps(model))
+        theta = np.array([np.sqrt(p.low * p.high) for p in model.parameters])
+        np.testing.assert_array_equal(again.predict(theta, (1, 2)).poles, model.predict(theta, (1, 2)).poles)

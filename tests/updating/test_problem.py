@@ -1,5 +1,6 @@
 """One cost for search and sampling: gradients, states that share parameters, priors."""
 
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -144,3 +145,11 @@ def test_parameters_that_grow(model: SupportModel) -> None:
     up, down = (problem.evaluate(z + s, near)[0] for s in (h, -h))
     # second order in h
     np.testing.assert_allclose(J[:, 3], (up - down) / 2e-4, rtol=1e-5, atol=1e-6)
+
+
+def test_a_problem_survives_being_stored(windy: Problem) -> None:
+    """Another process evaluates it to the last bit."""
+    z = windy.prior.low + 0.4 * (windy.prior.high - windy.prior.low)
+    again = pickle.loads(pickle.dumps(windy))
+    for here, there in zip(windy.evaluate(z, None)[:2], again.evaluate(z, None)[:2], strict=True):
+        np.testing.assert_array_equal(here, there)

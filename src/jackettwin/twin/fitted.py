@@ -20,6 +20,10 @@ FloatArray = npt.NDArray[np.float64]
 
 _FAR_ABOVE = 3.0
 """A target this many times above the model's highest numbered mode is in another unit."""
+_LEAST_SHARE, _MOST_SHARE = 0.5, 1.15
+"""Of a mode's frequency on rigid feet: what soft soil leaves of it, and what errors of a model add to it."""
+_FITS = 0.2
+"""A mode fits that lies less than this below its frequency on rigid feet, or half of it above."""
 _STIFFEST = 1.5
 """One this many times above its own mode on pinned feet is another mode's: supports only soften."""
 
@@ -60,6 +64,7 @@ def target_modes(
                 allowed=f"up to {most:.3g} Hz here",
                 remedy="give Hz, not mHz, rad/s or cycles a minute",
             )
+        _refuse_misnumbered(config, place, labels, pinned_hz)
         own = float(pinned_hz[target.mode - 1])
         if (target.frequency_hz or 0.0) > _STIFFEST * own:
             raise InputError(
@@ -98,6 +103,39 @@ def target_modes(
         )
         for t in sorted(config.targets, key=lambda t: t.mode)
     )
+
+
+def _refuse_misnumbered(
+    config: TwinConfig, place: int, labels: tuple[str, ...], pinned_hz: FloatArray
+) -> None:
+    """Refuse a target far from its own mode where another mode, not among the targets, would fit.
+
+    Raises
+    ------
+    InputError
+        Names the mode that fits.
+    """
+    target = config.targets[place]
+    if target.frequency_hz is None:
+        return
+    share = target.frequency_hz / pinned_hz
+    own = float(share[target.mode - 1])
+    if _LEAST_SHARE <= own <= _MOST_SHARE:
+        return
+    taken = {t.mode for t in config.targets}
+    fitting = [i for i, s in enumerate(share) if i + 1 not in taken and 1.0 - _FITS <= s <= 1.0 + 0.5 * _FITS]
+    if fitting:
+        best = min(fitting, key=lambda i: abs(share[i] - 1.0))
+        raise InputError(
+            "the frequency is far from its mode's, and another mode's fits",
+            file=config.path,
+            field=f"targets.{place}.frequency_hz",
+            value=target.frequency_hz,
+            allowed=f"about {pinned_hz[target.mode - 1]:.4g} Hz or less for mode {target.mode} "
+            f"({labels[target.mode - 1]}), on rigid feet",
+            remedy=f"mode {best + 1} ({labels[best]}) has {pinned_hz[best]:.4g} Hz on rigid feet: "
+            f"write mode: {best + 1}",
+        )
 
 
 def recorded_modes(

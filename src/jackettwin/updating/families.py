@@ -91,11 +91,19 @@ class Family:
         return family, (self.name,)
 
 
+def _kelvin_voigt(values: FloatArray, _: float) -> Law:
+    return kelvin_voigt(float(values[0]), float(values[1]))
+
+
 def _kelvin_voigt_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
     rows, slopes = _empty(values, branches=0)
     rows[:, K0], rows[:, C] = values.T
     slopes[:, K0, 0], slopes[:, C, 1] = values.T
     return rows, slopes
+
+
+def _zener(values: FloatArray, _: float) -> Law:
+    return zener(float(values[0]), float(values[1]), float(values[2]))
 
 
 def _zener_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
@@ -106,6 +114,10 @@ def _zener_rows(values: FloatArray, _: float) -> tuple[FloatArray, FloatArray]:
     slopes[:, K0, 0], slopes[:, BRANCHES, 2] = k0, k1
     slopes[:, BRANCHES + 1, 1], slopes[:, BRANCHES + 1, 2] = tau, -tau
     return rows, slopes
+
+
+def _maxwell_3(values: FloatArray, reference_hz: float) -> Law:
+    return maxwell_3(float(values[0]), float(values[1]), reference_hz)
 
 
 def _maxwell_3_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
@@ -127,6 +139,10 @@ def _maxwell_3_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray
     slopes[:, K0, 1] = k0 * dk0
     slopes[:, BRANCHES::2, 1] = rows[:, BRANCHES::2] * ((ds / s + dk0)[:, None] + dw)
     return rows, slopes
+
+
+def _springpot(values: FloatArray, reference_hz: float) -> Law:
+    return Springpot(float(values[0]), float(values[1]), 2.0 * pi * reference_hz)
 
 
 def _springpot_rows(values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
@@ -153,25 +169,25 @@ FAMILIES: Mapping[str, Family] = {
         Family(
             "kelvin-voigt",
             (Parameter("k", *_K), Parameter("c", *_C)),
-            lambda v, _: kelvin_voigt(float(v[0]), float(v[1])),
+            _kelvin_voigt,
             _kelvin_voigt_rows,
         ),
         Family(
             "zener",
             (Parameter("k0", *_K), Parameter("c", *_C), Parameter("k1", *_K)),
-            lambda v, _: zener(float(v[0]), float(v[1]), float(v[2])),
+            _zener,
             _zener_rows,
         ),
         Family(
             "maxwell-3",
             (Parameter("k", *_K), Parameter("loss_factor", 1e-4, 0.6, "-")),
-            lambda v, f0: maxwell_3(float(v[0]), float(v[1]), f0),
+            _maxwell_3,
             _maxwell_3_rows,
         ),
         Family(
             "springpot",
             (Parameter("k", *_K), Parameter("alpha", 1e-4, 0.5, "-")),
-            lambda v, f0: Springpot(float(v[0]), float(v[1]), 2.0 * pi * f0),
+            _springpot,
             _springpot_rows,
             relaxes=False,
         ),
