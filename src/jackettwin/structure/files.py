@@ -12,6 +12,7 @@ from pydantic import Field
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.plausible import refuse_tiny
+from jackettwin.structure.appurtenances import hung_on_legs
 from jackettwin.structure.blade_files import read_flexible_rotor
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
 from jackettwin.structure.masses import body_from_static_moments
@@ -169,9 +170,10 @@ class LatticeSchema(Schema):
     leg_diameter_m: float
     leg_thickness_bottom_m: float
     leg_thickness_top_m: float
-    brace: SectionSchema
+    brace: SectionSchema | list[SectionSchema]
     material: MaterialSchema = MaterialSchema()
     mud_braces: bool = True
+    base_z_m: float = 0.0
 
 
 class TransitionPieceSchema(Schema):
@@ -193,6 +195,15 @@ class TowerSchema(Schema):
     material: MaterialSchema = MaterialSchema()
 
 
+class AppurtenanceSchema(Schema):
+    """What hangs on the legs and carries nothing: boat landings, anodes, J-tubes, growth."""
+
+    mass_kg: Annotated[float, Field(ge=0.0, le=1e9)]
+    bottom_z_m: float
+    top_z_m: float
+    legs: list[Annotated[int, Field(ge=1)]] = []
+
+
 class JacketSchema(Schema):
     """The parametric form."""
 
@@ -200,6 +211,7 @@ class JacketSchema(Schema):
     transition_piece: TransitionPieceSchema
     tower: TowerSchema
     rna: RnaSchema | None = None
+    appurtenances: dict[str, AppurtenanceSchema] = {}
 
 
 class StructureSchema(Schema):
@@ -262,7 +274,6 @@ def build_structure(schema: StructureSchema, *, default_name: str, folder: Path 
             "members",
             "sections",
             "materials",
-            "masses",
             "rna",
             "rigid_links",
         } & schema.model_fields_set
@@ -272,7 +283,7 @@ def build_structure(schema: StructureSchema, *, default_name: str, folder: Path 
                 field=sorted(given)[0],
                 remedy="keep jacket: or the explicit form",
             )
-        return _build_jacket(schema.jacket, name=name, sea_level_z_m=schema.sea_level_z_m, folder=folder)
+        return _build_jacket(schema.jacket, schema, name=name, folder=folder)
     if not schema.members:
         raise InputError(
             "required key is missing", field="members", remedy="add members:, or a parametric jacket:"
@@ -323,7 +334,10 @@ def _build_member(
     return Member(name, *m.nodes, sections[first], sections[last], materials[m.material], m.part)
 
 
-def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float, folder: Path | None) -> Structure:
+def _build_jacket(
+    schema: JacketSchema, around: StructureSchema, *, name: str, folder: Path | None
+) -> Structure:
+    """Return a parametric jacket, with the bodies and the settings that stand around it in the file."""
     lattice, tp, tower = schema.lattice, schema.transition_piece, schema.tower
     with located(field="jacket"):
         structure = jacket(
@@ -337,9 +351,12 @@ def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float, fold
                 leg_diameter_m=lattice.leg_diameter_m,
                 leg_thickness_bottom_m=lattice.leg_thickness_bottom_m,
                 leg_thickness_top_m=lattice.leg_thickness_top_m,
-                brace=lattice.brace.build("lattice.brace"),
+                brace=tuple(b.build(f"lattice.brace.{i}") for i, b in enumerate(lattice.brace))
+                if isinstance(lattice.brace, list)
+                else lattice.brace.build("lattice.brace"),
                 material=lattice.material.build("lattice.material"),
                 mud_braces=lattice.mud_braces,
+                base_z_m=lattice.base_z_m,
             ),
             transition_piece=TransitionPiece(
                 tp.top_z_m,
@@ -355,6 +372,18 @@ def _build_jacket(schema: JacketSchema, *, name: str, sea_level_z_m: float, fold
                 tower.material.build("tower.material"),
             ),
             rna=None,
-            sea_level_z_m=sea_level_z_m,
+            sea_level_z_m=around.sea_level_z_m,
         )
-        return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
+        hung: list[PointMass] = []
+        for key, a in schema.appurtenances.items():
+            with located(field=f"appurtenances.{key}"):
+                hung += hung_on_legs(structure, key, a.mass_kg, a.bottom_z_m, a.top_z_m, a.legs)
+    bodies = [m.build(m.node, field=f"masses.{i}") for i, m in enumerate(around.masses)]
+    structure = replace(
+        structure,
+        masses=(*hung, *bodies),
+        beam=around.beam,
+        rotary_inertia=around.rotary_inertia,
+        subdivide=around.subdivide,
+    )
+    return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)

@@ -13,10 +13,11 @@ from jackettwin.structure.model import Material, Member, PointMass, Reaction, Se
 
 @dataclass(frozen=True)
 class Lattice:
-    """Legs and braces from the mudline (z = 0) to the leg tops.
+    """Legs and braces from the feet (``base_z_m``) to the leg tops, ``height_m`` above them.
 
     Bay heights form a geometric series with ratio (top_width/base_width)^(1/bays), so that all X-braces
-    are similar; the leg wall goes linearly from the bottom bay to the top bay.
+    are similar; the leg wall goes linearly from the bottom bay to the top bay. Braces have one section, or
+    one a bay from the bottom up; the mud braces have that of the lowest bay.
     """
 
     legs: int
@@ -27,9 +28,19 @@ class Lattice:
     leg_diameter_m: float
     leg_thickness_bottom_m: float
     leg_thickness_top_m: float
-    brace: Section
+    brace: Section | tuple[Section, ...]
     material: Material
     mud_braces: bool = True
+    base_z_m: float = 0.0
+
+    @property
+    def top_z_m(self) -> float:
+        """Z of the leg tops."""
+        return self.base_z_m + self.height_m
+
+    def brace_of(self, bay: int) -> Section:
+        """Return the section of a bay's braces; bays count from 0 at the bottom."""
+        return self.brace[bay] if isinstance(self.brace, tuple) else self.brace
 
 
 @dataclass(frozen=True)
@@ -76,11 +87,15 @@ def jacket(
         _require(0.0 < value <= 1e3, f"lattice.{field}", value, "> 0, at most 1000 m")
     _require(1 <= tower.elements <= 1000, "tower.elements", tower.elements, "1 to 1000")
     _require(0.0 < tower.height_m <= 1e3, "tower.height_m", tower.height_m, "> 0, at most 1000 m")
+    n_braces = len(lattice.brace) if isinstance(lattice.brace, tuple) else lattice.bays
     _require(
-        transition_piece.top_z_m > lattice.height_m,
+        n_braces == lattice.bays, "lattice.brace", n_braces, f"one section, or {lattice.bays}, one a bay"
+    )
+    _require(
+        transition_piece.top_z_m > lattice.top_z_m,
         "transition_piece.top_z_m",
         transition_piece.top_z_m,
-        f"> height_m = {lattice.height_m:g}",
+        f"> base_z_m + height_m = {lattice.top_z_m:g}",
     )
     nodes: dict[str, Vector] = {}
     members: list[Member] = []
@@ -114,9 +129,9 @@ def _levels(lattice: Lattice) -> list[tuple[float, float]]:
     """Return (z, width) of every level."""
     ratio = (lattice.top_width_m / lattice.base_width_m) ** (1.0 / lattice.bays)
     heights = ratio ** np.arange(lattice.bays)
-    z = np.concatenate([[0.0], np.cumsum(heights / heights.sum())]) * lattice.height_m
-    width = lattice.base_width_m + (lattice.top_width_m - lattice.base_width_m) * z / lattice.height_m
-    return [(float(a), float(b)) for a, b in zip(z, width, strict=True)]
+    above = np.concatenate([[0.0], np.cumsum(heights / heights.sum())]) * lattice.height_m
+    width = lattice.base_width_m + (lattice.top_width_m - lattice.base_width_m) * above / lattice.height_m
+    return [(lattice.base_z_m + float(a), float(b)) for a, b in zip(above, width, strict=True)]
 
 
 def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Member]) -> None:
@@ -139,7 +154,7 @@ def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Membe
             _add_cross(lattice, face, bay, nodes, members)
     for leg in range(n if lattice.mud_braces else 0):
         ends = _leg_node(leg, 0), _leg_node((leg + 1) % n, 0)
-        members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.brace, lattice.material, "jacket"))
+        members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.brace_of(0), lattice.material, "jacket"))
 
 
 def _add_cross(
@@ -160,13 +175,13 @@ def _add_cross(
     nodes[centre] = (float(x), float(y), float(z))
     for k, corner in enumerate(corners, start=1):
         name = f"brace_{face + 1}_{bay + 1}_{k}"
-        members.append(_member(name, (corner, centre), lattice.brace, lattice.material, "jacket"))
+        members.append(_member(name, (corner, centre), lattice.brace_of(bay), lattice.material, "jacket"))
 
 
 def _add_transition_piece(
     tp: TransitionPiece, lattice: Lattice, nodes: dict[str, Vector], members: list[Member]
 ) -> None:
-    nodes["tp_bottom"] = (0.0, 0.0, lattice.height_m)
+    nodes["tp_bottom"] = (0.0, 0.0, lattice.top_z_m)
     nodes["tp_top"] = (0.0, 0.0, tp.top_z_m)
     tops = [_leg_node(leg, lattice.bays) for leg in range(lattice.legs)]
     for leg, top in enumerate(tops):

@@ -31,7 +31,7 @@ def read(path: Path) -> Table:
 
 def pieces(path: Path) -> Iterator[Table]:
     """Yield the columns in tables of ``ROWS`` rows."""
-    with pq.ParquetFile(path, memory_map=True, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
+    with pq.ParquetFile(path, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
         for batch in file.iter_batches(batch_size=ROWS):
             yield _table(pa.Table.from_batches([batch]))
 
