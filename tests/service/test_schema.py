@@ -1,0 +1,57 @@
+"""Every answer to anything that fits the OpenAPI document is declared in it, and none is a fault of ours."""
+
+import schemathesis
+from fastapi.testclient import TestClient
+from hypothesis import HealthCheck, Phase, given, settings
+from requests import Request
+from schemathesis.checks import (
+    content_type_conformance,
+    not_a_server_error,
+    response_schema_conformance,
+    status_code_conformance,
+)
+from tests.service.conftest import turn, upload
+
+from jackettwin.service.context import Service
+
+CHECKS = (
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_schema_conformance,
+)
+EXAMPLES = 12
+"""Requests a route: enough for every kind of value that a generator likes to try first."""
+ENDLESS = "/api/v1/events"
+
+
+def test_answers_are_declared_and_never_our_fault(client: TestClient, service: Service) -> None:
+    upload(client, 1)
+    turn(service)
+    schema = schemathesis.openapi.from_dict(client.get("/api/v1/openapi.json").json())
+    tried = 0
+    for found in schema.get_all_operations():
+        operation = found.ok()
+        if operation.path == ENDLESS:
+            continue
+
+        @settings(
+            max_examples=EXAMPLES,
+            deadline=None,
+            database=None,
+            derandomize=True,
+            phases=[Phase.explicit, Phase.generate],
+            suppress_health_check=list(HealthCheck),
+        )
+        @given(case=operation.as_strategy())
+        def ask(case) -> None:
+            nonlocal tried
+            tried += 1
+            arguments = case.as_transport_kwargs(base_url="http://127.0.0.1:8470")
+            sent = Request(**{k: v for k, v in arguments.items() if k != "cookies"}).prepare()
+            body = sent.body.encode() if isinstance(sent.body, str) else sent.body or b""
+            answer = client.request(sent.method, sent.url, headers=dict(sent.headers), content=body)
+            case.validate_response(answer, checks=list(CHECKS))
+
+        ask()
+    assert tried > 200
