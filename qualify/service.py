@@ -100,7 +100,7 @@ def under_fire(
 
 
 def under_load(folder: Path, seconds: float) -> dict[str, float]:
-    """Send records as fast as two workers take them while fifty readers ask; return rates and times to answer."""
+    """Send records as fast as two workers take them while fifty readers ask; return rates and delays."""
     answers: list[float] = []
     stop = threading.Event()
     with Server(new_store(folder)) as server:
@@ -200,14 +200,15 @@ def main() -> None:
     counts, states = fire["counts"], fire["states"]
     assert isinstance(counts, dict)
     assert isinstance(states, dict)
-    different = sum(states.get(day) != value for day, value in expected.items()) + len(
-        set(states) - set(expected)
-    )
+    days = {*expected, *states}
+    different = sum(states.get(day) != expected.get(day) for day in days)
+    struck = ", ".join(f"{n} {what}" for what, n in fire["struck"].items())  # type: ignore[attr-defined]
+    rate, memory, lease_ms = load["seconds_a_record"], load["memory_mb"], queued["lease_ms"]
     lines = [
         "# The service under load and under fire",
         "",
-        f"`python qualify/service.py --records {given.records} --kills {given.kills} --load-s {given.load_s:g} "
-        f"--queued {given.queued} --seed {given.seed}`",
+        f"`python qualify/service.py --records {given.records} --kills {given.kills} "
+        f"--load-s {given.load_s:g} --queued {given.queued} --seed {given.seed}`",
         "",
         "| what | figure |",
         "|---|---|",
@@ -216,8 +217,8 @@ def main() -> None:
         f"| days with another state than undisturbed | {different} of {len(days)} |",
         f"| records taken and observed under load | {load['records']}, one in {rate:.2f} s |",
         f"| {READERS} readers meanwhile | {load['answers']} answers, p95 {load['p95_ms']:.0f} ms |",
-        f"| memory of the server | {memory:.0f} MB, {load['memory_growth']:+.1%} over the second half |",
-        f"| {queued['queued']} queued | a lease of {queued['leased']} takes {queued['lease_ms']:.1f} CPU-ms |",
+        f"| memory of the server | {memory:.0f} MB, {load['memory_growth']:+.1%} over the 2nd half |",
+        f"| {queued['queued']} queued | a lease of {queued['leased']} takes {lease_ms:.1f} CPU-ms |",
         f"| undisturbed | {seconds:.2f} s a record on two workers, sending included |",
     ]
     PAGE.write_text("\n".join(lines) + "\n")
