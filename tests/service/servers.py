@@ -78,7 +78,7 @@ class Database:
         (self.data / "postmaster.pid").unlink(missing_ok=True)
         arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
         self._process = subprocess.Popen([server, *arguments], **_quiet(), cwd="/", user=self._user())
-        wait_for_port(self.port)
+        wait_for_port(self.port, 60.0)
         time.sleep(0.5)  # it listens a moment before it answers
 
     def _user(self) -> str | None:

@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager, suppress
 
 from fastapi import FastAPI, Request, Response
 from fastapi.responses import JSONResponse
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.middleware.gzip import GZipMiddleware
 
 from jackettwin.service import auth, pages, problems
@@ -76,11 +77,8 @@ def _guarded(
             most = service.settings.upload_limit_bytes + _FIELDS_BYTES
             if not length.isdecimal() or int(length) > most:
                 raise problems.ApiError(413, "the request is too large", allowed=f"up to {most} bytes")
-            who = await asyncio.to_thread(
-                auth.who_asks, request, service.database, service.settings, service.now()
-            )
-            auth.refuse_forged(request, who)
-            request.state.who = who
+            request.state.who = await _who(service, request)
+            auth.refuse_forged(request, request.state.who)
         except problems.ApiError as error:
             return JSONResponse(
                 error.problem.model_dump(exclude_none=True),
@@ -95,6 +93,18 @@ def _guarded(
         return await _tagged(request, response)
 
     return guard
+
+
+async def _who(service: Service, request: Request) -> auth.Who | None:
+    """Return who asks; without a database only the questions about the server's health are answered."""
+    try:
+        return await asyncio.to_thread(
+            auth.who_asks, request, service.database, service.settings, service.now()
+        )
+    except SQLAlchemyError:
+        if request.url.path in (f"{API}/health", f"{API}/ready"):
+            return None
+        raise problems.no_database() from None
 
 
 async def _tagged(request: Request, response: Response) -> Response:

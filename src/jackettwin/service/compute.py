@@ -47,7 +47,7 @@ class Compute:
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",
                 host="127.0.0.1",
                 silence_logs=logging.ERROR,
             )
@@ -57,7 +57,7 @@ class Compute:
     @property
     def workers(self) -> int:
         """How many workers there are now."""
-        return len(self.client.scheduler_info(n_workers=-1)["workers"])
+        return len(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
         """Start a task; urgent ones overtake."""

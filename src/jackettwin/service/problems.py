@@ -8,6 +8,7 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
@@ -70,6 +71,11 @@ class ApiError(Exception):
         self.headers = headers
 
 
+def no_database() -> ApiError:
+    """Return the answer while the database is away: what was asked can be asked again."""
+    return ApiError(503, "the database does not answer; try again soon", headers={"Retry-After": "5"})
+
+
 def as_problem(error: InputError, status: int = 422) -> Problem:
     """Return an error of the user's input as a problem document; paths of ours are left out."""
     return Problem(
@@ -100,6 +106,7 @@ def register(app: FastAPI) -> None:
     app.add_exception_handler(InputError, _input_error)
     app.add_exception_handler(StarletteHTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _invalid_request)
+    app.add_exception_handler(OperationalError, _database_away)
 
 
 def _answer(problem: Problem, headers: dict[str, str] | None = None) -> JSONResponse:
@@ -115,6 +122,12 @@ async def _api_error(_: Request, error: Exception) -> JSONResponse:
 async def _input_error(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, InputError)
     return _answer(as_problem(error))
+
+
+async def _database_away(_: Request, error: Exception) -> JSONResponse:
+    assert isinstance(error, OperationalError)
+    away = no_database()
+    return _answer(away.problem, away.headers)
 
 
 async def _http_error(_: Request, error: Exception) -> JSONResponse:
