@@ -146,6 +146,9 @@ def make_service(
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
+    monkeypatch.setattr(
+        engine, "known", lambda folder, days: {"status": "ok", "parameters": {"days": len(days)}}
+    )
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:
         add_text_version(connection, made, "wtg", TWIN, {}, "test")

@@ -25,6 +25,7 @@ def test_a_record_is_taken_observed_and_asked_for(client: TestClient, service: S
     assert modes[0]["damping_ratio_interval_95"] == [0.01, 0.02]
     twin = client.get("/api/v1/assets/wtg/twin").json()
     assert (twin["records"], twin["days"]) == (1, 1)
+    assert twin["parameters"]["status"] == "ok"
     assert twin["modes"][0]["frequency_hz"] == pytest.approx(modes[0]["frequency_hz"])
 
 

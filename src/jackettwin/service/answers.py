@@ -111,6 +111,10 @@ def twin(
     model = engine.load_model(twin_folder(connection, service, version.asset, version.version))
     state = engine.state_of(model, days)
     known = engine.knowledge(model, state)
+    supports = (
+        None if at is not None else results.find_knowledge(connection, version.asset, version.model_hash)
+    )
+    known["parameters"] = dict(supports or {})
     return TwinOut(
         asset=version.asset,
         version=version.version,

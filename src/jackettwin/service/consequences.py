@@ -5,6 +5,7 @@ Modes, findings, the state of the day and of those after.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -13,13 +14,17 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection, select
 
 from jackettwin.service import engine
-from jackettwin.service.tasks import Outcome, Task
+from jackettwin.service.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
 
 if TYPE_CHECKING:
     from jackettwin.records import Channel
     from jackettwin.service.context import Place, Service
+
+
+KNOW = "know"
+"""Kind of the work that says what a state says of the supports."""
 
 
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
@@ -61,6 +66,38 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
     if record is not None and record.status == "received":
         records.set_status(connection, job.asset, job.record_id, "observing")
         journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "leased"}, service.now())
+
+
+def question_of(connection: Connection, service: Place, job: work.Job) -> Question:
+    """Return what a worker must know to say what a turbine's state says of its supports."""
+    days = results.states_until(connection, job.asset, job.model_hash)
+    folder = twin_folder(connection, service, job.asset, job.version)
+    return Question(str(folder), {state.day: state.document for state in days})
+
+
+def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+    """Keep what a state says of the supports."""
+    if work.finish(connection, job, service.server_id, "done", service.now()):
+        document = json.loads(outcome.document or "{}")
+        results.put_knowledge(connection, job.asset, job.model_hash, document, service.now())
+        journal.tell(connection, "state", job.asset, {"known": document["status"]}, service.now())
+
+
+def ask_known(connection: Connection, service: Place, job: work.Job) -> None:
+    """Queue the question what the state says now, behind everything that is observed."""
+    number = work.enqueue(
+        connection,
+        kind=KNOW,
+        asset=job.asset,
+        record_id="",
+        version=job.version,
+        model_hash=job.model_hash,
+        settings_hash=job.settings_hash,
+        code_version=job.code_version,
+        now=service.now(),
+        priority=-10,
+    )
+    work.try_again(connection, number)
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
@@ -115,6 +152,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
     )
     for finding in [f for f in outcome.findings if f["severity"] != "info"]:
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
+    ask_known(connection, service, job)
     journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
 
 
@@ -122,7 +160,7 @@ def failed(connection: Connection, service: Service, job: work.Job, reason: str)
     """Put work back that its worker did not survive, or set its record aside after the last try."""
     problem = {"detail": reason, "field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
     state = work.put_back(connection, job, service.server_id, problem)
-    if state == "set_aside":
+    if state == "set_aside" and job.kind != KNOW:
         records.set_status(connection, job.asset, job.record_id, "set_aside", problem)
         payload = {"record_id": job.record_id, "status": "set_aside", "detail": reason}
         journal.tell(connection, "record", job.asset, payload, service.now())

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event, Thread
 from typing import TYPE_CHECKING
 
+from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service import consequences
-from jackettwin.service.tasks import Outcome, observe_stored
+from jackettwin.service.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 
 if TYPE_CHECKING:
@@ -129,14 +131,20 @@ class Dispatcher(Thread):
             if not work.queue_sizes(connection).get("queued"):
                 return
         with writing(self.service.database) as connection:
-            jobs = work.lease(connection, self.service.server_id, free, self.service.now())
-            tasks = [(job, consequences.task_of(connection, self.service, job)) for job in jobs]
-            for job in jobs:
-                consequences.observing(connection, self.service, job)
-        for job, task in tasks:
-            future = self.service.compute.submit(observe_stored, task, priority=job.priority)
+            asking = any(running.job.kind == consequences.KNOW for running in self._running.values())
+            without = consequences.KNOW if asking else None  # a long answer must not hold up all workers
+            jobs = work.lease(connection, self.service.server_id, free, self.service.now(), without=without)
+            tasks = [self._task(connection, job) for job in jobs]
+        for job, (function, argument) in zip(jobs, tasks, strict=True):
+            future = self.service.compute.submit(function, argument, priority=job.priority)
             future.add_done_callback(lambda _: self.wake.set())
             self._running[job.id] = _Running(job, future, time.monotonic())
+
+    def _task(self, connection: Connection, job: work.Job) -> tuple[Callable[..., Outcome], Task | Question]:
+        if job.kind == consequences.KNOW:
+            return know, consequences.question_of(connection, self.service, job)
+        consequences.observing(connection, self.service, job)
+        return observe_stored, consequences.task_of(connection, self.service, job)
 
     def _collect(self) -> None:
         for number, running in list(self._running.items()):
@@ -148,7 +156,9 @@ class Dispatcher(Thread):
         if running.future.status == "finished":
             outcome: Outcome = running.future.result()
             with writing(self.service.database) as connection:
-                consequences.keep(connection, self.service, running.job, outcome)
+                asked = running.job.kind == consequences.KNOW
+                keep = consequences.keep_known if asked else consequences.keep
+                keep(connection, self.service, running.job, outcome)
         else:
             reason = _reason(running.future)
             with writing(self.service.database) as connection:

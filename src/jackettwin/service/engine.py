@@ -16,6 +16,7 @@ from jackettwin.records import Channel
 from jackettwin.service.tasks import Outcome, Task
 from jackettwin.store import read_waveform
 from jackettwin.twin import TwinModel, TwinState, advance, observe, read_twin, twin_model
+from jackettwin.twin.follow import estimate
 from jackettwin.twin.observation import OBSERVATION
 from jackettwin.twin.state import ALL, Day, empty_state
 from jackettwin.twin.stored import StoredSchema, digest
@@ -141,6 +142,29 @@ def knowledge(model: TwinModel, state: TwinState) -> dict[str, Any]:
         "modes": modes,
         "parameters": {},
         "status": "ok" if modes else "no mode of the model has been seen",
+    }
+
+
+def known(folder: Path, days: Mapping[str, str]) -> dict[str, Any]:
+    """Return what a state says of the supports: per parameter the median, its 90 % interval and unit."""
+    config, model = read_twin(folder / TWIN_FILE, records_follow=True), load_model(folder)
+    state = state_of(model, days)
+    found = estimate(config, model, state)
+    if found is None:
+        return {"status": "no mode of the model has been seen", "parameters": {}}
+    return {
+        "law": found.law,
+        "status": found.known.status,
+        "records": found.known.records,
+        "until_utc": found.known.time_utc.isoformat(),
+        "parameters": {
+            name: {
+                "median": value,
+                "interval_90": list(found.known.interval_90[name]),
+                "unit": found.units[name],
+            }
+            for name, value in found.known.median.items()
+        },
     }
 
 

@@ -131,6 +131,24 @@ def read_file(path: str, asset: str, store: str, samples_limit: int) -> Parsed:
     return Parsed(number, place, size, about(record))
 
 
+@dataclass(frozen=True)
+class Question:
+    """The days of a turbine, of which it is asked what they say of the supports."""
+
+    twin_folder: str
+    days: Mapping[str, str]
+
+
+def know(question: Question) -> Outcome:
+    """Answer a question about the supports."""
+    from jackettwin.service.engine import known
+
+    try:
+        return Outcome(json.dumps(known(Path(question.twin_folder), question.days)))
+    except JackettwinError as error:
+        return Outcome(json.dumps({"status": str(error), "parameters": {}}))
+
+
 def observe_stored(task: Task) -> Outcome:
     """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
     from jackettwin.service.engine import load_model, observed

@@ -10,7 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection, and_, delete, func, insert, select
 
-from jackettwin.store.tables import acknowledgements, findings, modes, observations, states
+from jackettwin.store.tables import acknowledgements, findings, knowledge, modes, observations, states
 
 
 @dataclass(frozen=True)
@@ -201,6 +201,23 @@ def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping
     """Return who took note of which alarm, {alarm key: note}."""
     rows = connection.execute(select(acknowledgements).where(acknowledgements.c.asset == asset))
     return {row.alarm_key: dict(row._mapping) for row in rows}
+
+
+def put_knowledge(
+    connection: Connection, asset: str, model_hash: str, document: Mapping[str, Any], now: datetime
+) -> None:
+    """Keep what a state says of the supports in place of what one before said."""
+    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
+    connection.execute(delete(knowledge).where(same))
+    row = {"asset": asset, "model_hash": model_hash, "computed_utc": now, "document": dict(document)}
+    connection.execute(insert(knowledge).values(**row))
+
+
+def find_knowledge(connection: Connection, asset: str, model_hash: str) -> Mapping[str, Any] | None:
+    """Return what is known of the supports, or None."""
+    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
+    row = connection.execute(select(knowledge.c.document).where(same)).one_or_none()
+    return None if row is None else row.document
 
 
 def unacknowledged_alarms(connection: Connection, asset: str, model_hash: str) -> int:

@@ -189,6 +189,16 @@ states = Table(
 )
 """What the records of each UTC day say together: a state of the twin is the sum of its days."""
 
+knowledge = Table(
+    "knowledge",
+    metadata,
+    Column("asset", ForeignKey("assets.name"), primary_key=True),
+    Column("model_hash", String(64), primary_key=True),
+    Column("computed_utc", Utc, nullable=False),
+    Column("document", JSON, nullable=False),
+)
+"""What the newest state says of the supports: costly to find, so found when there is time and kept."""
+
 findings = Table(
     "findings",
     metadata,

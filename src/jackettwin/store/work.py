@@ -73,11 +73,13 @@ def enqueue(
     return int(connection.execute(insert(work).values(**row)).inserted_primary_key[0])  # type: ignore[index]
 
 
-def lease(connection: Connection, owner: str, most: int, now: datetime) -> list[Job]:
-    """Take up to ``most`` pieces of queued work, urgent ones first, then the oldest."""
+def lease(
+    connection: Connection, owner: str, most: int, now: datetime, *, without: str | None = None
+) -> list[Job]:
+    """Take up to ``most`` pieces of queued work, urgent ones first, then the oldest, but none of one kind."""
     queued = (
         select(work)
-        .where(work.c.state == "queued")
+        .where(work.c.state == "queued", work.c.kind != (without or ""))
         .order_by(work.c.priority.desc(), work.c.id)
         .limit(most)
         .with_for_update(skip_locked=True)

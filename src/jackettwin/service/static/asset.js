@@ -30,6 +30,12 @@ async function twin() {
     words(m.label), fixed(m.frequency_hz, 4), fixed(m.frequency_std_hz, 4),
     fixed(m.damping_ratio === null ? null : 100 * m.damping_ratio, 2),
     fixed(m.damping_ratio_std === null ? null : 100 * m.damping_ratio_std, 2), m.records]), [1, 2, 3, 4, 5]);
+  const supports = known.parameters.parameters || {};
+  fill("supports", Object.entries(supports).map(([name, p]) => [
+    words(name), p.median.toPrecision(3), `${p.interval_90[0].toPrecision(3)} to ${p.interval_90[1].toPrecision(3)}`, p.unit]), [1, 2]);
+  document.getElementById("law").textContent = known.parameters.law
+    ? `Law ${known.parameters.law}, from ${known.parameters.records} records; posterior: ${known.parameters.status}.`
+    : "Not estimated yet: this is done when no record waits.";
   document.getElementById("sentence").textContent = known.records
     ? `${known.records} records of ${known.days} ${known.days === 1 ? "day" : "days"}, ${known.first_utc.slice(0, 16).replace("T", " ")} to ${known.last_utc.slice(0, 16).replace("T", " ")} UTC. ${known.status}`
     : "No record has been observed yet.";

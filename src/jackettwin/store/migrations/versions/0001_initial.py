@@ -131,6 +131,15 @@ def upgrade() -> None:
     op.create_index("ix_findings_record", "findings", ["asset", "record_id"], unique=False)
     op.create_index("ix_findings_time", "findings", ["asset", "time_utc"], unique=False)
     op.create_table(
+        "knowledge",
+        sa.Column("asset", sa.String(length=64), nullable=False),
+        sa.Column("model_hash", sa.String(length=64), nullable=False),
+        sa.Column("computed_utc", sa.DateTime(), nullable=False),
+        sa.Column("document", sa.JSON(), nullable=False),
+        sa.ForeignKeyConstraint(["asset"], ["assets.name"], name=op.f("fk_knowledge_asset")),
+        sa.PrimaryKeyConstraint("asset", "model_hash", name=op.f("pk_knowledge")),
+    )
+    op.create_table(
         "modes",
         sa.Column(
             "id", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), autoincrement=True, nullable=False
