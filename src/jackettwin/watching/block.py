@@ -11,7 +11,7 @@ from jackettwin.watching.design import Design
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, logarithms, std_power
 from jackettwin.watching.hours import NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
-from jackettwin.watching.memory import Bank, Belief, Memory, empty_bank, filtered, learn
+from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
 
 FloatArray = npt.NDArray[np.float64]
@@ -226,7 +226,7 @@ def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tup
         banks.append(done.bank)
         likelihoods.append(done.log_likelihood)
         if spoken is None:
-            spoken = _spoken(block, hours, apart, done.innovation / np.sqrt(done.spread))
+            spoken = _spoken(block, hours, apart, done)
     weights = block.log_weights + np.array(likelihoods)
     weights = weights - np.logaddexp.reduce(weights)
     if spoken is None:
@@ -241,7 +241,7 @@ def _with_begin(bank: Bank) -> Bank:
     return Bank(grown(bank.response), grown(bank.info), grown(bank.score))
 
 
-def _spoken(block: Block, hours: Hours, apart: FloatArray, z: FloatArray) -> Spoken:
+def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Spoken:
     memory = block.memories[0]
     rest = hours.values - hours.rows @ block.reference.T
     noise = hours.noise * memory.scale**2
@@ -250,8 +250,12 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, z: FloatArray) -> Spo
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
         std = np.sqrt(1.0 / total + memory.short_std**2 + memory.long_std**2)
-    chi2 = hours.chi2.sum(axis=0) / memory.scale**2
-    return Spoken(mean, std, *_with_outliers(chi2, hours.freedom.sum(axis=0), apart), z)
+    z = done.innovation / np.sqrt(done.spread)
+    # an hour's mean tells of the noise, too, by its share of what was not foreseen
+    share = np.nan_to_num(noise / done.spread)
+    chi2 = hours.chi2.sum(axis=0) / memory.scale**2 + np.sum(share * np.nan_to_num(z) ** 2, axis=0)
+    freedom = hours.freedom.sum(axis=0) + share.sum(axis=0)
+    return Spoken(mean, std, *_with_outliers(chi2, freedom, apart), z)
 
 
 def log_evidence(block: Block) -> FloatArray:

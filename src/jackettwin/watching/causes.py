@@ -19,6 +19,8 @@ _SENSOR_SHIFT = 0.002
 """Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; two hundred
 times as much in ln ζ."""
 _DAMPING_OVER_FREQUENCY = 200.0
+_SENSOR_PRIOR = 5.0
+"""Sensors and their cables fail some times as often as anything in the structure."""
 
 
 @dataclass(frozen=True)
@@ -99,5 +101,10 @@ def sensor_noise(quantities: Sequence[tuple[str, int]]) -> Cause:
     modes = np.array([mode for _, mode in quantities], dtype=np.intp)
     spread = np.where(kinds == "frequency", _SENSOR_SHIFT, _DAMPING_OVER_FREQUENCY * _SENSOR_SHIFT)
     return Cause(
-        f"{SENSOR}: more scatter", np.diag(spread), np.zeros(1), np.zeros(1), louder=modes, prior=1.0
+        f"{SENSOR}: more scatter",
+        np.diag(spread),
+        np.zeros(1),
+        np.zeros(1),
+        louder=modes,
+        prior=_SENSOR_PRIOR,
     )
