@@ -121,6 +121,9 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "in the direction of its shape the spectrum has no clear peak ({ratio:.2g} times the level beside)",
     ),
+    "steady_envelope": Kind(
+        "warning", "its amplitude wanders less than that of a mode so light should: it may be a tone"
+    ),
     "rotor_order_passes": Kind("warning", "{order}P of the rotor passes here: distrust the damping"),
     # updating
     "unpaired_shape": Kind(

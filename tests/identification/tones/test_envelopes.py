@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from jackettwin.identification import identify
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -13,6 +14,7 @@ from jackettwin.identification.tones.drifting_tones import tone_at
 from jackettwin.identification.tones.envelopes import (
     envelope_variance,
     is_steady_tone,
+    is_suspiciously_steady,
     least_variance,
 )
 from jackettwin.identification.tones.sinusoid import transform
@@ -132,3 +134,24 @@ def test_modes_of_short_records_are_no_tones(tower):
 def test_least_variance_grows_with_the_values_to_that_of_a_long_record():
     assert np.all(np.diff([least_variance(n) for n in (2, 5, 20, 100, 1e6)]) > 0)
     assert least_variance(1e6) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_tone_that_swells_and_drifts_a_little_is_suspicious_and_a_mode_seldom_is() -> None:
+    t = np.arange(6000) / 10.0
+    shape = np.array([1.0, -0.5], dtype=complex)
+    seen = {"tone": 0, "mode": 0}
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        keep = np.exp(-1.0 / 200.0)
+        slow = signal.lfilter([1.0 - keep], [1.0, -keep], rng.standard_normal(12000))[6000:]
+        swell = 1.0 + 0.3 * slow / slow.std()
+        tone = swell * np.cos(2.0 * np.pi * 0.6 * (t + 0.4 * np.sin(2.0 * np.pi * t / 300.0)))
+        pole = np.exp((-0.005 + 1j) * 2.0 * np.pi * 0.6 / 10.0)
+        forces = rng.standard_normal(12000)
+        mode = signal.lfilter([1.0], np.real(np.poly([pole, pole.conjugate()])), forces)[6000:]
+        for name, y in (("tone", tone), ("mode", np.asarray(mode) / np.std(mode))):
+            noisy = np.outer(shape.real, y) + 0.2 * rng.standard_normal((2, 6000))
+            seen[name] += is_suspiciously_steady(noisy, 10.0, 0.6, 0.004, shape)
+    assert seen["tone"] >= 15
+    # 2πζfT is 9 to 11: three in a hundred by chance
+    assert seen["mode"] <= 3

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
 from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
@@ -21,6 +22,7 @@ from jackettwin.identification.selection.candidates import (
 )
 from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
 from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -85,10 +87,18 @@ def chosen_modes(
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
     flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
-    found = replace(found, modes=tuple(flagged))
+    found = replace(found, modes=tuple(_steady(mode, y, ready) for mode in flagged))
     if settings.refine:
         found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
+
+
+def _steady(mode: ModalEstimate, y: FloatArray, ready: Prepared) -> ModalEstimate:
+    """Flag a light mode whose envelope is as steady as that of a tone."""
+    rate, shape = ready.settings.sample_rate_hz, mode.mode_shape / ready.scale
+    if not is_suspiciously_steady(y, rate, mode.frequency_hz, mode.damping_ratio, shape):
+        return mode
+    return mode.flagged(ModeStatus.DOUBTFUL, Finding("steady_envelope"))
 
 
 def cleared(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:
