@@ -61,8 +61,8 @@ def is_suspiciously_steady(
 ) -> bool:
     """Return whether a light mode has the envelope of a tone that swells and drifts a little.
 
-    Of simulated modes with 2πζfT of 3, 6 and 11, a fifth, 7 % and 3 % have so steady an envelope by chance; of
-    tones that swell by 30 % and drift by 0.5 to 1 %, three quarters and more.
+    Of simulated modes with 2πζfT of 3, 6 and 11, a fifth, 7 % and 3 % have so steady an envelope by chance;
+    of tones that swell by 30 % and drift by 0.5 to 1 %, three quarters and more.
 
     Parameters
     ----------
