@@ -38,6 +38,11 @@ CATALOGUE: dict[str, Kind] = {
         "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest, against the others; "
         "scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
     ),
+    "coarse_quantiser": Kind(
+        "warning",
+        "read in steps of {steps:.2g} times its rms: what rounding adds is neither small nor white; distrust "
+        "modes and damping",
+    ),
     "clock_late": Kind(
         "warning",
         "{channels}: read {delay_s:.3g} ± {std_s:.2g} s {late} than the others, in all bands alike: "

@@ -98,3 +98,10 @@ def test_crests_of_a_smooth_response_are_no_spikes(rng: np.random.Generator) -> 
     assert not faults.spikes(smooth).any()
     smooth[[3000, 7001, 7002]] += 10.0 * smooth.std()
     assert np.flatnonzero(faults.spikes(smooth)).tolist() == [3000, 7001, 7002]
+
+
+def test_a_coarse_reading_is_told_by_its_levels(rng: np.random.Generator) -> None:
+    y = rng.standard_normal(6_000)
+    assert faults.quantiser_step(np.round(y)) == 1.0
+    assert faults.quantiser_step(0.25 * np.round(4.0 * y)) == 0.25
+    assert faults.quantiser_step(y) == 0.0

@@ -200,3 +200,12 @@ def test_quality_of_another_record_is_refused(tower: SimpleNamespace) -> None:
 def test_summary_is_plain_json_data(tower: SimpleNamespace) -> None:
     text = json.dumps(assess(tower.record(16)).summary(), allow_nan=False)
     assert json.loads(text)["score"] == 1.0
+
+
+def test_a_step_of_the_rms_is_coarse_and_one_of_a_tenth_is_not(tower: SimpleNamespace) -> None:
+    record = tower.record(13)
+    y = record.data[3]
+    for step, coarse in ((1.0, True), (0.1, False)):
+        size = step * y.std()
+        found = assess(with_row(record, 3, size * np.round(y / size)))
+        assert ("acc_28_x", "coarse_quantiser") in faults_of(found) if coarse else not found.findings

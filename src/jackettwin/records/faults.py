@@ -33,6 +33,25 @@ MOST_UNSTEADY = 1e9
 """What is said of a signal that is silent but for one part."""
 
 
+MOST_LEVELS = 64
+"""A channel with more levels than this is not read coarsely."""
+FEWEST_SAMPLES_A_LEVEL = 20
+"""Fewer samples a level may have few levels by chance."""
+
+
+def quantiser_step(y: FloatArray) -> float:
+    """Return the step between the levels of a channel that takes few, else 0.
+
+    >>> float(quantiser_step(np.tile([0.0, 0.5, 1.0, 2.0], 100)))
+    0.5
+    """
+    finite = y[np.isfinite(y)]
+    levels = np.unique(finite)
+    if len(levels) < 2 or len(levels) > min(MOST_LEVELS, len(finite) / FEWEST_SAMPLES_A_LEVEL):
+        return 0.0
+    return float(np.min(np.diff(levels)))
+
+
 def runs(mask: BoolArray) -> npt.NDArray[np.int64]:
     """Return start and length of every run of True.
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jackettwin.findings import CATALOGUE
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -15,6 +17,11 @@ DRIFT_RATIO = 3.0
 UNSTEADY_RATIO = 4.0
 """Rms of the loudest part over the median of all, beyond which a record is not stationary: a light tower
 under steady forces reaches 2, in turbulence as well."""
+
+
+COARSE_STEPS = 0.7
+"""Step of a reading over the rms of the vibration, beyond which rounding is not white noise of step²/12: a
+Gaussian signal allows a step of its standard deviation (Widrow & Kollár 2008), others less."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +57,8 @@ class ChannelQuality:
     drift_ratio: float
     unsteadiness: float
     swapped_sign: bool
+    quantiser_steps: float = 0.0
+    """Step of the reading over the rms of the vibration; 0 if it is fine."""
 
 
 def channel_findings(
@@ -91,6 +100,9 @@ def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
     if q.hold_length > 1:
         text = f"every value is repeated {q.hold_length} times: the sensor is read at a lower rate and lags"
         yield Finding("held", text, name)
+    if q.quantiser_steps > COARSE_STEPS:
+        sentence = CATALOGUE["coarse_quantiser"].sentence
+        yield Finding("coarse_quantiser", sentence.format(steps=q.quantiser_steps), name)
     if _drifts(channel, q):
         text = f"drifts over {q.drift_ratio:.1f} times the rms of its vibration; slow part removed"
         yield Finding("drift", text, name, True)

@@ -174,6 +174,7 @@ def _judge(
         drift_ratio=drift,
         unsteadiness=faults.unsteadiness(np.where(spikes, np.nan, slow_free), PARTS) if look else 1.0,
         swapped_sign=bool(sign),
+        quantiser_steps=_steps(y, slow_free) if look else 0.0,
     )
     findings = list(channel_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
     if change is not None and not quality.dead:
@@ -181,6 +182,12 @@ def _judge(
         findings.append(Finding("changed", text, channel.name, change.certain))
     suspect = (none if outliers else spikes) | stuck | changed
     return replace(quality, score=_score(quality, sign)), suspect, findings
+
+
+def _steps(y: FloatArray, slow_free: FloatArray) -> float:
+    """Return the step of a reading over the rms of its vibration."""
+    size = float(np.nanstd(slow_free)) if np.isfinite(slow_free).any() else 0.0
+    return faults.quantiser_step(y) / size if size > 0.0 else 0.0
 
 
 def _score(q: ChannelQuality, sign: bool | None) -> float:

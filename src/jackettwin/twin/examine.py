@@ -22,6 +22,7 @@ from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
+from jackettwin.records.findings import COARSE_STEPS
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.repair import common_time
@@ -126,6 +127,7 @@ def examine(
         partial(in_rotor_axes, source=source),
         partial(without_rotor_orders, source=source),
         partial(cut_to_common_time, quality=quality),
+        partial(coarsely_read, quality=quality),
     )
     ready, findings = prepared(chosen, steps)
     findings = (
@@ -152,11 +154,11 @@ def examine(
 
 
 def _out_of_step(found: Identification, findings: Findings) -> Identification:
-    """Doubt every mode of a record whose clocks could not be brought into step."""
-    reasons = [f for f in findings if f.code == "clocks_wander"]
+    """Doubt every mode of a record whose clocks are not in step, or that is read too coarsely."""
+    reasons = [f for f in findings if f.code in ("clocks_wander", "coarse_quantiser")]
     if not reasons:
         return found
-    return replace(found, modes=tuple(m.flagged(ModeStatus.DOUBTFUL, *reasons) for m in found.modes))
+    return replace(found, modes=tuple(m.flagged(ModeStatus.DOUBTFUL, reasons[0]) for m in found.modes))
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
@@ -176,6 +178,15 @@ def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
 def cut_to_common_time(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
     """Cut a record to what all loggers have once in step; earlier steps need the source's samples."""
     return common_time(record, quality), () if quality.clocks.judged else (Finding("clocks_wander"),)
+
+
+def coarsely_read(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
+    """Name the channels whose reading is too coarse for what is identified from them to be trusted."""
+    return record, tuple(
+        Finding("coarse_quantiser", q.name, {"steps": q.quantiser_steps})
+        for q in quality.channels
+        if q.quantiser_steps > COARSE_STEPS and not q.dead
+    )
 
 
 def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
