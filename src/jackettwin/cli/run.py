@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,6 +61,7 @@ def run_command(
             config,
             compare=compare,
             posteriors="all" if all_laws else "first",
+            workers=os.cpu_count() or 1,
             step=step,
             within=step.within,
             keep=keeping(fresh=fresh),

@@ -32,7 +32,7 @@ from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 6
 """Fewer records are done sooner than other processes are started."""
-_DIED = "the process that worked on it ended abruptly, twice: out of memory?"
+DIED = "the process that worked on it ended abruptly, twice: out of memory?"
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ def _computed(
             yield i, _one(work, files[i], keep)
         return
     for k, result in in_processes(partial(_one, work, keep=keep), [files[i] for i in left], n_workers):
-        yield left[k], result or Failed(str(files[left[k]]), _DIED)
+        yield left[k], result or Failed(str(files[left[k]]), DIED)
 
 
 def _one(work: _Work, file: Path, keep: Keep = not_kept) -> Seen | Failed:

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 from math import inf
+from pathlib import Path
 
-from jackettwin.errors import located
+from jackettwin.errors import NumericalError, located
 from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
+from jackettwin.processes import in_processes
 from jackettwin.records import Record, read_record
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.advance import advance_all
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.identified import Keep, not_kept
-from jackettwin.twin.many import Failed, failure
+from jackettwin.twin.many import DIED, Failed, failure
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation
 from jackettwin.twin.observe import examined, observed
 from jackettwin.twin.state import TwinState, empty_state
 from jackettwin.twin.sums import ModeTotal, average
 from jackettwin.updating import Target
+
+FEWEST_FOR_PROCESSES = 3
+"""Fewer records are done sooner than other processes are started."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +72,7 @@ def measure(
     model: TwinModel,
     *,
     compare: bool = False,
+    workers: int = 1,
     step: Callable[[str], None],
     keep: Keep = not_kept,
 ) -> Measured:
@@ -77,7 +85,9 @@ def measure(
     InputError
         If no record can be read and identified, or a sensor and a channel disagree; names file and field.
     """
-    records, examinations, failed = _examined(config, model, compare=compare, step=step, keep=keep)
+    records, examinations, failed = _examined(
+        config, model, compare=compare, workers=workers, step=step, keep=keep
+    )
     with located(file=config.path):
         feet = model.likest_feet(examinations)
         observations = [
@@ -99,31 +109,67 @@ def _examined(
     model: TwinModel,
     *,
     compare: bool,
+    workers: int,
     step: Callable[[str], None],
     keep: Keep,
 ) -> tuple[list[Record], list[Examination], tuple[Failed, ...]]:
     """Return what the records show, and those that show nothing; the error of the first if none does."""
-    records: list[Record] = []
-    examinations: list[Examination] = []
+    found: dict[int, tuple[Record, Examination] | Exception | None] = {}
+    for i, result in _results(config, model, compare=compare, workers=workers, step=step, keep=keep):
+        path = config.records[i]
+        if isinstance(result, Exception) and not path.exists():
+            raise result
+        found[i] = result
     failed: list[Failed] = []
     first: Exception | None = None
-    for path in config.records:
-        step(f"identify {path.name}")
-        try:
-            record = read_record(path, config.unsaid)
-            with located(file=path):
-                seen = examined(record, model, compare=compare and not examinations, keep=keep)
-        except Exception as error:  # of many records, one that fails must not stop the others
-            if not path.exists():
-                raise
+    for path, result in ((config.records[i], found[i]) for i in sorted(found)):
+        error = NumericalError(DIED) if result is None else result
+        if isinstance(error, Exception):
             first = first or error
             failed.append(failure(path, error))
-        else:
-            records.append(record)
-            examinations.append(seen)
-    if first is not None and not records:
+    shown = [found[i] for i in sorted(found)]
+    good = [result for result in shown if isinstance(result, tuple)]
+    if first is not None and not good:
         raise first
-    return records, examinations, tuple(failed)
+    return [record for record, _ in good], [seen for _, seen in good], tuple(failed)
+
+
+def _results(
+    config: TwinConfig,
+    model: TwinModel,
+    *,
+    compare: bool,
+    workers: int,
+    step: Callable[[str], None],
+    keep: Keep,
+) -> Iterator[tuple[int, tuple[Record, Examination] | Exception | None]]:
+    """Yield what each record shows as it comes, or why nothing; None if it took its process along."""
+    # a process needs to know how to examine, not the structure
+    how = replace(model, assembly=None, numbered=None, feet=())
+    names = [path.name for path in config.records]
+    if compare or workers < 2 or len(names) < FEWEST_FOR_PROCESSES:
+        for i, path in enumerate(config.records):
+            step(f"identify {names[i]}")
+            yield i, _one(how, config.unsaid, path, compare=compare and i == 0, keep=keep)
+        return
+    step(f"identify {names[0]}")
+    work = partial(_one, how, config.unsaid, keep=keep)
+    for done, (i, result) in enumerate(in_processes(work, config.records, min(workers, len(names))), start=1):
+        if done < len(names):
+            step(f"identify records, {done} of {len(names)} done")
+        yield i, result
+
+
+def _one(
+    model: TwinModel, unsaid: Unsaid, path: Path, *, compare: bool = False, keep: Keep = not_kept
+) -> tuple[Record, Examination] | Exception:
+    """Return what one record shows, or the error: one that fails must not stop the others."""
+    try:
+        record = read_record(path, unsaid)
+        with located(file=path):
+            return record, examined(record, model, compare=compare, keep=keep)
+    except Exception as error:
+        return error
 
 
 def mean_target(mode: int, total: ModeTotal) -> Target:

@@ -162,7 +162,7 @@ def _strangers(found: Measured, labels: tuple[str, ...]) -> list[str]:
     reasons = (
         (one.name, unpaired_finding(mode, against, labels))
         for one in found.observations
-        for mode, against in zip(one.identification.modes, one.held, strict=True)
+        for mode, against in zip(one.identification.modes, one.held, strict=False)
     )
     return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
 

@@ -29,6 +29,7 @@ def run_twin(
     laws: tuple[str, ...] | None = None,
     compare: bool = False,
     posteriors: Posteriors = "all",
+    workers: int = 1,
     step: Callable[[str], None] = lambda _: None,
     within: Callable[[str], None] = lambda _: None,
     keep: Keep = not_kept,
@@ -43,6 +44,8 @@ def run_twin(
         Identify the first record by every method, to set side by side.
     posteriors : {"all", "first"}
         Whether every law's posterior is sampled, or the first one's alone: the others are fitted.
+    workers : int
+        Processes that identify records.
     step : callable
         Told what is being done, once a step; ``count_steps`` says how many there are.
     within : callable
@@ -59,7 +62,11 @@ def run_twin(
     step("assemble the structure")
     model = twin_model(config)
     assembly, numbered, labels = model.structure, model.modes, model.labels
-    found = measure(config, model, compare=compare, step=step, keep=keep) if config.records else None
+    found = (
+        measure(config, model, compare=compare, workers=workers, step=step, keep=keep)
+        if config.records
+        else None
+    )
     state = None if found is None else found.state
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
