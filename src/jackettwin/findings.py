@@ -71,6 +71,23 @@ CATALOGUE: dict[str, Kind] = {
         "the clocks of the loggers wander against each other: no stretch is long enough to bring them into "
         "step",
     ),
+    **{code: Kind("info", "{text}") for code in ("drift", "file", "held", "spikes", "stuck")},
+    **{
+        code: Kind("warning", "{text}")
+        for code in (
+            "changed",
+            "clipped",
+            "clock",
+            "dead",
+            "empty",
+            "outliers",
+            "sign",
+            "unit",
+            "unreadable",
+            "unsteady",
+            "weak",
+        )
+    },
     # identification
     "steady_tone_near": Kind(
         "warning", "a steady tone at {frequency_hz:.4g} Hz is too near to trust the damping"

@@ -106,6 +106,18 @@ def test_an_observation_is_small_and_goes_through_files_and_processes(
     assert json.dumps(OBSERVATION.dump(elsewhere)) == text
 
 
+def test_what_was_found_in_a_record_is_coded(record: Record, model: TwinModel) -> None:
+    data = record.data.copy()
+    data[0, 1000:1200] = np.nan
+    settings = replace(model.identification, refine=False, blocks=0)
+    quick = TwinModel("modes alone", identification=settings)
+    found = {f.code: f for f in observe(replace(record, data=data), quick).findings}
+    gaps = found["gaps"]
+    assert (gaps.severity, gaps.subject) == ("info", record.channels[0].name)
+    assert gaps.params["share"] == pytest.approx(200 / record.data.shape[1])
+    assert gaps.text.startswith("0.")
+
+
 def test_an_observation_names_the_modes_of_the_model(seen: Observation) -> None:
     assert {known.label for _, known in seen.modes.values()} >= {"side_side_1", "fore_aft_1", "fore_aft_2"}
     for estimated, known in seen.modes.values():

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from jackettwin import findings
 from jackettwin.findings import CATALOGUE
 
 if TYPE_CHECKING:
@@ -38,6 +40,12 @@ class Finding:
     text: str
     channel: str | None = None
     repaired: bool = False
+    params: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def coded(self) -> findings.Finding:
+        """The same as every other package states its findings: code, severity, subject and parameters."""
+        return findings.Finding(self.fault, self.channel, {"text": self.text, **self.params})
 
 
 @dataclass(frozen=True)
@@ -74,10 +82,10 @@ def channel_findings(
         return
     if q.gap_share > 0.0:
         text = f"{q.gap_share:.2%} of the samples are missing, at most {q.longest_gap_s:.3g} s in a row"
-        yield Finding("gaps", text, name)
+        yield Finding("gaps", text, name, params={"share": q.gap_share, "longest_s": q.longest_gap_s})
     if outliers:
         text = f"{q.spike_share:.1%} of the samples stand out, too many to be spikes; kept"
-        yield Finding("outliers", text, name)
+        yield Finding("outliers", text, name, params={"share": q.spike_share})
     elif q.spike_share > 0.0:
         yield Finding(
             "spikes", f"{q.spike_share:.3%} of the samples are spikes; declared missing", name, True
@@ -93,22 +101,27 @@ def _signal_findings(channel: Channel, q: ChannelQuality) -> Iterator[Finding]:
         # Kept: the covariances of a clipped Gaussian signal keep their shape (Bussgang 1952), those of
         # one with gaps at its peaks do not.
         text = f"{q.clipped_share:.2%} of the samples are at the range's end; kept, amplitudes are too small"
-        yield Finding("clipped", text, name)
+        yield Finding("clipped", text, name, params={"share": q.clipped_share})
     if q.stuck_share > 0.0:
         text = f"reading is frozen for {q.stuck_share:.2%} of the time; declared missing"
-        yield Finding("stuck", text, name, True)
+        yield Finding("stuck", text, name, True, {"share": q.stuck_share})
     if q.hold_length > 1:
         text = f"every value is repeated {q.hold_length} times: the sensor is read at a lower rate and lags"
-        yield Finding("held", text, name)
+        yield Finding("held", text, name, params={"times": q.hold_length})
     if q.quantiser_steps > COARSE_STEPS:
         sentence = CATALOGUE["coarse_quantiser"].sentence
-        yield Finding("coarse_quantiser", sentence.format(steps=q.quantiser_steps), name)
+        yield Finding(
+            "coarse_quantiser",
+            sentence.format(steps=q.quantiser_steps),
+            name,
+            params={"steps": q.quantiser_steps},
+        )
     if _drifts(channel, q):
         text = f"drifts over {q.drift_ratio:.1f} times the rms of its vibration; slow part removed"
-        yield Finding("drift", text, name, True)
+        yield Finding("drift", text, name, True, {"ratio": q.drift_ratio})
     if q.unsteadiness > UNSTEADY_RATIO:
         text = f"is {q.unsteadiness:.3g} times stronger in one tenth of the record than usual: not stationary"
-        yield Finding("unsteady", text, name)
+        yield Finding("unsteady", text, name, params={"ratio": q.unsteadiness})
 
 
 def _sign_findings(name: str, sign: bool | None) -> Iterator[Finding]:

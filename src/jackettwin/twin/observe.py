@@ -83,7 +83,7 @@ def observed(record: Record, seen: Examination, model: TwinModel, feet: Feet | N
         recognised=known.recognised,
         held=known.held,
         sensors=placed_sensors(model.sensors, seen.record),
-        findings=(*seen.findings, *others, *known.findings),
+        findings=(*(f.coded for f in seen.quality.findings), *seen.findings, *others, *known.findings),
     )
 
 
