@@ -19,7 +19,7 @@ R = TypeVar("R")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _AHEAD = 2
 """Items handed out for every worker: the others are not even opened."""
-GRACE_S = 1.0
+GRACE_S = 0.6
 """Time that a process gets to end by itself: Ctrl-C answers within two seconds."""
 ASKED_EVERY_S = 0.1
 """Time between two requests to end: enough to remove a file."""

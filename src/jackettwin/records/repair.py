@@ -48,7 +48,6 @@ def repair(record: Record, quality: Quality) -> Record:
     if not alive:
         raise InputError(
             "no channel carries a signal",
-            file=record.name,
             field="channels",
             value=", ".join(record.channel_names),
             allowed="at least one channel that varies",
