@@ -187,7 +187,7 @@ def test_faults_lower_the_score(tower: SimpleNamespace) -> None:
 def test_a_record_without_any_live_channel_is_refused(tower: SimpleNamespace) -> None:
     record = tower.record(15)
     dead = replace(record, data=np.zeros_like(record.data))
-    with pytest.raises(InputError, match=r"tower_15: channels: no channel carries a signal.*acc_144_x"):
+    with pytest.raises(InputError, match=r"channels: no channel carries a signal.*acc_144_x"):
         repair(dead, assess(dead))
 
 
