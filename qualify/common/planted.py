@@ -139,3 +139,19 @@ def _noise(system: ModalSystem) -> np.ndarray:
     h = -(x**2) / (f**2 - x**2 + 2j * system.damping_ratio * f * x) * x ** (-0.5 * system.force_slope)
     moved = h * system.mode_shapes.T[:, None, :]
     return np.asarray(np.mean(np.sum(moved @ system.force * moved.conj(), axis=2).real, axis=1))
+
+
+def recognised(
+    said: list[tuple[float, float, np.ndarray]], system: ModalSystem, clear: list[bool]
+) -> dict[str, int]:
+    """Return how many reported modes are true, how many are not, and how many findable ones are lost."""
+    f, zeta = system.frequency_hz, system.damping_ratio
+    taken: set[int] = set()
+    if said:
+        own = np.array([mode[0] for mode in said])
+        similar = mac(system.mode_shapes, np.array([mode[2] for mode in said]))
+        apart = np.abs(np.log(own / f[:, None])) / (3.0 * zeta[:, None]) + 1.0 - similar
+        rows, columns = linear_sum_assignment(np.minimum(apart, 2.0))
+        taken = {int(k) for k, j in zip(rows, columns, strict=True) if apart[k, j] <= SAME}
+    lost = sum(clear[k] and k not in taken for k in range(len(f)))
+    return {"true": len(taken), "false": len(said) - len(taken), "lost": lost, "findable": sum(clear)}

@@ -35,7 +35,7 @@ records that are what the model says have 0.8 to 1.1."""
 MOST_LOCAL_LACK_OF_FIT = 2.0
 """The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
 
-MANY_MODES = 5
+MANY_MODES = 4
 """So many modes within one narrow band: what does not end at the first try costs seconds and ends seldom."""
 
 GIVEN = ("frequency_hz", "damping_ratio", "shapes", "sure", "derivatives", "avoid_hz")

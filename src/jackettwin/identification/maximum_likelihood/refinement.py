@@ -44,9 +44,9 @@ WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
-MOST_STEPS, FEWEST_STEPS = 60, 12
+MOST_STEPS, FEWEST_STEPS = 60, 8
 """Steps after those: fits that end take eight to twenty as a rule …"""
-MOST_WORK = 1.2e10
+MOST_WORK = 4e9
 """… and no more than this many products: what is still on its way then seldom arrives."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""

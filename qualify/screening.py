@@ -1,0 +1,140 @@
+"""Is what is called ok a mode, and is no mode lost? Records with planted faults beside clean ones.
+
+Usage: ``python qualify/screening.py [--records 450] [--peers]``. Each fault of ``FAULTS`` in three strengths, and
+clean records, over random systems of known truth. ``--peers`` runs pyOMA2 and koma on the same records where
+they are installed. Interrupted runs resume.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from importlib.util import find_spec
+from time import process_time
+
+import numpy as np
+from common.cases import Result, cases
+from common.faults import FAULTS
+from common.page import write_page
+from common.peers import PEERS
+from common.planted import RandomSystem, matched, random_system, recognised
+
+from jackettwin.identification import identify
+from jackettwin.identification.synthetic import simulate
+from jackettwin.records import Channel, Record
+
+SEED = 4
+KINDS = [("clean", 0.0), *((name, strength) for name in FAULTS for strength in (1.0, 2.0, 3.0))]
+Peer = Callable[[Record], list[tuple[float, float, np.ndarray]]]
+
+
+def tower(rng: np.random.Generator) -> RandomSystem:
+    """Draw a system of four channels or more with first modes at 0.15 to 0.5 Hz, damped by at most 3 %."""
+    while True:
+        drawn = random_system(rng)
+        system = drawn.system
+        if system.mode_shapes.shape[1] < 4 or system.damping_ratio.max() > 0.03:
+            continue
+        scale = 10 ** rng.uniform(np.log10(0.15), np.log10(0.5)) / system.frequency_hz[0]
+        system = replace(system, frequency_hz=system.frequency_hz * scale)
+        rate = float(min(drawn.sample_rate_hz * scale, 30.0))
+        return RandomSystem(system, min(drawn.duration_s / scale, 1800.0), rate, drawn.rank)
+
+
+def run(case: int, *, peers: tuple[str, ...] = ()) -> Result:
+    """Return what is said of one record."""
+    rng = np.random.default_rng((SEED, case))
+    fault, strength = KINDS[case % len(KINDS)]
+    drawn = tower(rng)
+    record = simulate(drawn.system, rng, duration_s=drawn.duration_s, sample_rate_hz=drawn.sample_rate_hz)
+    record = replace(record, channels=tuple(Channel(f"a{i}") for i in range(len(record.data))))
+    if fault != "clean":
+        record = FAULTS[fault](record, strength, rng)
+    start = process_time()
+    try:
+        found = identify(record)
+    except Exception as error:
+        return {"fault": fault, "strength": strength, "stopped": repr(error)}
+    seconds = process_time() - start
+    pairs = matched(found, drawn.system)
+    own = {pair["mode"] for pair in pairs if pair["mode"] is not None}
+    others = [m.status.value for k, m in enumerate(found.modes) if k not in own]
+    result: Result = {
+        "fault": fault,
+        "strength": strength,
+        "cpu_s": seconds,
+        "modes": pairs,
+        "others": others,
+    }
+    for name in peers:
+        try:
+            said = PEERS[name](record, found.settings)
+            result[name] = recognised(said, drawn.system, [bool(p["findable"]) for p in pairs])
+        except Exception as error:
+            result[name] = {"stopped": repr(error)}
+    return result
+
+
+def row(name: str, results: list[Result], peers: tuple[str, ...]) -> str:
+    """Return a row of the table."""
+    modes = [m for r in results for m in r.get("modes", ())]
+    said = [m for m in modes if m["status"] == "ok"]
+    false = sum(status == "ok" for r in results for status in r.get("others", ()))
+    flagged = sum(status != "ok" for r in results for status in r.get("others", ()))
+    clear = [m for m in modes if m["findable"]]
+    lost = np.mean([m["status"] is None for m in clear]) if clear else 0.0
+    right = 100.0 * len(said) / max(len(said) + false, 1)
+    f, zeta = (100.0 * np.mean([m[key] for m in said]) if said else np.nan for key in KEYS)
+    cells = [f"{len(results)}", f"{len(said) + false}", f"{right:.1f}", f"{f:.1f}", f"{zeta:.1f}"]
+    cells += [f"{flagged}", f"{100.0 * lost:.1f}"]
+    for peer in peers:
+        known = [r[peer] for r in results if peer in r and "stopped" not in r[peer]]
+        true, wrong, missed, n = (sum(k[key] for k in known) for key in ("true", "false", "lost", "findable"))
+        cells.append(f"{100.0 * true / max(true + wrong, 1):.0f} / {100.0 * missed / max(n, 1):.0f}")
+    return f"| {name} | " + " | ".join(cells) + " |"
+
+
+KEYS = ("frequency_inside", "damping_inside")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--records", type=int, default=450)
+    parser.add_argument("--peers", action="store_true")
+    chosen = parser.parse_args()
+    wanted = {"pyoma2": "pyOMA2", "koma": "koma"}
+    peers = tuple(name for name in wanted if chosen.peers and find_spec(name) is not None)
+    part = "-" + "-".join(peers) if peers else ""
+    results = cases("screening", chosen.records, lambda case: run(case, peers=peers), part=part, whole=True)
+    head = (
+        "| fault | records | called ok | of these true [%] | f inside [%] | ζ inside [%] | false but flagged "
+    )
+    head += "| findable lost [%] |" + "".join(f" {wanted[p]}: true / lost [%] |" for p in peers)
+    lines = [
+        "# What is called a mode",
+        "",
+        f"`python qualify/screening.py --records {chosen.records}{' --peers' if peers else ''}`: random systems with planted",
+        "faults. A mode is lost if nothing, whatever its status, is reported for it though it is findable: its peak stands",
+        "four times above everything else in some direction of the channels.",
+        "",
+        head,
+        "|---" * (8 + len(peers)) + "|",
+        row("all", results, peers),
+    ]
+    for fault in dict.fromkeys(name for name, _ in KINDS):
+        lines.append(row(f"**{fault}**", [r for r in results if r["fault"] == fault], peers))
+        for strength in (1.0, 2.0, 3.0) if fault != "clean" else ():
+            of = [r for r in results if r["fault"] == fault and r["strength"] == strength]
+            lines.append(row(f"{fault}, strength {strength:.0f}", of, peers))
+    cpu = [r["cpu_s"] for r in results if "cpu_s" in r]
+    stopped = [r for r in results if "stopped" in r]
+    lines += [
+        "",
+        f"Stopped: {len(stopped)}. CPU-seconds a record: median {np.median(cpu):.2f}, most {max(cpu):.2f}.",
+    ]
+    write_page("screening", lines)
+
+
+if __name__ == "__main__":
+    main()
