@@ -1,8 +1,8 @@
 """Is what is called ok a mode, and is no mode lost? Records with planted faults beside clean ones.
 
-Usage: ``python qualify/screening.py [--records 450] [--peers]``. Each fault of ``FAULTS`` in three strengths, and
-clean records, over random systems of known truth. ``--peers`` runs pyOMA2 and koma on the same records where
-they are installed. Interrupted runs resume.
+Usage: ``python qualify/screening.py [--records 450] [--peers]``. Each fault of ``FAULTS`` in three
+strengths, and clean records, over random systems of known truth. ``--peers`` runs pyOMA2 and koma on the
+same records where they are installed. Interrupted runs resume.
 """
 
 from __future__ import annotations
@@ -114,9 +114,9 @@ def main() -> None:
     lines = [
         "# What is called a mode",
         "",
-        f"`python qualify/screening.py --records {chosen.records}{' --peers' if peers else ''}`: random systems with planted",
-        "faults. A mode is lost if nothing, whatever its status, is reported for it though it is findable: its peak stands",
-        "four times above everything else in some direction of the channels.",
+        f"`python qualify/screening.py --records {chosen.records}{' --peers' if peers else ''}`:",
+        "random systems with planted faults. A mode is lost if nothing, whatever its status, is reported for",
+        "it though it is findable: its peak stands four times above everything else in some direction.",
         "",
         head,
         "|---" * (8 + len(peers)) + "|",
