@@ -44,15 +44,13 @@ TIME_S = np.arange(6000) / RATE_HZ
 TONES = np.sin(2 * np.pi * 0.8 * TIME_S) + np.sin(2 * np.pi * 1.3 * TIME_S)
 
 REFUSED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
-    "all missing": (lambda y, rng: np.nan * y, "channel is empty"),
-    "one missing": (put(1, np.nan), "channels.top_y"),
-    "infinite": (lambda y, rng: np.inf * np.ones_like(y), "channel is empty"),
-    "1e300": (lambda y, rng: 1e300 * y, "channel is empty"),
-    "1e-300": (lambda y, rng: 1e-300 * y, "channel is constant"),
-    "a ramp": (lambda y, rng: np.arange(y.size, dtype=float).reshape(y.shape), "a slow drift alone"),
-    "one constant": (put(0, 9.81), "channels.top_x"),
-    "all constant": (lambda y, rng: 0.0 * y + 9.81, "channel is constant"),
-    "zero": (lambda y, rng: 0.0 * y, "channel is constant"),
+    "all missing": (lambda y, rng: np.nan * y, "no channel carries a signal"),
+    "infinite": (lambda y, rng: np.inf * np.ones_like(y), "no channel carries a signal"),
+    "1e300": (lambda y, rng: 1e300 * y, "no channel carries a signal"),
+    "1e-300": (lambda y, rng: 1e-300 * y, "no channel carries a signal"),
+    "a ramp": (lambda y, rng: np.arange(y.size, dtype=float).reshape(y.shape), "no channel carries a signal"),
+    "all constant": (lambda y, rng: 0.0 * y + 9.81, "no channel carries a signal"),
+    "zero": (lambda y, rng: 0.0 * y, "no channel carries a signal"),
     "impulse": (lambda y, rng: 0.0 * y + (np.arange(6000) == 500), "no usable vibration channel"),
     "one sample": (lambda y, rng: y[:, :1], "holds no samples"),
     "two samples": (lambda y, rng: y[:, :2], "too short"),
@@ -64,6 +62,8 @@ REFUSED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
 }  # fmt: skip
 
 FLAGGED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
+    "one missing": (put(1, np.nan), "empty"),
+    "one constant": (put(0, 9.81), "dead"),
     "one infinite": (lambda y, rng: np.where(np.arange(6000) == 77, np.inf, y), "gaps"),
     "spikes": (lambda y, rng: np.where(rng.random(y.shape) < 0.005, 50 * y.std(), y), "spikes"),
     "clipped": (lambda y, rng: np.clip(y, -y.std(), y.std()), "clipped"),

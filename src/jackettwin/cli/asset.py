@@ -97,15 +97,19 @@ def show(name: str, as_json: bool, store: Path, database: str | None) -> None:
 @asset_command.command("adopt")
 @click.argument("name")
 @click.argument("version", type=click.IntRange(1))
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @store_options
-def adopt(name: str, version: int, store: Path, database: str | None) -> None:
+def adopt(name: str, version: int, as_json: bool, store: Path, database: str | None) -> None:
     """Make a VERSION of the turbine NAME the one whose answers count."""
     engine = opened(store, database)
     from jackettwin.store import assets, writing
 
     with writing(engine) as connection:
         assets.adopt(connection, name, version)
-    output.print(f"{name}: version {version} is adopted")
+    if as_json:
+        print_json({"asset": name, "adopted_version": version})
+    else:
+        output.print(f"{name}: version {version} is adopted")
 
 
 def _row(asset: dict[str, Any]) -> tuple[Any, ...]:

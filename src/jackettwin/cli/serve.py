@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import logging
+import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
-from jackettwin.cli.console import messages
+from jackettwin.cli.console import messages, print_json
 from jackettwin.cli.store_options import needs_service
 
 
@@ -25,7 +26,8 @@ from jackettwin.cli.store_options import needs_service
 @click.option("--behind-proxy", is_flag=True, help="A proxy in front ends TLS.")
 @click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
 @click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")
-def serve_command(store: Path, demo: bool, **options: Any) -> None:
+@click.option("--json", "as_json", is_flag=True, help="Print the address as JSON when it can be asked.")
+def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> None:
     """Serve the living twin in STORE: records in, answers out; STORE is made if it is not there.
 
     Open the address that is printed. Nothing else has to be set up.
@@ -40,6 +42,9 @@ def serve_command(store: Path, demo: bool, **options: Any) -> None:
         scheme = "https" if service.settings.tls_certificate else "http"
         messages.print(f"jackettwin serves {store} at {scheme}://{options['host']}:{options['port']}/")
         messages.print(f"records: {store}/inbox/ASSET/, POST /api/v1/assets/ASSET/records, Ctrl-C ends")
+        if as_json:
+            print_json({"store": str(store), "url": f"{scheme}://{options['host']}:{options['port']}/"})
+            sys.stdout.flush()
         if demo:
             demonstrate(service)
 

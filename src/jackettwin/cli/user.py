@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import output
+from jackettwin.cli.console import output, print_json
 from jackettwin.cli.store_options import opened, store_options
 
 
@@ -21,8 +21,11 @@ def user_command() -> None:
 @click.argument("name")
 @click.option("--role", required=True, type=click.Choice(["viewer", "engineer", "admin"]))
 @click.option("--password-stdin", is_flag=True, help="Read the password from standard input.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @store_options
-def add_user(name: str, role: str, password_stdin: bool, store: Path, database: str | None) -> None:
+def add_user(
+    name: str, role: str, password_stdin: bool, as_json: bool, store: Path, database: str | None
+) -> None:
     """Add the user NAME, or give one another role and password."""
     engine = opened(store, database, make=True)
     from jackettwin.service.auth import hashed
@@ -38,4 +41,7 @@ def add_user(name: str, role: str, password_stdin: bool, store: Path, database: 
     user = User(name, role, hashed(password), datetime.now(UTC))
     with writing(engine) as connection:
         keep(connection, user)
-    output.print(f"{name} is {role}; from now on everybody logs in")
+    if as_json:
+        print_json({"user": name, "role": role})
+    else:
+        output.print(f"{name} is {role}; from now on everybody logs in")
