@@ -129,7 +129,9 @@ def _taps() -> FloatArray:
 
 def _more(record: Record, declared: IntArray) -> int:
     """Return how many derivatives more than the quantities say make the spectrum nearest to level."""
-    if record.data.shape[1] < 2 * HALF_LENGTH:  # too short to be identified; whoever looks for its band says so
+    if (
+        record.data.shape[1] < 2 * HALF_LENGTH
+    ):  # too short to be identified; whoever looks for its band says so
         return 0
     spectrum = welch(record.data, record.sample_rate_hz)
     for more in range(MOST_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
