@@ -56,11 +56,11 @@ def accelerations() -> Identification:
 def assert_same_modes(found: Identification, reference: Identification) -> None:
     assert len(found.modes) == len(reference.modes) == 5
     for mode, same in zip(found.modes, reference.modes, strict=True):
-        # the ends of a record are differentiated less well than its middle, and the fit stops when it is near
-        # enough
+        # the ends of a record are differentiated less well than its middle, and the fit groups other lines: both
+        # are small beside what the record itself leaves open, of which half is allowed
         assert mode.status == same.status == "ok"
         assert same.frequency_std_hz is not None
-        assert abs(mode.frequency_hz - same.frequency_hz) < 0.3 * same.frequency_std_hz
+        assert abs(mode.frequency_hz - same.frequency_hz) < 0.5 * same.frequency_std_hz
         assert mac(mode.mode_shape, same.mode_shape) > 0.999
 
 
