@@ -56,8 +56,8 @@ def accelerations() -> Identification:
 def assert_same_modes(found: Identification, reference: Identification) -> None:
     assert len(found.modes) == len(reference.modes) == 5
     for mode, same in zip(found.modes, reference.modes, strict=True):
-        # the ends of a record are differentiated less well than its middle, and the fit groups other lines: both
-        # are small beside what the record itself leaves open, of which half is allowed
+        # the ends of a record are differentiated less well than its middle, and the fit groups other lines:
+        # small beside what the record itself leaves open, of which half is allowed
         assert mode.status == same.status == "ok"
         assert same.frequency_std_hz is not None
         assert abs(mode.frequency_hz - same.frequency_hz) < 0.5 * same.frequency_std_hz
