@@ -23,7 +23,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.service.conftest import description, hour, record_file
-from tests.service.servers import Broker, Database, Server
+from tests.service.servers import Broker, Database, Server, opened
 
 from jackettwin.service import add_twin
 from jackettwin.store import open_database, sqlite_url, work, writing
@@ -45,7 +45,8 @@ def new_store(folder: Path, database: str | None = None) -> Path:
     store.mkdir(parents=True)
     twin = folder / "twin.yaml"
     twin.write_text("structure: jacket15\n")
-    add_twin(open_database(database or sqlite_url(store)), store, "wtg", twin)
+    with opened(database or sqlite_url(store)) as engine:
+        add_twin(engine, store, "wtg", twin)
     return store
 
 

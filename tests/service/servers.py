@@ -26,11 +26,27 @@ from sqlalchemy import Engine, select
 from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables
 
 
+@contextmanager
+def opened(url: str) -> Iterator[Engine]:
+    """Open a database, and close every connection to it in the end."""
+    database = open_database(url)
+    try:
+        yield database
+    finally:
+        database.dispose()
+
+
 def free_port() -> int:
-    """Return a port that nobody listens at."""
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return int(s.getsockname()[1])
+    """Return a port that nobody listens at, below those that the system gives to clients.
+
+    A client that tries a closed port of theirs again and again is given that very port in the end, and then
+    talks to itself: the server that comes back finds its place taken.
+    """
+    while True:
+        port = random.SystemRandom().randrange(20_000, 32_000)
+        with socket.socket() as s, suppress(OSError):
+            s.bind(("127.0.0.1", port))
+            return port
 
 
 def wait_for_port(port: int, seconds: float = 20.0) -> None:
@@ -58,7 +74,7 @@ class Database:
     """A PostgreSQL in a folder of its own, to be started, stopped and killed."""
 
     def __init__(self, folder: Path) -> None:
-        self.data, self.port = folder / "data", free_port()
+        self.data, self.port, self.log = folder / "data", free_port(), folder / "postgresql.log"
         self.url = f"postgresql+psycopg://postgres@127.0.0.1:{self.port}/postgres"
         self._as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
         self._process: subprocess.Popen[bytes] | None = None
@@ -77,7 +93,10 @@ class Database:
             subprocess.run([*self._as_user, initdb, *arguments], check=True, capture_output=True, cwd="/")
         (self.data / "postmaster.pid").unlink(missing_ok=True)
         arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
-        self._process = subprocess.Popen([server, *arguments], **_quiet(), cwd="/", user=self._user())
+        with self.log.open("ab") as log:
+            self._process = subprocess.Popen(
+                [server, *arguments], stdout=log, stderr=log, cwd="/", user=self._user()
+            )
         wait_for_port(self.port, 60.0)
         time.sleep(0.5)  # it listens a moment before it answers
 
@@ -222,21 +241,23 @@ class Server:
 
     def states(self) -> dict[str, str]:
         """Return the content hash of the state of every day."""
-        with reading(self._database()) as connection:
+        with self._database() as database, reading(database) as connection:
             version = assets.found_version(connection, "wtg")
             return results.state_hashes(connection, "wtg", version.model_hash)
 
     def counts(self) -> dict[str, int]:
         """Return how many records and observations are kept."""
-        with reading(self._database()) as connection:
+        with self._database() as database, reading(database) as connection:
             return {
                 table.name: len(connection.execute(select(table.c.record_id)).all())
                 for table in (tables.records, tables.observations)
             }
 
-    def _database(self) -> Engine:
+    @contextmanager
+    def _database(self) -> Iterator[Engine]:
         url = self.options[self.options.index("--database") + 1] if "--database" in self.options else None
-        return open_database(url or sqlite_url(self.store))
+        with opened(url or sqlite_url(self.store)) as database:
+            yield database
 
     def workers(self) -> list[int]:
         """Return the processes that observe."""

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 from tests.service.conftest import description, hour, record_file
-from tests.service.servers import Broker, Database, Server, publish
+from tests.service.servers import Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin
-from jackettwin.store import open_database, sqlite_url
+from jackettwin.store import sqlite_url
 
 RECORDS = 6
 SAMPLES = 6000
@@ -47,7 +47,8 @@ def new_store(folder: Path, database: str | None = None) -> Path:
     store.mkdir()
     twin = folder / "twin.yaml"
     twin.write_text("structure: jacket15\n")
-    add_twin(open_database(database or sqlite_url(store)), store, "wtg", twin)
+    with opened(database or sqlite_url(store)) as engine:
+        add_twin(engine, store, "wtg", twin)
     return store
 
 
