@@ -14,14 +14,18 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime, timedelta
+from functools import cache
+from io import BytesIO
 from pathlib import Path
 
 import httpx
 import numpy as np
 import paho.mqtt.client as mqtt
+import pyarrow.parquet as pq
 import pytest
 from paho.mqtt.enums import CallbackAPIVersion
 from sqlalchemy import Engine, select
+from tests.service.conftest import record_file
 
 from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables
 
@@ -301,14 +305,21 @@ class Server:
                 self.kill()
 
 
+@cache
+def stream() -> dict[str, np.ndarray]:
+    """Return what two channels with a mode each measure in half an hour."""
+    table = pq.read_table(BytesIO(record_file(7, samples=36_000)))
+    return {name: table[name].to_numpy() for name in table.column_names}
+
+
 def publish(port: int, *, first_s: float, last_s: float, seed: int, doubled: bool = False) -> None:
-    """Send two channels of noise as packets of five seconds, in disorder, some of them twice."""
+    """Send two channels as packets of five seconds, in disorder, some of them twice."""
     rng = random.Random(seed)
     start = datetime(2025, 3, 1, 12, tzinfo=UTC)
     bodies = []
     for k in range(round(first_s / 5.0), round(last_s / 5.0)):
-        noise = np.random.default_rng(k)
-        channels = {name: noise.standard_normal(100).round(4).tolist() for name in ("acc_top_x", "acc_top_y")}
+        part = slice(100 * k, 100 * (k + 1))
+        channels = {name: row[part].round(4).tolist() for name, row in stream().items()}
         t0 = (start + timedelta(seconds=5.0 * k)).isoformat()
         bodies.append(json.dumps({"t0_utc": t0, "rate_hz": 20.0, "channels": channels}))
     if doubled:

@@ -11,6 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads import read_rotor
 from jackettwin.simulate import loads_document, read_scenario, simulate
 from jackettwin.simulate.rotor_limits import lowest_tip, rotor_notes
+from jackettwin.simulate.scenario import TOWER_DRAG
 
 WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
 BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"
@@ -70,7 +71,9 @@ def test_wind_on_the_tower_alone(written: Callable[[str], Path]) -> None:
         * (nodes[m.end][2] - nodes[m.start][2])
         for m in tower
     )
-    assert document["force_n"]["x"]["mean"] == pytest.approx(0.5 * 1.225 * 0.65 * area * 12.0**2, rel=0.01)
+    assert document["force_n"]["x"]["mean"] == pytest.approx(
+        0.5 * 1.225 * TOWER_DRAG * area * 12.0**2, rel=0.01
+    )
     record = simulate(scenario).record
     assert record.conditions["rotor"] is None
     assert np.isfinite(record.data).all()

@@ -94,7 +94,7 @@ def damped_cosines(
     >>> y = np.exp(-0.02 * t) * np.cos(2 * np.pi * 0.3 * t)
     >>> fit = damped_cosines(y[None] + 1e-3 * np.sin(1e3 * t**2), 10.0, np.array([0.29]), np.array([0.02]))
     >>> [round(float(v), 4) for v in (fit.frequency_hz[0], fit.damping_ratio[0])]
-    [0.3002, 0.0106]
+    [0.3, 0.0106]
     """
     t = np.arange(y.shape[1]) / sample_rate_hz
     start = np.concatenate([np.log(2.0 * np.pi * frequency_hz), np.log(damping_ratio)])

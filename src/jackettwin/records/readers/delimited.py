@@ -133,7 +133,9 @@ def _table(lines: list[str], above: int = 0) -> Table:
     if bare and _climbs_evenly(columns[0]):
         names[0] = ""  # a count or a time, as an index without a name is
     known = _known(comments)
-    if "start_utc" not in known and any(_ZONED.search(cell) for cell in body[0] if _DATE.match(cell)):
+    if "start_utc" not in known and any(
+        _ZONED.search(cell) for cell in (body[0] if body else ()) if _DATE.match(cell)
+    ):
         known["zone_said"] = True
     return table_from_columns(names, columns, units, **known)
 
