@@ -24,6 +24,8 @@ AGAIN = 1.0
 """E-folds below the highest point, above which it never rises again after the fall."""
 FLOOR_SHARE = 1.5
 """The decay ends where its amplitude is this multiple of what is there after it."""
+FEWEST_SAMPLES = 64
+"""Shorter records cannot be identified at all; whoever looks for their band says so."""
 FEWEST_CYCLES = 8.0
 """Of the strongest frequency in a decay."""
 LATEST = 0.9
@@ -68,6 +70,8 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
     >>> 48.0 < found.first / 10.0 < 54.0, bool(found.fall > 3.0)
     (True, True)
     """
+    if y.shape[1] < FEWEST_SAMPLES:
+        return None
     width = _cycles_width(y, sample_rate_hz)
     if width is None:
         return None
