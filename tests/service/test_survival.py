@@ -21,6 +21,11 @@ from jackettwin.store import sqlite_url
 
 RECORDS = 6
 SAMPLES = 6000
+TWIN = """structure: jacket15
+sensors:
+  - {channel: acc_top_x, height_m: 120.0, direction: [1, 0, 0]}
+  - {channel: acc_top_y, height_m: 120.0, direction: [0, 1, 0]}
+"""
 
 
 def records() -> list[tuple[str, bytes, str]]:
@@ -46,7 +51,7 @@ def new_store(folder: Path, database: str | None = None) -> Path:
     store = folder / "store"
     store.mkdir()
     twin = folder / "twin.yaml"
-    twin.write_text("structure: jacket15\n")
+    twin.write_text(TWIN)
     with opened(database or sqlite_url(store)) as engine:
         add_twin(engine, store, "wtg", twin)
     return store
