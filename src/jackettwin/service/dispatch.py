@@ -55,12 +55,6 @@ class Dispatcher(Thread):
         self._running: dict[int, _Running] = {}
         self._seen: dict[str, tuple[int, float]] = {}
         self._last_beat = -_BEAT_S
-        self.turns = 0
-
-    @property
-    def in_flight(self) -> int:
-        """How many pieces of work are with workers."""
-        return len(self._running)
 
     def run(self) -> None:
         """Turn; a database that is away for a while is waited for."""
@@ -91,7 +85,6 @@ class Dispatcher(Thread):
             log.warning("could not leave the list of servers; others notice by the beat")
 
     def _turn(self) -> None:
-        self.turns += 1
         self._beat()
         self._collect()
         self._end_overrun()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -58,20 +57,6 @@ def problem_of(error: InputError) -> dict[str, Any]:
         "allowed": error.allowed,
         "remedy": error.remedy,
     }
-
-
-def limit_memory(most_bytes: int) -> None:
-    """Let this process take no more address space than so much on top of what it has.
-
-    Where the system can say so.
-    """
-    try:
-        import resource
-
-        own = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
-        resource.setrlimit(resource.RLIMIT_AS, (own + most_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
-    except (ImportError, OSError, ValueError):
-        return
 
 
 def about(record: Record) -> dict[str, Any]:

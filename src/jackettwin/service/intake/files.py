@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 import shutil
 from dataclasses import dataclass
@@ -161,17 +160,3 @@ def take_file(
         return Accepted(parsed.record_id, None, False, parsed.problem)
     with writing(service_database) as connection:
         return accept(now(), connection, asset, parsed, source_name)
-
-
-def as_json(description: bytes) -> dict[str, Any]:
-    """Return a description as a mapping.
-
-    Raises
-    ------
-    ValueError
-        If it is not JSON.
-    """
-    found = json.loads(description)
-    if not isinstance(found, dict):
-        raise ValueError("a description is a JSON object")
-    return found
