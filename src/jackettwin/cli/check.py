@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import click
-import numpy as np
-import numpy.typing as npt
 from rich.table import Table
 
+from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
@@ -21,8 +20,6 @@ from jackettwin.structure.check import few
 from jackettwin.structure.forces import element_weight
 from jackettwin.structure.iso19902 import CHECKS, EDITIONS
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
-
-FloatArray = npt.NDArray[np.float64]
 
 _SHOWN = 15
 """Members in the terminal."""

@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 import numpy as np
-import numpy.typing as npt
 from rich.table import Table
 
+from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import messages, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
@@ -199,7 +199,7 @@ def _point(text: str | None) -> Vector | None:
     return (x, y, z)
 
 
-def _matrices(element: Superelement, fixed_hz: npt.NDArray[np.float64]) -> dict[str, Any]:
+def _matrices(element: Superelement, fixed_hz: FloatArray) -> dict[str, Any]:
     fastest = element.fastest_pole_rad_s
     return {
         "reference_m": element.reference_m,
@@ -217,7 +217,7 @@ def _matrices(element: Superelement, fixed_hz: npt.NDArray[np.float64]) -> dict[
 
 def _document(
     element: Superelement,
-    fixed_hz: npt.NDArray[np.float64],
+    fixed_hz: FloatArray,
     error: ReducedModes,
     plain: ReducedModes,
     band_hz: float,

@@ -12,11 +12,9 @@ from math import pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 _REMEDY = "give a windIO turbine (version 1 or 2) with blade, airfoils, hub, drivetrain and control"
 

@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray
 from jackettwin.errors import InputError
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, RealPole, Stabilisation
@@ -44,10 +44,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.records import Record
 
-FloatArray = npt.NDArray[np.float64]
-
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
 
 FEWEST_BLOCKS = 5
 """Fewer blocks give no standard deviation worth printing."""

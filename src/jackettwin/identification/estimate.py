@@ -5,17 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus, sentence, worse
 from jackettwin.records import Channel
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -145,14 +140,14 @@ class Stabilisation:
     mode_shape_std : (n_poles, n_channels) or None
     """
 
-    order: IntArray
+    order: Int64Array
     frequency_hz: FloatArray
     damping_ratio: FloatArray
     mode_shape: ComplexArray
     stable_frequency: BoolArray
     stable_damping: BoolArray
     stable_shape: BoolArray
-    cluster: IntArray
+    cluster: Int64Array
     log_covariance: FloatArray | None = None
     mode_shape_std: FloatArray | None = None
 

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
+
 if TYPE_CHECKING:
-    FloatArray = npt.NDArray[np.float64]
-    ComplexArray = npt.NDArray[np.complex128]
+    FloatArray = FloatArray
+    ComplexArray = ComplexArray
 
 
 def mac(a: npt.ArrayLike, b: npt.ArrayLike) -> FloatArray:

@@ -9,8 +9,8 @@ from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import (
     Identification,
@@ -134,5 +134,5 @@ def _is_shape(name: str) -> bool:
     return name in ("mode_shape", "mode_shape_unaligned")
 
 
-def _complex(parts: list[list[float]]) -> npt.NDArray[np.complex128]:
+def _complex(parts: list[list[float]]) -> ComplexArray:
     return np.array(parts[0]) + 1j * np.array(parts[1])

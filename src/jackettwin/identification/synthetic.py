@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood import accuracy
 from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
 from jackettwin.identification.maximum_likelihood.periodogram import Periodogram, group_starts
 from jackettwin.identification.maximum_likelihood.spectral_model import expected
 from jackettwin.records import Channel, Record
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 REPEAT = 4
 """The periodic signal is this many times longer than what is cut from it: its wrap-around is lost."""

@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.rotor import AIR_KG_M3, Linearised, Rotor, linearise
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 ALPHA = np.radians(np.linspace(-180.0, 180.0, 1441))
 """Angles of attack of the tables [rad], a quarter degree apart."""

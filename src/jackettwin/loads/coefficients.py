@@ -10,12 +10,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 SEA_WATER_KG_M3 = 1025.0
 GROWTH_KG_M3 = 1325.0
@@ -68,7 +65,7 @@ class StripTable:
                 "heights must differ", field="z_m", value=list(self.z_m), remedy="leave one of the two out"
             )
 
-    def at(self, z: FloatArray, grown: npt.NDArray[np.bool_]) -> FloatArray:
+    def at(self, z: FloatArray, grown: BoolArray) -> FloatArray:
         """Return C_D, C_a, C_p at heights ``z``, (3, n)."""
         order = np.argsort(self.z_m)
         known = np.take(self.z_m, order)
@@ -110,7 +107,7 @@ class GrowthBand:
         _require_not_negative("bottom_thickness_m", self.bottom_thickness_m or 0.0)
         _require_not_negative("density_kg_m3", self.density_kg_m3)
 
-    def share(self, z: FloatArray) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+    def share(self, z: FloatArray) -> tuple[BoolArray, FloatArray]:
         """Return where ``z`` lies within the band, and how far from its top to its bottom (0 to 1)."""
         inside = (z <= self.top_z_m) & (z >= self.bottom_z_m)
         return inside, np.asarray((self.top_z_m - z) / (self.top_z_m - self.bottom_z_m))

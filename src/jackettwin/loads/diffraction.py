@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import h2vp
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from jackettwin.arrays import ComplexArray, FloatArray
 
 _SLENDER = 1e-3
 """ka below which the factor is 1 within 1e-6, and its formula a ratio of large numbers."""

@@ -11,14 +11,12 @@ damping of the members is left out: below 1 Hz their diameters are too small to 
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.morison import MorisonPoints, above_bed, drag_damping
 from jackettwin.loads.waves import depth_functions, jonswap, wave_number
-
-FloatArray = npt.NDArray[np.float64]
 
 _STEP_HZ = 1e-3
 _HIGHEST = 4.0

@@ -23,17 +23,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.morison import distribution
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, Structure
-
-FloatArray = npt.NDArray[np.float64]
 
 _RING_M = 0.5
 """Length of a ring of a member that widens."""
@@ -140,7 +138,7 @@ class _Rings(NamedTuple):
     points: FloatArray
     area: FloatArray
     volume: FloatArray
-    element: npt.NDArray[np.intp]
+    element: IntArray
     xi: FloatArray
 
 

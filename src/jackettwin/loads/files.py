@@ -7,17 +7,15 @@ from math import radians
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import find_file, read_yaml
 from jackettwin.files.windio import Part, WindIO, windio
 from jackettwin.loads.bem import Control
 from jackettwin.loads.blades import Blade, Polar, blend_polars, stall_delay
 from jackettwin.loads.rotor import Rotor
-
-FloatArray = npt.NDArray[np.float64]
 
 _STEEPEST = radians(30.0)
 """Of a shaft or a cone: steeper ones are degrees where radians belong."""

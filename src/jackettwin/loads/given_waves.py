@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
 from jackettwin.loads.waves import AirySea
-
-FloatArray = npt.NDArray[np.float64]
 
 _LONGEST = 2_000_000
 """Rows that a file of elevations may have."""

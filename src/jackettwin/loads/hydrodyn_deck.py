@@ -13,16 +13,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
 from jackettwin.loads.coefficients import Coefficients, GrowthBand, Strip, StripTable
 from jackettwin.loads.ends import EndCoefficients
 from jackettwin.structure import Structure
 from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
-
-FloatArray = npt.NDArray[np.float64]
 
 _SAME_PLACE_M = 0.3
 """Feet of HydroDyn's files reach a little into the bed, so that no water presses on their ends."""

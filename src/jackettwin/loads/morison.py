@@ -14,9 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
@@ -24,9 +24,6 @@ from jackettwin.loads.kernels import morison
 from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, Structure, beam
 from jackettwin.structure.mesh import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -124,7 +121,7 @@ def morison_points(
 
 
 def _of_parts(
-    structure: Structure, mesh: Mesh, reaches: npt.NDArray[np.bool_], exclude: tuple[str, ...]
+    structure: Structure, mesh: Mesh, reaches: BoolArray, exclude: tuple[str, ...]
 ) -> list[np.intp]:
     """Return the elements that reach there and are of no excluded part."""
     wanted = [e for e in np.flatnonzero(reaches) if structure.members[mesh.member[e]].part not in exclude]

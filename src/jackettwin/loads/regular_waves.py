@@ -9,13 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError, MissingExtra, NumericalError
 from jackettwin.loads.waves import wave_number
-
-FloatArray = npt.NDArray[np.float64]
 
 THEORIES = ("stokes-5", "stream-function")
 HIGHEST_URSELL = 30.0

@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.blades import ALPHA, Blade
 from jackettwin.loads.kernels import blade_elements
-
-FloatArray = npt.NDArray[np.float64]
 
 AIR_KG_M3 = 1.225
 SHAFTS = ("locked", "free")

@@ -10,15 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.kernels import wind_on_blades
 from jackettwin.loads.rotor import Rotor, rotation
 from jackettwin.loads.standing_blades import Places, blade_pieces, grid_nodes, line_pieces
 from jackettwin.loads.turbulence import Coherent, turbulence
 from jackettwin.loads.wind import Wind
-
-FloatArray = npt.NDArray[np.float64]
 
 RINGS = (0.3, 0.55, 0.8, 1.0)
 """Radii of the rings over the rotor's."""

@@ -12,12 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.kernels import between_levels
 from jackettwin.loads.waves import AirySea
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 LEVELS = 5
 """Chebyshev levels a point: 0.1 % of the particle motion under Hs = 8 m."""
@@ -72,7 +70,7 @@ def sea_series(
     return SeaSeries(eta, both[..., :3], both[..., 3:])
 
 
-def _lines(sea: AirySea, period: float, n_times: int) -> npt.NDArray[np.intp]:
+def _lines(sea: AirySea, period: float, n_times: int) -> IntArray:
     cycles = sea.omega * period / (2.0 * np.pi)
     lines = np.rint(cycles).astype(np.intp)
     if np.abs(cycles - lines).max() > 1e-6:
@@ -99,7 +97,7 @@ def _fields(
     sea: AirySea,
     steady: ComplexArray,
     z: FloatArray,
-    lines: npt.NDArray[np.intp],
+    lines: IntArray,
     n_times: int,
     inertia: npt.NDArray[Any],
 ) -> FloatArray:
@@ -115,7 +113,7 @@ def _fields(
     return np.array([_transformed(component, lines, n_times) for component in components])
 
 
-def _transformed(amplitude: ComplexArray, lines: npt.NDArray[np.intp], n_times: int) -> FloatArray:
+def _transformed(amplitude: ComplexArray, lines: IntArray, n_times: int) -> FloatArray:
     """Return Σ Re(c e^{iωt}) (n, n_times) from amplitudes (n, n_waves)."""
     spectrum = np.zeros((amplitude.shape[0], n_times // 2 + 1), dtype=np.complex128)
     spectrum[:, lines] = 0.5 * n_times * amplitude

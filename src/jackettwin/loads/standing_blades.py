@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.rotor import Rotor
-
-FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 5
 """Points over which a piece is averaged."""

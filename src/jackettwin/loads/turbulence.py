@@ -6,12 +6,9 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.loads.wind import SCALE_RATIOS, SIGMA_RATIOS, Wind, coherence
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 Coherent = Literal["all", "u"]
 """Components that are coherent between places: all by the same law, or u alone, as the standard has it."""
@@ -27,7 +24,7 @@ def turbulence(
     duration: float,
     sample_rate_hz: float,
     seed: int,
-    pieces: npt.NDArray[np.intp] | None = None,
+    pieces: IntArray | None = None,
     coherent: Coherent = "u",
 ) -> FloatArray:
     """Return u, v, w about the mean, (n_times, n, 3) [m/s]; periodic.
@@ -62,7 +59,7 @@ def turbulence(
 
 
 def _coloured(
-    wind: Wind, points: FloatArray, pieces: npt.NDArray[np.intp], f: FloatArray, white: ComplexArray
+    wind: Wind, points: FloatArray, pieces: IntArray, f: FloatArray, white: ComplexArray
 ) -> ComplexArray:
     """Return amplitudes (n_components, n_f, n) with the places' coherence."""
     distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
@@ -78,7 +75,7 @@ def _coloured(
     return out
 
 
-def _factor(matrix: FloatArray, pieces: npt.NDArray[np.intp]) -> FloatArray:
+def _factor(matrix: FloatArray, pieces: IntArray) -> FloatArray:
     """Return the Cholesky factor of the coherence of means over pieces."""
     order = np.argsort(pieces, kind="stable")
     first = np.flatnonzero(np.diff(pieces[order], prepend=-1))

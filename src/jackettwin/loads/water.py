@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.loads.coefficients import Coefficients, require_members
 from jackettwin.loads.morison import (
@@ -23,8 +23,6 @@ from jackettwin.loads.morison import (
     wetness,
 )
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

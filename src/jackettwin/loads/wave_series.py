@@ -6,17 +6,15 @@ from dataclasses import fields, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.current import Current
 from jackettwin.loads.diffraction import scattered
 from jackettwin.loads.ends import Ends, end_forces
 from jackettwin.loads.morison import MorisonPoints, above_bed, point_forces, wetness
 from jackettwin.loads.sea_series import sea_series
 from jackettwin.loads.waves import AirySea, Waves
-
-FloatArray = npt.NDArray[np.float64]
 
 _CHUNK = 48
 """Points at a time: their fields stay in the cache."""

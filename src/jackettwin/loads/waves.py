@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 STRETCHING = ("none", "vertical", "extrapolated", "wheeler")
 
@@ -177,7 +175,7 @@ class AirySea:
         eta = self.elevation(points, t)
         return np.minimum((points[:, 2] - eta) * self.depth / (self.depth + eta), 0.0)
 
-    def _spatial(self, points: FloatArray) -> npt.NDArray[np.complex128]:
+    def _spatial(self, points: FloatArray) -> ComplexArray:
         """Return e^{−ik·x}, (n_points, n_waves)."""
         along = np.outer(points[:, 0], np.cos(self.direction)) + np.outer(
             points[:, 1], np.sin(self.direction)
@@ -185,7 +183,7 @@ class AirySea:
         return np.asarray(np.exp(-1j * self.k * along))
 
     def _fields(
-        self, rotating: npt.NDArray[np.complex128], spatial: npt.NDArray[np.complex128], z: FloatArray
+        self, rotating: ComplexArray, spatial: ComplexArray, z: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return (velocity, acceleration) at levels ``z`` without asking whether these are wet."""
         horizontal, vertical = self.depth_functions(z)

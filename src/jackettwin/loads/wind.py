@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.morison import MorisonPoints, point_forces, spread
-
-FloatArray = npt.NDArray[np.float64]
 
 REFERENCE_INTENSITY = {"A+": 0.18, "A": 0.16, "B": 0.14, "C": 0.12}
 """Expected turbulence intensity at 15 m/s, IEC 61400-1 (2019) table 1."""

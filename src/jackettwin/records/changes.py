@@ -15,14 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy import signal
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.records.sensor_polarity import LEAST_CYCLES, strongest_line
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
 
 PARTS = 20
 """Parts of a record over which the gain is taken."""
@@ -219,7 +215,7 @@ def _against_others(
     return replace(whole, explained=whole.over(some).explained)
 
 
-def _most_alike(x: ComplexArray, own: ComplexArray, n: int) -> npt.NDArray[np.intp]:
+def _most_alike(x: ComplexArray, own: ComplexArray, n: int) -> IntArray:
     power = np.sqrt(np.sum(np.abs(x) ** 2, axis=1))
     subspace_mac = np.abs(x.conj() @ own) / np.where(power > 0.0, power, np.inf)
     return np.sort(np.argsort(-subspace_mac)[: max(n, 1)])

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.sparse.csgraph import connected_components
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 TIE = 1.0
 """Weight of the expectation that channels at one place share a logger: any pair that tells weighs more."""

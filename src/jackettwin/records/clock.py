@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray, Int64Array, IntArray
 from jackettwin.errors import InputError
 from jackettwin.records.record import RATES_HZ
-
-FloatArray = npt.NDArray[np.float64]
 
 RATE_TOLERANCE = 1e-3
 """Relative difference allowed between the stated rate and that of the stamps."""
@@ -88,7 +86,7 @@ def regularise(
     return out, Clock(rate, jitter, n_grid - len(np.unique(index)), dropped)
 
 
-def _increasing(times_s: FloatArray) -> npt.NDArray[np.intp]:
+def _increasing(times_s: FloatArray) -> IntArray:
     """Return the indices of the stamps that are finite and later than all before them."""
     finite = np.where(np.isfinite(times_s), times_s, -np.inf)
     latest = np.concatenate([[-np.inf], np.maximum.accumulate(finite)[:-1]])
@@ -116,7 +114,7 @@ def _refuse_absurd(t: FloatArray) -> None:
         )
 
 
-def _grid(t: FloatArray) -> tuple[npt.NDArray[np.int64], float, float]:
+def _grid(t: FloatArray) -> tuple[Int64Array, float, float]:
     """Return each stamp's grid point, the step and the fitted time of grid point 0.
 
     The fit grows from the first stamps to all, so that the step is always known well enough to
@@ -149,7 +147,7 @@ def _line(index: FloatArray, t: FloatArray, step: float) -> tuple[float, float]:
     return slope, float(t.mean() - slope * index.mean())
 
 
-def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: npt.NDArray[np.int64]) -> float:
+def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: Int64Array) -> float:
     if stated is None:
         # Stamps are rounded: take the shortest decimal within their own uncertainty.
         spread = float(np.std(index)) * np.sqrt(len(index))

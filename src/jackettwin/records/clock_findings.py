@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.findings import CATALOGUE
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.faults import is_constant
@@ -19,7 +19,6 @@ from jackettwin.records.time_shift import earlier
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 LEAST_PRESENT = 0.5
 """Share of the samples of a channel whose clock can be judged."""

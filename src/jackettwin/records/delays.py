@@ -20,11 +20,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 
 FEWEST_LINES = 4
 """Lines over which a cross spectrum is averaged at least: the coherence of independent lines is biased by a

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 ROUNDING = 1e-6
 """Largest difference of two copies, as a share of their rms: that of a file that keeps seven digits.

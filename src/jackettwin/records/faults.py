@@ -6,14 +6,11 @@ Every detector takes one channel, a vector of samples, and says what it saw; non
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.records.filters import bridge
 from jackettwin.records.record import SMALLEST
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 SPIKE_WINDOW = 9
 """A spike is shorter than half of this [samples]."""
@@ -52,7 +49,7 @@ def quantiser_step(y: FloatArray) -> float:
     return float(np.min(np.diff(levels)))
 
 
-def runs(mask: BoolArray) -> npt.NDArray[np.int64]:
+def runs(mask: BoolArray) -> Int64Array:
     """Return start and length of every run of True.
 
     >>> runs(np.array([True, False, True, True])).tolist()
@@ -93,7 +90,7 @@ def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
     return far
 
 
-def _spread_around(x: FloatArray, at: npt.NDArray[np.int64], hold: int) -> FloatArray:
+def _spread_around(x: FloatArray, at: Int64Array, hold: int) -> FloatArray:
     """Return the median departure from the median within the window around some samples."""
     reach = hold * np.arange(-(SPIKE_WINDOW // 2), SPIKE_WINDOW // 2 + 1)
     window = x[np.clip(at[:, None] + reach, 0, len(x) - 1)]

@@ -9,10 +9,9 @@ output step do not count: what the filter passes hardly bends over so short a ti
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage, signal
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import BoolArray, FloatArray
 
 STOPBAND_DB = 80.0
 """Attenuation beyond the stop edge; the pass band ripples by 1e-4."""
@@ -115,13 +114,13 @@ def half_length(taps: FloatArray, up: int = 1) -> int:
     return -(-(len(taps) // 2) // up)
 
 
-def _long_gaps(missing: npt.NDArray[np.bool_], *, shortest: int) -> npt.NDArray[np.bool_]:
+def _long_gaps(missing: BoolArray, *, shortest: int) -> BoolArray:
     """Keep only runs of at least ``shortest`` missing samples."""
     if shortest <= 1 or not missing.any():
         return missing
     line = np.ones((1, shortest), dtype=np.bool_)
     padded = np.pad(missing, ((0, 0), (shortest, shortest)), constant_values=False)
-    opened: npt.NDArray[np.bool_] = ndimage.binary_opening(padded, structure=line)
+    opened: BoolArray = ndimage.binary_opening(padded, structure=line)
     return opened[:, shortest:-shortest]
 
 

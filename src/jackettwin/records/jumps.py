@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 SIGMAS = 6.0
 """Standard deviations, of the scatter between windows, beyond which a change counts."""

@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.records.channel_delays import (
     Network,
     against_main,
@@ -36,11 +36,6 @@ from jackettwin.records.delays import (
     trajectories,
 )
 from jackettwin.records.jumps import SIGMAS, lines, runs, scatter, steps
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
 
 LEAST_WEIGHT = 20.0
 """Sum of the weights of a pair that says anything: two bins of full coherence, or twenty of half."""

@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.filters import bridge
 from jackettwin.records.prepare import decimate
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 ON_GRID = 1e-6
 """Offset from a sample, in samples, below which nothing need be interpolated."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import filters
@@ -106,7 +107,7 @@ def decimate(record: Record, *, sample_rate_hz: float) -> Record:
     return _done(out, "decimate", from_hz=record.sample_rate_hz, to_hz=out.sample_rate_hz, edge_s=edge_s)
 
 
-def _on_vibrations(record: Record, function: Callable[[filters.FloatArray], filters.FloatArray]) -> Record:
+def _on_vibrations(record: Record, function: Callable[[FloatArray], FloatArray]) -> Record:
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
     data = record.data.copy()
     if rows and data.shape[1]:
@@ -114,7 +115,7 @@ def _on_vibrations(record: Record, function: Callable[[filters.FloatArray], filt
     return replace(record, data=data)
 
 
-def _unwrapped(record: Record) -> filters.FloatArray:
+def _unwrapped(record: Record) -> FloatArray:
     """Return the data with yaw free of jumps by a turn, which a filter would smear."""
     data = record.data.copy()
     for i, channel in enumerate(record.channels):
@@ -167,7 +168,7 @@ def _check_length(record: Record, half_length: int) -> float:
     return half_length / record.sample_rate_hz
 
 
-def _refuse_emptied(record: Record, filtered: filters.FloatArray) -> None:
+def _refuse_emptied(record: Record, filtered: FloatArray) -> None:
     """Refuse to turn a channel with data into one without."""
     emptied = np.isfinite(record.data).any(axis=1) & ~np.isfinite(filtered).any(axis=1)
     if emptied.any():

@@ -6,8 +6,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, sensor_polarity
 from jackettwin.records.changes import Change, changes, described
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from jackettwin.records.logger_clocks import LoggerClocks
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 STUCK_S = 1.0
 """Shortest frozen reading [s]."""
@@ -65,7 +63,7 @@ class Quality:
     score: float
     channels: tuple[ChannelQuality, ...]
     findings: tuple[Finding, ...]
-    suspect: npt.NDArray[np.bool_]
+    suspect: BoolArray
     clocks: LoggerClocks
 
     def summary(self) -> dict[str, Any]:
@@ -201,7 +199,7 @@ def _score(q: ChannelQuality, sign: bool | None) -> float:
     return lost * doubt
 
 
-def _unreadable(record: Record, unreadable: npt.NDArray[np.bool_]) -> Iterator[Finding]:
+def _unreadable(record: Record, unreadable: BoolArray) -> Iterator[Finding]:
     """Yield channels with infinite or absurdly large samples."""
     for channel, row in zip(record.channels, unreadable, strict=True):
         if row.any():

@@ -6,15 +6,12 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-import numpy.typing as npt
-
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-FloatArray = npt.NDArray[np.float64]
 
 Frame = Literal["global", "nacelle"]
 

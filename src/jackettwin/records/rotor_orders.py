@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.filters import bridge
 from jackettwin.records.tones import less_phase
@@ -22,7 +22,6 @@ from jackettwin.records.tones import less_phase
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 ORDERS = (1, 3, 6)
 """Multiples of the rotor's speed at which three blades excite a tower."""

@@ -21,16 +21,14 @@ from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.records import faults
 from jackettwin.records.filters import bridge
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Channel, Record
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 BAND = 0.15
 """Half width of the band around the strongest line, as a share of its frequency."""

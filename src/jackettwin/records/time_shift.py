@@ -9,12 +9,10 @@ the samples.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import make_interp_spline
 
+from jackettwin.arrays import FloatArray
 from jackettwin.records.filters import bridge, remove_line
-
-FloatArray = npt.NDArray[np.float64]
 
 PAD = 256
 """Reflected samples on either side."""

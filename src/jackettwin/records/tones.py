@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 FEWEST_SAMPLES = 30
 """A channel with fewer keeps what it has: three unknowns a channel, tenfold."""

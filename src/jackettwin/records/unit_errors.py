@@ -18,15 +18,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.quantities import G0
 from jackettwin.records.sensor_polarity import CERTAIN, Group, Together, one_motion
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 TOO_LARGE = (
     ("m/s^2", "g", G0),

@@ -18,8 +18,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.filters import bridge
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Channel, Record
 
-FloatArray = npt.NDArray[np.float64]
 
 ROTOR, GLOBAL = ("fore_aft", "side_side"), ("x", "y")
 LEAST_SINE = 0.5

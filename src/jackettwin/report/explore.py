@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report.figures_landscape import Curve, Locus
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.updating import Problem, SupportModel, Update, numbered_modes
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _STRIDE, _REFINEMENTS = 0.06, 3
 """A root locus is refined where a pole moves by more than this share of its path; so many times."""

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import ModalEstimate
 from jackettwin.records import Channel
 from jackettwin.report import style
 from jackettwin.report.numbers import frequency, percent, words
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _COLUMNS = 3
 

@@ -6,14 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 
 from jackettwin.report import style
 from jackettwin.report.figures_structure import MUD, member_text, segments
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def elevation(

@@ -6,17 +6,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.identification import Identification, ModalEstimate, Spectrum
 from jackettwin.report import numbers, style
 from jackettwin.report.numbers import log_interval_95, words
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-
 
 _STEP = 2.4
 """Distance of the bars above the poles, in model orders."""

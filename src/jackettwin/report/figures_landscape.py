@@ -7,16 +7,12 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report import style
 from jackettwin.report.numbers import scientific, words
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-
 
 _BRIGHTEST = 0.9
 """This share of a cost surface lies below the brightest colour."""

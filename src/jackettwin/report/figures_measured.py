@@ -6,17 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification import ModalEstimate
 from jackettwin.records import Channel
 from jackettwin.report import style
 from jackettwin.report.figures_modes import animated
 from jackettwin.report.numbers import frequency, percent, words
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _FRAMES = 24
 _SWAY = 0.16
@@ -39,7 +36,7 @@ class Places:
     """
 
     height: FloatArray
-    place: npt.NDArray[np.int64]
+    place: Int64Array
     direction: FloatArray
 
     @classmethod

@@ -10,13 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import plotly.graph_objects as go
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report import style
 from jackettwin.report.figures_structure import scene_of, segments, sensor_points
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _FRAMES = 24
 _SWAY = 0.10

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import style
 from jackettwin.report.numbers import words
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Parameter, Update
 from jackettwin.updating.budget import SOURCES, Budget
 from jackettwin.updating.update import Uncertainty
-
-FloatArray = npt.NDArray[np.float64]
 
 _SOURCE_LOOKS = {
     "structure": (style.GREY, ""),

@@ -6,17 +6,15 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.identification import ModalEstimate, Spectrum
 from jackettwin.quantities import quantity
 from jackettwin.records import Channel, Record
 from jackettwin.report import style
 from jackettwin.report.numbers import words
-
-FloatArray = npt.NDArray[np.float64]
 
 _BINS = 900
 """Pairs of least and largest sample that are drawn of a channel: more than a screen has columns."""

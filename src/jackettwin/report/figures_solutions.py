@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import style
 from jackettwin.report.numbers import scientific
 from jackettwin.updating import Parameter, Update
 from jackettwin.updating.solutions import Solution
-
-FloatArray = npt.NDArray[np.float64]
 
 _SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star")
 _ROW, _EDGE = 46, 150

@@ -9,11 +9,10 @@ import numpy as np
 import numpy.typing as npt
 import plotly.graph_objects as go
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import style
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 QUANTITIES = ("wall thickness", "outer diameter", "Young's modulus", "density")
 _UNITS = {

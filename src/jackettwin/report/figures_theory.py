@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import schematics, style
 from jackettwin.response.sdof import free_vibration
 from jackettwin.soil.viscoelastic import Law, hysteresis
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def damping_regimes(ratios: Sequence[tuple[str, float]]) -> go.Figure:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from importlib.resources import as_file, files
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 
 from jackettwin.identification import Identification, identify, mac
@@ -37,8 +36,6 @@ from jackettwin.updating import SupportModel, family, numbered_modes, single, su
 from jackettwin.updating.landscape import cost_surface
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
-
-FloatArray = npt.NDArray[np.float64]
 
 RECORD = "pile_U12_s301"
 """The shipped record behind the figures of identification: OpenFAST, 12 m/s."""

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import style
 from jackettwin.structure import Assembly
 
-FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]
 _GAP = np.full((1, 2), np.nan)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report import figures_posterior as draw
 from jackettwin.report.numbers import UNKNOWN, fixed, scientific, words
 from jackettwin.report.page import Block, Plot, Table, Text
@@ -125,7 +125,7 @@ def _predictions(u: Update, k: Uncertainty, labels: Mapping[int, str]) -> Table:
     return Table(f"{u.law}: predictions, 90 % intervals of the posterior.", columns, tuple(rows), 1)
 
 
-def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:
+def _span(draws: FloatArray, factor: float, decimals: int) -> str:
     kept = draws[~np.isnan(draws)]
     if kept.size == 0:
         return UNKNOWN

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from math import exp
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
 from jackettwin.report.summary import shown_update
@@ -15,8 +15,6 @@ from jackettwin.twin import DampingExcess, TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
 from jackettwin.updating.families import Parameter
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def key_table(result: TwinResult) -> Table:

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from jackettwin.arrays import FloatArray
 from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
 from jackettwin.loads.coefficients import Coefficients
@@ -24,9 +24,6 @@ from jackettwin.report.figures_structure import member_text, sensor_points
 from jackettwin.report.view_motions import Motion
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
-
 
 _LINES = ("cable", "spring", "beam")
 """Elements of a deck that are drawn as lines; the springs of a joint have no length."""

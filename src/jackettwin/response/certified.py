@@ -17,16 +17,13 @@ from math import pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.state import state_matrix
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, law_stiffness
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 from jackettwin.structure.damping import Rayleigh
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _INNER = 0.9
 """The disc ends between this share of the band and the band's end, where there is most room."""

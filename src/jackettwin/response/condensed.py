@@ -27,11 +27,11 @@ from math import inf, pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.axes import TRANSLATIONS
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modal import UndampedModes
@@ -40,10 +40,6 @@ from jackettwin.response.system import Group, Matrix, Pencil, System
 from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure.eigen import lowest_modes
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 _RETAINED = 1.2
 """Modes up to this multiple of the band are unknowns of their own."""

@@ -9,13 +9,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.state import damping_matrix, maxwell_branches
 from jackettwin.response.system import Pencil
 from jackettwin.structure.eigen import dense
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Energy(NamedTuple):

@@ -11,13 +11,11 @@ import re
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
 from jackettwin.response.superelement import INTERFACE, Superelement
-
-FloatArray = npt.NDArray[np.float64]
 
 MATRICES = ("mass", "stiffness", "damping")
 """First words of the matrices' headers."""

@@ -11,11 +11,9 @@ from __future__ import annotations
 from typing import Literal, get_args
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.superelement import INTERFACE, Superelement
-
-FloatArray = npt.NDArray[np.float64]
 
 Layout = Literal["openfast5", "openfast4", "openfast3"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)

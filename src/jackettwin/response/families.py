@@ -5,16 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.response.certified import REAL, SAME, STEP, kernels
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.mode_tracking import near_degenerate
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
 
 _KIN = 0.8
 """Share of a mode, by mass, in the space of its family at the neighbour, by which a warm start is known."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.mode_tracking import NEAR_DEGENERATE
 from jackettwin.response.multiple import axis_levels
 from jackettwin.structure.assemble import Assembly
@@ -24,9 +25,7 @@ _EVEN = 1e-3
 """Shares of motion along x that differ by less are the same; the lower of the two modes is then fore-aft."""
 
 
-def mode_kinds(
-    assembly: Assembly, shapes: npt.NDArray[Any], frequency_hz: npt.NDArray[np.float64]
-) -> tuple[str, ...]:
+def mode_kinds(assembly: Assembly, shapes: npt.NDArray[Any], frequency_hz: FloatArray) -> tuple[str, ...]:
     """Return the kind of each mode by how the structure's axis moves, level by level.
 
     The axis is the nodes above and below the highest one; without a tower, the mean of the interface nodes.

@@ -6,15 +6,12 @@ from collections.abc import Callable, Sequence
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points, numbered_poles
 from jackettwin.soil.coefficients import law_rows
 from jackettwin.soil.viscoelastic import Law
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 def root_locus(

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.multiple import aligned
 from jackettwin.response.poles import REAL, poles_below
 from jackettwin.response.system import System
 from jackettwin.structure.eigen import AT_REST, below_zero, lowest_modes
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

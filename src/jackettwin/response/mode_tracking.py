@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
+from jackettwin.arrays import FloatArray, IntArray
 
 NEAR_DEGENERATE = 0.03
 """Reference modes closer than this (relative) are followed as one subspace."""

@@ -12,10 +12,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg as la
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.structure.assemble import Assembly
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 INSEPARABLE = 1e-5
 """Frequencies nearer than this (relative) are one: deviations of coordinates written to the millimetre, and

@@ -19,16 +19,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.response.certified import AllModes, all_modes, kernels
 from jackettwin.response.condensed import Condensed, check_rayleigh
 from jackettwin.response.families import Start, families_of
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.soil.coefficients import static_rows
 from jackettwin.structure.damping import Rayleigh
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 _BYSTANDERS = 2
 """Modes beyond the last one wanted that may claim a shape, too."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.loads import airy_wave, morison_points
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.morison import MorisonPoints, nodal_loads, point_forces, wetness
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -68,7 +66,7 @@ def wave_passage(
     )
 
 
-def _per_length(member: npt.NDArray[np.intp], grid: MorisonPoints, forces: FloatArray) -> FloatArray:
+def _per_length(member: IntArray, grid: MorisonPoints, forces: FloatArray) -> FloatArray:
     """Return the mean force per length of each element's member, zero where it is dry."""
     size = int(member.max()) + 1
     length = np.bincount(grid.member, grid.weight, minlength=size)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure.assemble import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 _TAPER = 0.3
 """Share of a band edge's frequency over which the filter rises."""
@@ -90,7 +88,7 @@ def playback(
     return Playback(shapes, excerpt, step, first * step)
 
 
-def _told_apart(seen: FloatArray, inside: npt.NDArray[np.bool_]) -> list[int]:
+def _told_apart(seen: FloatArray, inside: BoolArray) -> list[int]:
     """Return the modes whose pattern at the sensors is visible and not made of the patterns of lower ones."""
     kept: list[int] = []
     largest = float(np.linalg.norm(seen[:, inside], axis=0).max(initial=0.0))

@@ -12,18 +12,16 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse.linalg as spla
 from scipy.sparse.csgraph import connected_components
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import NumericalError
 from jackettwin.response.state import factorised, shifted_inverse
-from jackettwin.response.system import IntArray, Pencil
+from jackettwin.response.system import Pencil
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Pair = tuple[complex, ComplexArray]
 """A pole and its shape on the pencil's DOFs."""
 
@@ -89,7 +87,7 @@ def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexA
     return values[upper], Q[: pencil.n] @ Y[:, keep][:, upper]
 
 
-def _inside(theta: ComplexArray, sigma: float, radius: float) -> npt.NDArray[np.bool_]:
+def _inside(theta: ComplexArray, sigma: float, radius: float) -> BoolArray:
     """Tell which eigenvalues θ = 1/(λ − σ) of the inverse belong to |λ| ≤ radius."""
     return np.asarray((np.abs(theta) > 0.0) & (np.abs(1.0 + sigma * theta) <= radius * np.abs(theta)))
 

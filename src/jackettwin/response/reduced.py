@@ -12,15 +12,13 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response.state import factorised
-from jackettwin.response.system import IntArray, Pencil, System
+from jackettwin.response.system import Pencil, System
 from jackettwin.structure.eigen import dense, lowest_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 _FIRST_GUESS = 40
 FREQUENCY_ERROR = 5e-4

@@ -20,18 +20,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.identification.mac import mac
 from jackettwin.response.certified import REAL, STEP, kernels
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points
 from jackettwin.soil.coefficients import BRANCHES, K0, K_ALPHA, MASS, C
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
 
 _NEAR = 0.3
 """Refining may move ln a by so much: what it finds farther away is another pole."""

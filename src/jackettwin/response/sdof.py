@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, Pencil
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.damping import Rayleigh
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 def sdof(mass_kg: float, law: Law) -> Pencil:

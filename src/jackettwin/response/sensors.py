@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.structure import beam
 from jackettwin.structure.assemble import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

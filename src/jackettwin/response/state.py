@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
-from jackettwin.response.system import IntArray, Matrix, Pencil
+from jackettwin.response.system import Matrix, Pencil
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure.eigen import dense
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Branch(NamedTuple):

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.check import rigid_body_motion
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def static_displacement(system: System, load: FloatArray) -> FloatArray:

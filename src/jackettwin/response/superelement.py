@@ -23,24 +23,21 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.state import Branch, factorised, maxwell_branches
 from jackettwin.response.static import self_weight
-from jackettwin.response.system import IntArray, Pencil, System
+from jackettwin.response.system import Pencil, System
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot, prony_fit
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
 from jackettwin.structure.model import Structure, Vector
 from jackettwin.structure.subdyn_damping import DeckDamping
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 INTERFACE = DOFS_PER_NODE
 """Coordinates of the interface: they come first."""
@@ -258,7 +255,7 @@ def dissipates(law: Law) -> bool:
     return not isinstance(law, Prony) or law.c > 0.0 or any(law.k)
 
 
-def _response(pencil: Pencil, at: _Interface, s: complex) -> npt.NDArray[np.float64]:
+def _response(pencil: Pencil, at: _Interface, s: complex) -> FloatArray:
     """Return the response to unit motions of the interface with its internal variables; real if s = 0."""
     F = sp.csc_array(pencil.F(s) if s else pencil.static_stiffness())
     try:
@@ -270,7 +267,7 @@ def _response(pencil: Pencil, at: _Interface, s: complex) -> npt.NDArray[np.floa
     return _lifted(pencil, U, s)
 
 
-def _lifted(pencil: Pencil, u: npt.NDArray[np.float64], s: complex = 0.0) -> npt.NDArray[np.float64]:
+def _lifted(pencil: Pencil, u: FloatArray, s: complex = 0.0) -> FloatArray:
     """Return shapes with the internal variables y = u/(1 + τs) of every Maxwell branch below them."""
     return np.vstack([u, *(u[branch.dofs] / (1.0 + s * branch.tau) for branch in maxwell_branches(pencil))])
 

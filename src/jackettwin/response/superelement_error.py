@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 from scipy.optimize import linear_sum_assignment
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.response.poles import poles_below
 from jackettwin.response.superelement import (
@@ -24,9 +24,6 @@ from jackettwin.response.system import Pencil, System
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.structure.eigen import AT_REST, dense, lowest_modes
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports; nobody asks a superelement for them."""

@@ -9,15 +9,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
 from jackettwin.response.extptfm import is_extptfm, read_extptfm
 from jackettwin.response.extptfm_layouts import DEFAULT, Layout, matrices_text, module_input
 from jackettwin.response.superelement import Superelement
-
-FloatArray = npt.NDArray[np.float64]
 
 FORMATS = (".npz", ".dat")
 

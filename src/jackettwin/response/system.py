@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.structure.damping import Rayleigh
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from jackettwin.soil.viscoelastic import Law
     from jackettwin.structure.assemble import Assembly
 
-IntArray = npt.NDArray[np.intp]
 Matrix = Any
 """A NumPy array or a SciPy sparse array: the algebra below is the same."""
 
@@ -167,7 +167,7 @@ def _ground_mass(assembly: Assembly, support: Support) -> sp.csc_array:
 
 def _groups(assembly: Assembly, springs: tuple[Spring, ...], number: IntArray, n: int) -> tuple[Group, ...]:
     """Return one group for each distinct law, in order of first appearance."""
-    entries: dict[Law, list[tuple[IntArray, IntArray, npt.NDArray[np.float64]]]] = {}
+    entries: dict[Law, list[tuple[IntArray, IntArray, FloatArray]]] = {}
     for spring in springs:
         dofs = number[assembly.dofs(spring.node)]
         rows, columns = np.nonzero(spring.matrix)

@@ -14,12 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

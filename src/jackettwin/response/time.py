@@ -15,15 +15,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.state import maxwell_branches, state_matrix
 from jackettwin.response.system import Pencil
 from jackettwin.structure.eigen import dense
 
-FloatArray = npt.NDArray[np.float64]
 Feedback = Callable[[int, FloatArray], FloatArray]
 """Force (m_g,) at step k in state x."""
 

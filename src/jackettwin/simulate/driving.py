@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.rotor_wind import RotorWind
 from jackettwin.simulate.model import Aerodynamics, Model, aerodynamics, build_model, with_aerodynamics
 from jackettwin.simulate.scenario import Air, Clock, Scenario, Sea, Turbine
@@ -27,8 +27,6 @@ from jackettwin.simulate.wind import (
     tower_points,
     wind_field,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

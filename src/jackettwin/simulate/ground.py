@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.simulate.model import Model
 from jackettwin.soil.cyclic import advance
 from jackettwin.soil.foundation import Foundation
-
-FloatArray = npt.NDArray[np.float64]
 
 EVALUATIONS = 4
 """Rounds of a step: each brings the force nearer by the share of the stiffness that is lost."""

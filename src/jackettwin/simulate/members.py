@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.morison import loads_along, nodal_loads
 from jackettwin.loads.water import weight_forces
 from jackettwin.response.static import self_weight, static_displacement
@@ -18,8 +18,6 @@ from jackettwin.simulate.water import water_loads, water_points
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.forces import element_weight
 from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses, worst_uses
-
-FloatArray = npt.NDArray[np.float64]
 
 _BLOCK = 2000
 """Instants at a time: records are long, and every element has twelve loads."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.loads.bem import Operation, operating_damping, operating_point
 from jackettwin.loads.morison import morison_points
 from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
@@ -23,8 +23,6 @@ from jackettwin.simulate.tuning import tuned_damping
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.rotor_modes import turned_nacelle
-
-FloatArray = npt.NDArray[np.float64]
 
 BAND_HZ = 5.0
 """Modes inside the structure are kept up to here."""
@@ -177,7 +175,7 @@ def true_modes(model: Model, *, below_hz: float) -> tuple[TrueMode, ...]:
     )
 
 
-def damping_by_source(model: Model, pole: complex, x: npt.NDArray[np.complex128]) -> dict[str, float]:
+def damping_by_source(model: Model, pole: complex, x: ComplexArray) -> dict[str, float]:
     """Return each source's part of the damping ratio of a mode with shape x (n,).
 
     The imaginary part of xᴴF(λ)x = 0 is a sum over the parts of F; what is not symmetric in the rotor's

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.time import (
     Feedback,
@@ -24,8 +24,6 @@ from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.model import BAND_HZ, Model, TrueMode, true_modes
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Scenario
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

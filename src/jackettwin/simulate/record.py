@@ -9,16 +9,14 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
-
-FloatArray = npt.NDArray[np.float64]
 
 _UNITS = {"acceleration": "m/s^2", "velocity": "m/s", "displacement": "m"}
 _SIGNALS = {

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
@@ -17,8 +17,6 @@ from jackettwin.simulate.sea_limits import sea_warnings
 from jackettwin.simulate.water import is_regular, water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import Assembly, assemble
-
-FloatArray = npt.NDArray[np.float64]
 
 _FINE_M = 0.5
 """Longest piece of a member: the loads themselves are the result."""

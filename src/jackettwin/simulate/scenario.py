@@ -7,8 +7,8 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.bem import Control
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
@@ -23,8 +23,6 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.soil.foundation import Foundation
 from jackettwin.soil.support import Support
 from jackettwin.structure import Rayleigh, Structure
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.sensors import observation_matrix
 from jackettwin.response.time import first_order_hold
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import Instrument, Scenario
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def readings(motion: Motion, scenario: Scenario) -> FloatArray:

@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.labels import mode_kinds
 from jackettwin.response.multiple import aligned, aligned_coordinates
@@ -26,8 +26,6 @@ from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 _PLANES = ("fore_aft", "side_side")
 _TOLERANCE = 1e-7

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.ends import Ends, member_ends
 from jackettwin.loads.given_waves import given_sea
@@ -17,8 +17,6 @@ from jackettwin.loads.wave_series import WaveSeries, wave_series
 from jackettwin.loads.waves import Waves, airy_wave, irregular_sea
 from jackettwin.simulate.scenario import Sea
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 SPACING_M = 8.0
 """Longest piece of a member under a random sea: 0.2 % of the force's spread on the reference jacket."""

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.morison import MorisonPoints, morison_points
 from jackettwin.loads.rotor import AIR_KG_M3, CompiledRotor, compiled_rotor, rotation
@@ -16,8 +16,6 @@ from jackettwin.loads.wind import tower_drag, tower_drag_damping
 from jackettwin.simulate.model import Aerodynamics
 from jackettwin.simulate.scenario import Air
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 _UP = np.array([0.0, 0.0, 1.0])
 _TOWER_SPACING_M = 4.0

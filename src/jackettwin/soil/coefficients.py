@@ -12,13 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 K0, C, K_ALPHA, ALPHA, OMEGA0, MASS, BRANCHES = range(7)
 """Places in a row; branches k_1, τ_1, k_2, … follow from BRANCHES on."""

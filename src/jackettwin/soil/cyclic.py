@@ -12,18 +12,15 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import NumericalError
 from jackettwin.soil.hysteresis import Sliders, move, sliders
 from jackettwin.soil.impedance import pile_matrices
 from jackettwin.soil.pile_curves import PileCurves, linearised
 from jackettwin.soil.piles import Pile
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 _BANDS = 12
 """Six DOFs a node, coupled with the next node's."""

@@ -12,11 +12,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.soil.curves import Curve
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.profile import Clay, Layer, Point, SoilProfile
 
-FloatArray = npt.NDArray[np.float64]
 Resistance = Callable[[Point], float]
 """Ultimate lateral resistance of a metre of pile [N/m]."""
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.soil.pile_curves import PileCurves
 from jackettwin.soil.piles import Pile
 from jackettwin.soil.pushover import LoadedPile, push
-
-FloatArray = npt.NDArray[np.float64]
 
 FAILED_AT = 0.1
 """Head displacement in pile diameters that counts as failure: a tenth, as pile tests are read."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.curves import NOTHING, Curve, secant_stiffness
 from jackettwin.soil.layering import equivalent_points
@@ -22,8 +22,6 @@ from jackettwin.soil.tz_curves import (
     sand_tz,
     tip_qz,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 LAYERING = ("overburden", "georgiadis")
 

@@ -11,15 +11,12 @@ from dataclasses import dataclass, replace
 from math import ceil, pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.soil.viscoelastic import Law, Prony, kelvin_voigt
 from jackettwin.structure.model import STEEL, Material, Member, Reaction, Section, Structure, Vector
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.soil.curves import tangent_stiffness
 from jackettwin.soil.impedance import pile_matrices
 from jackettwin.soil.pile_curves import PileCurves, linearised
 from jackettwin.soil.piles import Pile, PileSprings
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,10 @@ scour act through it.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.curves import CubeRoot, Curve, Table, Tanh
-
-FloatArray = npt.NDArray[np.float64]
 
 SUBGRADE_ANGLE_DEG = (25.0, 30.0, 35.0, 40.0)
 SUBGRADE_MODULUS_N_M3 = (5.4e6, 11e6, 22e6, 45e6)

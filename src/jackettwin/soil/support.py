@@ -6,13 +6,11 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.viscoelastic import Law, Prony
 from jackettwin.structure.model import Reaction, Structure
-
-FloatArray = npt.NDArray[np.float64]
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)

@@ -15,14 +15,10 @@ from math import atan, gamma, pi
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import expm
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-
 
 _LARGEST = 1e25
 """Of stiffness, damping and relaxation time; rigid in any structure, and clear of overflow."""

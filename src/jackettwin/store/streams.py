@@ -8,12 +8,10 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from sqlalchemy import Connection, delete, func, insert, select, update
 
+from jackettwin.arrays import FloatArray
 from jackettwin.store.tables import conditions, packets, windows
-
-FloatArray = npt.NDArray[np.float64]
 
 WINDOW = timedelta(minutes=10)
 """Streams become records of ten minutes on UTC boundaries, the field's habit."""

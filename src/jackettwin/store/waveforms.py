@@ -14,10 +14,9 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from jackettwin.arrays import FloatArray
 from jackettwin.files import atomic_path
 from jackettwin.records import Channel, Record
-
-FloatArray = npt.NDArray[np.float64]
 
 SCHEMA_VERSION = 1
 _MISSING = -32768

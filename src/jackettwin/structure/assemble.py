@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import IntArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
@@ -17,9 +17,6 @@ from jackettwin.structure.masses import rigid_body_mass, rigid_transfer
 from jackettwin.structure.mesh import Mesh, discretise
 from jackettwin.structure.model import Structure
 from jackettwin.structure.weight import WeightForces, geometric_stiffness, weight_forces
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)

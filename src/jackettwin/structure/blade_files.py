@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml
 from jackettwin.files.windio import Part, WindIO, windio
@@ -16,8 +16,6 @@ from jackettwin.files.yaml import read_text
 from jackettwin.structure.blades import BladeStructure
 from jackettwin.structure.rotor_modes import FlexibleRotor
 from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
-
-FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_RATIO = 0.005
 """Structural damping of a blade whose file says nothing: half a percent, as reference turbines state."""

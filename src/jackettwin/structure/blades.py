@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure.two_node import BeamSection, beam_matrices
-
-FloatArray = npt.NDArray[np.float64]
 
 _AXIAL_N = 1e11
 _TORSION_N_M2 = 1e12

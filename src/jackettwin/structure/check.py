@@ -6,16 +6,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure.assemble import Assembly, assemble
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
 from jackettwin.structure.model import Member, Structure, Vector
-
-FloatArray = npt.NDArray[np.float64]
 
 SLENDER_WALLS = (10.0, 300.0)
 """Diameter over wall of offshore tubes: thick-walled piles to thin towers."""

@@ -7,11 +7,9 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.structure.model import Structure
-
-FloatArray = npt.NDArray[np.float64]
 
 _STRAIGHT = 0.9998
 """Cosine of the angle (about 1°) up to which two members in a row are one column."""

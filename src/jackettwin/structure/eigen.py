@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 
-FloatArray = npt.NDArray[np.float64]
 Matrix = Any
 """A NumPy array or a SciPy sparse array."""
 

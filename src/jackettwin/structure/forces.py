@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.structure import beam
 from jackettwin.structure.assemble import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class SectionForces(NamedTuple):

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.structure.mesh import Mesh
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 def of_elements(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:

@@ -10,11 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 GAMMA_T, GAMMA_C, GAMMA_B, GAMMA_V = 1.05, 1.18, 1.05, 1.05
 """Partial resistance factors of 13.2.2, 13.2.3, 13.2.4 and 13.2.5."""

@@ -6,14 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.structure.model import Inertia, PointMass, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def cross_matrix(a: Sequence[float] | FloatArray) -> FloatArray:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.columns import columns
 from jackettwin.structure.forces import SectionForces, section_forces, von_mises_stress
@@ -20,8 +20,6 @@ from jackettwin.structure.iso19902 import (
     strength,
     utilisation,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 _BLOCK = 512
 """Instants checked at a time."""

@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
 from jackettwin.structure.model import Member, Structure
 from jackettwin.structure.sections import tube_properties
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 BEAMS = ("euler-bernoulli", "timoshenko")
 

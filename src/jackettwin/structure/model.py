@@ -7,15 +7,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.structure.two_node import TwoNodeElement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-FloatArray = npt.NDArray[np.float64]
 Vector = tuple[float, float, float]
 _LONGEST_M = 5e3
 """No member of a structure is longer; one given in millimetres is."""

@@ -21,15 +21,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure.blades import BladeModes, BladeStructure, blade_modes
 from jackettwin.structure.masses import rigid_body_mass, rigid_transfer, turned_body
 from jackettwin.structure.model import PointMass, Structure, Vector
 from jackettwin.structure.two_node import TwoNodeElement, two_node_element
-
-FloatArray = npt.NDArray[np.float64]
 
 KIND = "blades"
 """Kind of the elements that hold a rotor's coordinates."""

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure.subdyn_tables import Deck, read_deck, to_float
-
-FloatArray = npt.NDArray[np.float64]
 
 _NONE, _RAYLEIGH, _MATRIX = "0", "1", "2"
 

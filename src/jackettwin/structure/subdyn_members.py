@@ -10,8 +10,8 @@ from math import ceil
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, RigidLink, Section, Vector
 from jackettwin.structure.rectangles import rectangular_section
@@ -26,8 +26,6 @@ from jackettwin.structure.two_node import (
     spring_matrix,
     two_node_element,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 _TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"
 _BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)

@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.structure import beam
 
-FloatArray = npt.NDArray[np.float64]
 Matrix = tuple[tuple[float, ...], ...]
 
 _EACH = 12

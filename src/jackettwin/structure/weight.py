@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
@@ -22,9 +22,6 @@ from jackettwin.structure.masses import lever_arm_stiffness
 from jackettwin.structure.mesh import Mesh
 from jackettwin.structure.model import Structure
 from jackettwin.structure.two_node import TwoNodeElement
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.response.labels import LOCAL, mode_kinds, mode_labels
@@ -33,8 +33,6 @@ from jackettwin.watching import (
     sensor_noise,
 )
 from jackettwin.watching.diagnosis import MISFIT
-
-FloatArray = npt.NDArray[np.float64]
 
 MODES = 8
 """Modes of the model that are computed."""
@@ -271,7 +269,7 @@ class SeenCauses:
     """
 
     causes: tuple[Cause, ...]
-    known: npt.NDArray[np.bool_]
+    known: BoolArray
     further: tuple[tuple[str, int], ...]
     model: ModelCauses
 

@@ -7,12 +7,10 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.structure import Material, Section, Structure
 from jackettwin.structure.model import Member, PointMass
-
-FloatArray = npt.NDArray[np.float64]
 
 _LEG = 0.9
 """A member of the jacket that climbs by more of its length is a leg."""

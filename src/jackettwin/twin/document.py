@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
@@ -20,9 +20,6 @@ from jackettwin.updating.pairing import Held
 from jackettwin.updating.scatter import leg_scatter
 from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:

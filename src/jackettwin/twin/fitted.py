@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import hypot, pi
 
-import numpy as np
-import numpy.typing as npt
-
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.identification import ModalEstimate
 from jackettwin.twin.config import ModelError, TwinConfig
@@ -15,8 +13,6 @@ from jackettwin.twin.measure import mean_target
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
 from jackettwin.twin.state import ALL, TwinState
 from jackettwin.updating import Residuals, Target
-
-FloatArray = npt.NDArray[np.float64]
 
 _FAR_ABOVE = 3.0
 """A target this many times above the model's highest numbered mode is in another unit."""

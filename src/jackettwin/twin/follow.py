@@ -14,8 +14,8 @@ from datetime import UTC, date, datetime
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, located
 from jackettwin.records import read_record
 from jackettwin.records.identity import record_id
@@ -39,8 +39,6 @@ from jackettwin.updating.joint import Growth
 from jackettwin.updating.laplace import laplace_draws
 from jackettwin.updating.solutions import search
 from jackettwin.updating.update import posterior_or_status
-
-FloatArray = npt.NDArray[np.float64]
 
 Each = Literal["day", "record"]
 

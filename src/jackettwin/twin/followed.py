@@ -7,13 +7,11 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.twin.state import TwinState
 from jackettwin.twin.stored import StoredSchema
 from jackettwin.updating.drift import Drift
-
-FloatArray = npt.NDArray[np.float64]
 
 FEWEST_DAYS = 3
 """Days with data before a drift is looked for."""

@@ -15,11 +15,11 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.records.readers.description import parse_time
 from jackettwin.watching import History
 
-FloatArray = npt.NDArray[np.float64]
 Columns = dict[str, npt.NDArray[Any]]
 
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "time_stamp", "t", "days", "day")
@@ -253,7 +253,7 @@ def _is_number(word: str) -> bool:
     return True
 
 
-def _states(stored: Columns, rows: int) -> tuple[npt.NDArray[np.intp], tuple[str, ...]]:
+def _states(stored: Columns, rows: int) -> tuple[IntArray, tuple[str, ...]]:
     name = next((n for n in stored if n.lower() in _STATES), None)
     if name is None:
         return np.zeros(rows, dtype=np.intp), ("all",)

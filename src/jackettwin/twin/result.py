@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from jackettwin.arrays import ComplexArray
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
@@ -15,8 +13,6 @@ from jackettwin.structure import Assembly
 from jackettwin.twin.examine import Examination
 from jackettwin.updating import Update
 from jackettwin.updating.pairing import Held
-
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
 from jackettwin.loads import read_rotor
 from jackettwin.loads.rotor import Rotor, linearise
@@ -19,8 +19,6 @@ from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.state import ALL, OperationTotal, TwinState
 from jackettwin.updating import Residuals, Target
 from jackettwin.updating.nuisance_parameters import DASHPOTS
-
-FloatArray = npt.NDArray[np.float64]
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
 """How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""

@@ -9,13 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import ModalEstimate
 from jackettwin.updating.pairing import subspace_mac_nearby
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 LEAST_GAIN = 0.15
 """Rise of the subspace MAC, summed over the modes, below which nothing is said."""

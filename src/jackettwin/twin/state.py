@@ -13,15 +13,11 @@ from datetime import datetime
 from operator import add, neg
 from typing import Any, NamedTuple, TypeVar
 
-import numpy as np
-import numpy.typing as npt
-
+from jackettwin.arrays import ComplexArray
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.stored import StoredSchema, digest
 from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day
-
-ComplexArray = npt.NDArray[np.complex128]
 
 Sums = TypeVar("Sums", ModeSums, ModeTotal, "RateSums")
 ALL = "all"

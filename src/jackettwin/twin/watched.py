@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.twin.causes import SeenCauses, model_causes, next_measurements, seen_causes
@@ -25,8 +25,6 @@ from jackettwin.watching import (
 )
 from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
-
-FloatArray = npt.NDArray[np.float64]
 
 RARE_DAYS = 3
 """Days after the baseline below which there is nothing to watch yet."""

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.conditions import SeaState
@@ -18,8 +18,6 @@ from jackettwin.loads.morison import MorisonPoints, morison_points
 from jackettwin.loads.water import Water, mass_per_level, water_mass
 from jackettwin.response.tide import TideSlopes, tide_slopes
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 _SPACING_M = 4.0
 """Longest piece of a member."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.condensed import Condensed, condense, widest_band_hz
 from jackettwin.response.modal import UndampedModes, undamped_modes
@@ -17,8 +17,6 @@ from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
-
-FloatArray = npt.NDArray[np.float64]
 
 _ROOM = 1.2
 """The band ends this much above the highest mode on pinned supports, which supports can only lower."""

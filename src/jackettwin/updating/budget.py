@@ -16,13 +16,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.numbered import NumberedModes, Points
 from jackettwin.soil.coefficients import law_stiffness
 from jackettwin.updating.model import SupportModel
-
-FloatArray = npt.NDArray[np.float64]
 
 SOURCES = ("structure", "soil", "rotor", "water")
 """Water is the last, and left out where no drag is modelled: then its share is not known."""

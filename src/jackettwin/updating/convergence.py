@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 LARGEST_RHAT = 1.1
 SMALLEST_ESS = 50.0

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares, minimize
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 _EVALUATIONS = 200
 _RIDGE = 1e-2

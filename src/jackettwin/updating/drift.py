@@ -13,15 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.updating.descent import descend
 from jackettwin.updating.joint import GROWTH
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 _Q90, _Q95 = 1.645, 1.960
 

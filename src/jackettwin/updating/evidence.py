@@ -18,14 +18,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 from scipy.special import logsumexp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import NEVER
-
-FloatArray = npt.NDArray[np.float64]
 
 _KERNELS = 100
 _NEIGHBOURS = 0.1

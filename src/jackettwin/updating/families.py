@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
 from jackettwin.soil.viscoelastic import (
@@ -22,8 +22,6 @@ from jackettwin.soil.viscoelastic import (
     maxwell_3_times,
     zener,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

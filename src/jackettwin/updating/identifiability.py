@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Found, Problem
 
-FloatArray = npt.NDArray[np.float64]
 Decider = Literal["data", "bounds", "prior", "no posterior"]
 
 USABLE = 2.0

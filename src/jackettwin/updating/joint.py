@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from math import exp
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.updating.families import Parameter
 from jackettwin.updating.model import SupportModel
@@ -19,8 +19,6 @@ from jackettwin.updating.scatter import Legs, ScatteredPrior
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
 from jackettwin.updating.tie_groups import SIDES
-
-FloatArray = npt.NDArray[np.float64]
 
 GROWTH = "growth_per_day"
 """Parameter: the factor by which others grow from one day to the next."""

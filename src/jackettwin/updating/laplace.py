@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def log_covariance(problem: Problem, theta: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
@@ -22,10 +23,6 @@ from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.families import Family, Parameter
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)

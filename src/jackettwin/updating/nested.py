@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.updating.posterior import Posterior, gathered
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 _DRAWS = 400
 """Equally weighted draws taken from each run."""

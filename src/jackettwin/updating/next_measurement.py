@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.identifiability import information
 from jackettwin.updating.nuisance_parameters import DASHPOTS
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 _RECORD_S = 600.0
 """Length of the record a further measurement comes from."""

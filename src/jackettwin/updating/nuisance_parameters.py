@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix
 from jackettwin.soil.coefficients import MASS, OMEGA0, C
@@ -16,8 +16,6 @@ from jackettwin.soil.support import Spring
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure.damping import Rayleigh
 from jackettwin.updating.families import Parameter
-
-FloatArray = npt.NDArray[np.float64]
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}
 """Dashpots on the top node and the direction each acts in: x, y, the nacelle at zero yaw."""

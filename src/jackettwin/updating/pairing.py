@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 from scipy.optimize import linear_sum_assignment
 
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.identification import ModalEstimate, mac
 from jackettwin.response.mode_tracking import near_degenerate
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 Verdict = Literal["paired", "shape", "frequency", "taken"]
 
@@ -150,7 +147,7 @@ def subspace_mac_nearby(
 
 def _compared(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
-) -> tuple[npt.NDArray[np.intp], FloatArray, FloatArray, FloatArray]:
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
     """Return the visible modes by frequency; per estimate and visible mode, MAC, subspace MAC and Δ ln f."""
     measured = np.array([e.mode_shape / np.linalg.norm(e.mode_shape) for e in estimates])
     size = np.where(np.isfinite(frequency_hz), np.linalg.norm(shapes, axis=0), 0.0)

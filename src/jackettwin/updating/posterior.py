@@ -17,16 +17,12 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 from scipy.special import logsumexp
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.updating.convergence import Convergence, convergence
 from jackettwin.updating.evidence import bridged_evidence
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import Found, Problem
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.intp]
 
 _ESS = 0.5
 """Each rung of the ladder keeps this share of the particles effective."""

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.numbered import NumberedModes, numbered_poles
 from jackettwin.soil.coefficients import law_stiffness, static_rows
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.relaxations import RelaxationTarget
-
-FloatArray = npt.NDArray[np.float64]
 
 _FIRST, _FOURTH = 1, 4
 """The modes whose frequencies a support's stiffness and loss factor are stated at."""

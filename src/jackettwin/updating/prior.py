@@ -7,12 +7,10 @@ from math import log, pi, sqrt
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import ndtr, ndtri
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.updating.families import Parameter
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Prior(Protocol):
@@ -66,7 +64,7 @@ class BoxPrior:
         return cls(low, high, mean, np.array([p.log_std or np.inf for p in parameters]))
 
     @property
-    def _flat(self) -> npt.NDArray[np.bool_]:
+    def _flat(self) -> BoolArray:
         return np.isinf(self.scale)
 
     def _standard(self) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.response.numbered import NumberedModes
 from jackettwin.response.relaxation import Relaxation
 from jackettwin.updating.families import Parameter
@@ -15,10 +15,6 @@ from jackettwin.updating.prior import Prior
 from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
 from jackettwin.updating.targets import Residuals
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
 
 NEVER = -1e30
 """Log-likelihood where a target mode does not exist."""

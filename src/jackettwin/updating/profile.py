@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.descent import constrained
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
-
 
 _REFINEMENTS = 4
 _NEAR, _STEP = 8.0, 2.0

@@ -13,15 +13,12 @@ from dataclasses import dataclass
 from math import log, pi, sqrt
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.relaxation import Relaxation, nearest_relaxation
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.updating.model import SupportModel
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)

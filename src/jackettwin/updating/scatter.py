@@ -17,15 +17,12 @@ from functools import cached_property
 from math import lgamma, log, pi, sqrt
 
 import numpy as np
-import numpy.typing as npt
 import scipy.linalg as la
 from scipy.special import chdtri, stdtrit
 from scipy.stats import qmc
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.updating.prior import BoxPrior, Prior
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.intp]
 
 FREEDOM = 3.0
 """ν: one leg in ten scatters by more than 1.6 s₀, one in a hundred by more than 4.5 s₀."""

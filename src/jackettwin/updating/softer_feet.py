@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.modal import UndampedModes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
@@ -19,8 +19,6 @@ from jackettwin.response.system import build_system
 from jackettwin.soil.support import on_translations, standing
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 STIFFEST_N_M, SOFTEST_N_M = 1e11, 1e7
 """Stiffness of a foot on each translation [N/m]: beyond the first it is as good as pinned; softer feet than

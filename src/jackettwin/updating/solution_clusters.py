@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.updating.descent import End, constrained
 from jackettwin.updating.problem import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 _SAME = 0.02
 """End points closer than this in every ln θ are one."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.updating.descent import End, descend, descend_simplex, settle
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.solution_clusters import extent, gather
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Method = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
 

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
+from jackettwin.arrays import FloatArray
 from jackettwin.structure.assemble import assemble
 from jackettwin.structure.check import check
 from jackettwin.structure.model import Structure
 from jackettwin.updating.band import numbered_modes
 from jackettwin.updating.steel import only_parts
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

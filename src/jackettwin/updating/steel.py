@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import least_squares
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.structure.assemble import assemble
 from jackettwin.structure.model import Structure
 from jackettwin.updating.band import numbered_modes
-
-FloatArray = npt.NDArray[np.float64]
 
 PROPERTIES = ("youngs_modulus", "density")
 

@@ -7,14 +7,9 @@ from functools import cached_property
 from math import log, pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
 
 _LEAST = 1e-9
 """A damping ratio below this, or negative, counts as this: its logarithm exists."""

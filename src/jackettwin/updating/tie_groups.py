@@ -6,14 +6,12 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.support import Spring, Support, pinned, standing
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.model import Structure
-
-FloatArray = npt.NDArray[np.float64]
 
 Group = tuple[tuple[int, ...], tuple[str, ...]]
 """The DOFs and the feet that share parameters."""
@@ -145,9 +143,7 @@ def _on_heads(plain: TieGroups, groups: list[Group], heads: Support, reference_h
     )
 
 
-def _impedance(
-    plain: TieGroups, heads: Support, reference_hz: float
-) -> dict[str, npt.NDArray[np.complex128]]:
+def _impedance(plain: TieGroups, heads: Support, reference_hz: float) -> dict[str, ComplexArray]:
     """Return the 6×6 complex stiffness of every foot at a frequency."""
     nodes = {node for _, node, _ in plain.patterns}
     K = {node: np.zeros((6, 6), complex) for node in nodes}

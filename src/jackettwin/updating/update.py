@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import logsumexp
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.updating.budget import Budget, damping_budget
 from jackettwin.updating.identifiability import Verdict, identifiability
@@ -22,8 +22,6 @@ from jackettwin.updating.predictive import Predictive, predict_quantities
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.profile import Profile, profile
 from jackettwin.updating.solutions import MOST_EVALUATIONS, Method, Search, Solution, search
-
-FloatArray = npt.NDArray[np.float64]
 
 Sampler = Literal["smc", "nested"]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
@@ -11,8 +10,6 @@ from jackettwin.soil import clamped
 from jackettwin.structure import Material, Section, Structure, assemble
 from jackettwin.structure.model import Member, Reaction
 from jackettwin.verify.rows import Row, rounded
-
-FloatArray = npt.NDArray[np.float64]
 
 L, E, RHO, G = 10.0, 210e9, 7850.0, 81e9
 GYRATION = 0.19514

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
@@ -16,8 +16,6 @@ from jackettwin.structure.model import STEEL
 from jackettwin.updating import numbered_modes
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify.rows import Row
-
-FloatArray = npt.NDArray[np.float64]
 
 T3_3 = (0.142, 0.144, 0.504, 0.697, 0.761, 0.976, 1.068, 1.318, 1.657, 2.176)
 T5_1 = (0.183, 0.186, 0.595, 0.760, 0.805, 0.960, 1.088, 1.268, 1.723, 1.978)

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, logarithms, std_power
 from jackettwin.watching.hours import NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
-
-FloatArray = npt.NDArray[np.float64]
 
 WINDOW_DAYS = 1.0 / 24.0
 """Records are averaged over an hour of the clock."""
@@ -48,7 +46,7 @@ class Block:
     """
 
     kind: Kind
-    kept: npt.NDArray[np.intp]
+    kept: IntArray
     typical: FloatArray
     std_power: FloatArray
     usual_std: FloatArray
@@ -83,7 +81,7 @@ class Spoken:
     z: FloatArray
 
 
-def watched(baseline: History, kind: Kind) -> npt.NDArray[np.intp]:
+def watched(baseline: History, kind: Kind) -> IntArray:
     """Return which columns have enough values to be watched."""
     value = getattr(baseline, kind)
     return np.flatnonzero((np.isfinite(value) & (value > 0.0)).sum(axis=0) >= _FEWEST)
@@ -95,7 +93,7 @@ def begin(
     rows: FloatArray,
     kind: Kind,
     directions: Directions,
-    kept: npt.NDArray[np.intp],
+    kept: IntArray,
 ) -> tuple[Block, Hours]:
     """Return what a baseline teaches of one kind of quantity, and its hours."""
     value = getattr(baseline, kind)[:, kept]
@@ -187,9 +185,7 @@ def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:
     return np.asarray(np.clip(filled, _LEAST_STD * usual, _MOST_STD * usual) ** 2)
 
 
-def _set_apart(
-    baseline: History, rest: FloatArray, variance: FloatArray
-) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+def _set_apart(baseline: History, rest: FloatArray, variance: FloatArray) -> tuple[BoolArray, FloatArray]:
     """Return the outliers of a baseline, day by day, and the last values."""
     m = rest.shape[1]
     scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
@@ -273,7 +269,7 @@ def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
     return log_ratios(spoken.chi2, spoken.freedom, block.steadiness)
 
 
-def thinned(block: Block, keep: npt.NDArray[np.bool_]) -> Block:
+def thinned(block: Block, keep: BoolArray) -> Block:
     """Return the block with some of the begins only."""
     banks = tuple(Bank(b.response[keep], b.info[keep], b.score[keep]) for b in block.banks)
     return replace(block, banks=banks)

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.directions import PAIR, SIZES
-
-FloatArray = npt.NDArray[np.float64]
 
 SOMETHING_ELSE = "something else"
 SENSOR = "sensor"
@@ -46,7 +44,7 @@ class Cause:
     sizes: FloatArray
     log_size_weights: FloatArray
     unit: str = "-"
-    louder: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    louder: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     prior: float = 1.0
 
 
@@ -75,7 +73,7 @@ def general_causes(
     modes = np.array([mode for _, mode in quantities])
     found: list[Cause] = []
 
-    def add(name: str, kind: str, chosen: npt.NDArray[np.bool_], prior: float) -> None:
+    def add(name: str, kind: str, chosen: BoolArray, prior: float) -> None:
         size = np.array(SIZES[kind])
         # equal chances to each factor of two, both ways
         fine, weights = lognormal_sizes(float(np.sqrt(size[0] * size[-1])), 0.8, both_ways=True)

@@ -6,11 +6,9 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.watching.history import History
-
-FloatArray = npt.NDArray[np.float64]
 
 LAGS_DAYS = (0.25, 1.5)
 """Time constants with which steel and ground follow the air: between none, a quarter day and some days the
@@ -163,7 +161,7 @@ def _standard(column: Column, history: History) -> FloatArray:
     return np.asarray(x * x - 1.0 if column.shape == "square" else x)
 
 
-def _by_state(design: Design, states: npt.NDArray[np.intp], slopes: FloatArray) -> FloatArray:
+def _by_state(design: Design, states: IntArray, slopes: FloatArray) -> FloatArray:
     """Return intercepts and slopes, each in the columns of its state."""
     n, k = slopes.shape
     rows = np.full((n, design.width), np.nan)

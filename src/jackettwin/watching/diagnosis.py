@@ -15,14 +15,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.watching.causes import SOMETHING_ELSE, Cause
 from jackettwin.watching.directions import SIZES
 from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.watch import Change
-
-FloatArray = npt.NDArray[np.float64]
 
 INSEPARABLE = 2.0
 """Causes whose directions differ by fewer than so many standard deviations of the data are not told apart."""

@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import BoolArray, FloatArray
 
 PAIR = 0.08
 """Two modes whose frequencies differ by less are a pair: the two bending modes of a nearly round
@@ -54,7 +53,7 @@ class Directions:
 
     kind: str
     names: tuple[str, ...]
-    members: npt.NDArray[np.bool_]
+    members: BoolArray
     vectors: FloatArray
     log_weights: FloatArray
     sizes: FloatArray

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.watching.block import Block
 from jackettwin.watching.design import Design
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def shares(

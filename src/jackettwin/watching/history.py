@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
+
 Kind = Literal["frequency", "damping"]
 
 _NEAR_DAYS = 0.25
@@ -40,10 +40,10 @@ class History:
     damping_std: FloatArray
     conditions: FloatArray
     condition_names: tuple[str, ...]
-    states: npt.NDArray[np.intp]
+    states: IntArray
     state_names: tuple[str, ...] = ("all",)
 
-    def rows(self, chosen: npt.NDArray[np.bool_]) -> History:
+    def rows(self, chosen: BoolArray) -> History:
         """Return some of the rows."""
         arrays = ("days", "frequency", "frequency_std", "damping", "damping_std", "conditions", "states")
         return replace(self, **{name: getattr(self, name)[chosen] for name in arrays})
@@ -59,7 +59,7 @@ class History:
 
 
 def logarithms(
-    history: History, kind: Kind, kept: npt.NDArray[np.intp], typical: FloatArray, power: FloatArray
+    history: History, kind: Kind, kept: IntArray, typical: FloatArray, power: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return ln of the values over typical ones, and relative standard deviations, both (n, m).
 
@@ -79,7 +79,7 @@ def logarithms(
     return np.log(good / typical), np.where(relative > 0.0, relative, np.nan)
 
 
-def std_power(history: History, kind: Kind, kept: npt.NDArray[np.intp]) -> FloatArray:
+def std_power(history: History, kind: Kind, kept: IntArray) -> FloatArray:
     """Return the power by which stated standard deviations follow values, (m,), from neighbouring records."""
     out = np.ones(len(kept))
     near = np.diff(history.days) < _NEAR_DAYS

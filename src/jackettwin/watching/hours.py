@@ -9,10 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 OUTLIER = 4.5
 """Standard deviations from its neighbours beyond which a value is set aside: one in 150,000 of a normal
@@ -73,7 +71,7 @@ def outliers(rest: FloatArray, variance: FloatArray, tail: FloatArray) -> tuple[
 
 def by_hour(
     days: FloatArray,
-    states: npt.NDArray[np.intp],
+    states: IntArray,
     rows: FloatArray,
     values: FloatArray,
     noise: FloatArray,

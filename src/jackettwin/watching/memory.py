@@ -10,13 +10,11 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import minimize
 
+from jackettwin.arrays import FloatArray
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.kernels import filter_rows
-
-FloatArray = npt.NDArray[np.float64]
 
 SHORT_DAYS = (0.3, 1.0, 3.0, 8.0)
 """Time constants of the short process that are tried [days]."""

@@ -10,10 +10,9 @@ Fisher's F(n, ν), and noise g times as strong has the likelihood ratio
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import gammaln
 
-FloatArray = npt.NDArray[np.float64]
+from jackettwin.arrays import FloatArray
 
 STRONGER = (1.6, 2.5, 4.0)
 """Factors on the noise's standard deviation that are bet on."""

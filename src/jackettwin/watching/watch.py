@@ -16,8 +16,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
     Block,
@@ -36,8 +36,6 @@ from jackettwin.watching.design import Design, Lagged, design_of, fresh, regress
 from jackettwin.watching.directions import SHARES, directions_of
 from jackettwin.watching.history import History, Kind
 from jackettwin.watching.scatter import STRONGER
-
-FloatArray = npt.NDArray[np.float64]
 
 YEAR_DAYS = 365.25
 MOST_BEGINS = 32
@@ -128,7 +126,7 @@ class Change:
     direction: str
     began: float
     began_interval_90: tuple[float, float]
-    members: npt.NDArray[np.bool_]
+    members: BoolArray
     size: FloatArray
     size_std: FloatArray
     info: FloatArray
@@ -138,7 +136,7 @@ class Change:
     log_r: float
     by_mode: FloatArray
 
-    def restricted(self, chosen: npt.NDArray[np.bool_]) -> Change:
+    def restricted(self, chosen: BoolArray) -> Change:
         """Return what is known of some quantities whatever the others do."""
         if chosen.all():
             return self
@@ -335,7 +333,7 @@ def _change(watch: Watch, worth: FloatArray, log_r: float) -> Change:
     )  # fmt: skip
 
 
-def _bet(watch: Watch, bet: int) -> tuple[str, str, npt.NDArray[np.bool_]]:
+def _bet(watch: Watch, bet: int) -> tuple[str, str, BoolArray]:
     """Return kind, name and members of a bet."""
     total = sum(len(block.kept) for block in watch.blocks)
     members = np.zeros(total, dtype=np.bool_)

@@ -24,11 +24,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft, optimize
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from jackettwin.arrays import ComplexArray, FloatArray
 
 REWEIGHTED = 2
 """Times the noise of each channel is estimated anew."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
 from jackettwin.identification.decays.decay_part import CYCLES, DecayPart, decay_part
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.records import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 SAMPLES_A_CYCLE = 40.0
 """Of the strongest frequency, at least: modes up to sixteen times as high are seen."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import signal
 
+from jackettwin.arrays import FloatArray
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
 from jackettwin.identification.mac import mac
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
-
-FloatArray = npt.NDArray[np.float64]
 
 ORDERS = tuple(range(2, 26, 2))
 """Model orders whose poles are tried."""

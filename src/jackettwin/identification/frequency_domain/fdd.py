@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import signal
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.prepared import prepare
@@ -26,8 +26,6 @@ from jackettwin.identification.settings import IdentificationSettings
 if TYPE_CHECKING:
     from jackettwin.records import Record
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 SEGMENT_CYCLES = 20.0
 """Length of a Welch segment in cycles of the lower edge of the band."""
@@ -75,7 +73,7 @@ def _principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:
     return np.asarray(values[:, -1]), np.asarray(vectors[:, :, -1])
 
 
-def _peaks(values: FloatArray, inside: npt.NDArray[np.bool_]) -> list[int]:
+def _peaks(values: FloatArray, inside: BoolArray) -> list[int]:
     level = running_median(values, max(len(values) // 10, 5))
     found, _ = signal.find_peaks(np.log(values), prominence=np.log(2.0))
     return [int(k) for k in found if inside[k] and values[k] > CLEAR_PEAK * level[k]]

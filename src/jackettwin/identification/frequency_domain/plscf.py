@@ -20,17 +20,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.subspace.ssi_cov import OrderPoles
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 WINDOW_END = 0.01
 """What the exponential window leaves of the last lag."""

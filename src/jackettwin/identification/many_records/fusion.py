@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.many_records.setups import WEAK_TIE, tie
 from jackettwin.identification.many_records.tracking import Followed, Track, follow
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.many_records.sightings import Sightings
     from jackettwin.records import Channel
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 FEWEST_SHARE = 0.3
 """A fused mode must be found in this share of the records."""

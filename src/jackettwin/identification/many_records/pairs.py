@@ -14,8 +14,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification, ModalEstimate
     from jackettwin.records import Channel
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 CLOSE = 2.0
 """Two modes are a pair if their frequencies differ by less than this times the sum of half bandwidths."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
 from jackettwin.identification.mac import normalised
 
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification
     from jackettwin.records import Channel
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
 
 WEAK_TIE = 0.05
 """Share of a shape's energy at the shared sensors, below which setups are hardly tied."""
@@ -57,7 +54,7 @@ class ShapeSum:
         """Return the sum of no shapes."""
         return cls(np.zeros((n_channels, n_channels), dtype=complex), np.zeros(n_channels))
 
-    def with_shape(self, shape: ComplexArray, at: IntArray) -> ShapeSum:
+    def with_shape(self, shape: ComplexArray, at: Int64Array) -> ShapeSum:
         """Return the sum with one more shape, at these channels."""
         own = ShapeSum.none(int(at.max()) + 1)
         own.gram[np.ix_(at, at)] = np.outer(shape, shape.conj()) / np.sum(np.abs(shape) ** 2)
@@ -128,7 +125,7 @@ def tied(sets: Sequence[Sequence[str]]) -> bool:
     return True
 
 
-def tie(shape: ComplexArray, shared: IntArray) -> float:
+def tie(shape: ComplexArray, shared: Int64Array) -> float:
     """Return the share of a shape's energy at the shared channels."""
     return float(np.sum(np.abs(shape[shared]) ** 2) / np.nansum(np.abs(shape) ** 2))
 

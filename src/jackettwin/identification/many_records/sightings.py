@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from jackettwin.identification.estimate import ModalEstimate
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 UNKNOWN = np.full((2, 2), np.nan)
 
@@ -34,8 +33,8 @@ class Sightings:
         Of (ln f, ln ζ); NaN where it is not known.
     """
 
-    record: IntArray
-    mode: IntArray
+    record: Int64Array
+    mode: Int64Array
     frequency_hz: FloatArray
     damping_ratio: FloatArray
     duration_s: FloatArray
@@ -44,7 +43,7 @@ class Sightings:
     def __len__(self) -> int:
         return len(self.record)
 
-    def at(self, rows: npt.NDArray[np.bool_] | slice) -> Sightings:
+    def at(self, rows: BoolArray | slice) -> Sightings:
         """Return some of the sightings."""
         return Sightings(*(column[rows] for column in vars(self).values()))
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
 from jackettwin.identification.many_records.setups import ShapeSum, joined_channels, tied
 from jackettwin.identification.many_records.sightings import Sightings, log_covariance
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification, ModalEstimate
     from jackettwin.records import Channel
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
 
 FREQUENCY_SCALE = 0.03
 """Relative change of frequency that counts as much as shapes at right angles."""
@@ -58,7 +55,7 @@ _COLUMNS = 9
 class _Glimpse:
     """A mode in one record: channels, shape, variance of the shape, ln f."""
 
-    at: IntArray
+    at: Int64Array
     shape: ComplexArray
     vagueness: float
     log_f: float
@@ -194,7 +191,7 @@ def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> Follow
 
 
 def _join(
-    tracks: Sequence[Track], found: Identification, channels: IntArray, number: int, key: Hashable
+    tracks: Sequence[Track], found: Identification, channels: Int64Array, number: int, key: Hashable
 ) -> list[Track]:
     """Give every mode of a record to the track it continues, or to a new one; return the new ones."""
     seen = [

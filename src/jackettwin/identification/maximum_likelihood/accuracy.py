@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.likelihood import (
     add_coherence_prior,
     inverse_root,
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 KEPT_SHARES = (1e-4, 1e-2, 1.0)
 """Shares of the added power kept in the Cramér-Rao bound: the least that leaves E positive, which the leak of

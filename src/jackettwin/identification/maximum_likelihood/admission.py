@@ -16,9 +16,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
+from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 SUSPECT = 2.5
 """A fitted mode is put to the test when its damping is this many times as uncertain as the record allows."""
@@ -45,12 +43,12 @@ MOST_ADDED = 6
 def joined(
     data: Periodogram,
     climb: likelihood.Climb,
-    chosen: IntArray,
+    chosen: Int64Array,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,
     unit: FloatArray,
     least: float,
-) -> tuple[likelihood.Climb, IntArray, FloatArray]:
+) -> tuple[likelihood.Climb, Int64Array, FloatArray]:
     """Admit the doubtful candidate that explains most, again and again, while one gains enough."""
     gain = np.full(len(frequency_hz), np.inf)
     for _ in range(MOST_ADDED):
@@ -71,8 +69,8 @@ def joined(
 
 
 def thinned(
-    data: Periodogram, climb: likelihood.Climb, chosen: IntArray, known: accuracy.Accuracy
-) -> tuple[likelihood.Climb, IntArray, accuracy.Accuracy]:
+    data: Periodogram, climb: likelihood.Climb, chosen: Int64Array, known: accuracy.Accuracy
+) -> tuple[likelihood.Climb, Int64Array, accuracy.Accuracy]:
     """Drop modes whose damping stays hardly known and without which the spectrum is explained as well."""
     kept: set[int] = set()
     while len(chosen) > 1:

@@ -12,15 +12,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.identification.maximum_likelihood.parameters import coherent_pairs
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
 
 MOST = 2
 """Forces in two directions."""

@@ -15,12 +15,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from jackettwin.arrays import FloatArray
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.refinement import Refined
 
-FloatArray = npt.NDArray[np.float64]
 
 BESIDE_THE_MODES = 3
 """Directions more than modes that are sought: forces act in two, and what is beside the band adds one."""

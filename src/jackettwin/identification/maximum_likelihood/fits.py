@@ -13,8 +13,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import strayed
@@ -23,8 +23,6 @@ from jackettwin.identification.maximum_likelihood.refinement import Refined, ref
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 BREAKDOWNS = (ArithmeticError, ValueError, NumericalError, RuntimeWarning)
 """What a fit that breaks down raises, ``LinAlgError`` among the value errors: a reason to keep what the

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
@@ -32,8 +32,6 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 QUIET = 0.3
 """Noise at the start, as a share of the lowest local median."""

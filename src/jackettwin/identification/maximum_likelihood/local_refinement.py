@@ -13,16 +13,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.identification.maximum_likelihood.directions import at_channels, directions, projected
 from jackettwin.identification.maximum_likelihood.refinement import Narrow, Refined, refine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 REACH = 1.35
 """Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""

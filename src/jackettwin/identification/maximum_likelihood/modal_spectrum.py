@@ -20,10 +20,8 @@ lines of a group, of variance v about their mean ω, their means are :math:`F_p(
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from jackettwin.arrays import ComplexArray, FloatArray
 
 
 def poles(frequency_hz: FloatArray, damping_ratio: FloatArray) -> ComplexArray:

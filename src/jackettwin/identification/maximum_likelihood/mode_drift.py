@@ -11,13 +11,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from jackettwin.arrays import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.refinement import Refined
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 HALF_BANDWIDTHS = 3.0
 """Largest change of frequency, in half bandwidths of the start …"""

@@ -6,11 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 
 MOST_PAIRS = 91
 """Coherences fitted at most: those of all pairs of fourteen modes."""
@@ -48,7 +45,7 @@ class Parameters:
     shapes: FloatArray
     coherence: ComplexArray
     noise: FloatArray
-    pairs: IntArray
+    pairs: Int64Array
     background: int = 0
     outside: int = 0
     exponent: float = 0.0
@@ -141,7 +138,7 @@ class Parameters:
         )
 
 
-def coherent_pairs(log_f: FloatArray) -> IntArray:
+def coherent_pairs(log_f: FloatArray) -> Int64Array:
     """Return the pairs of modes whose forces may be coherent, (n_pairs, 2): the nearest neighbours."""
     i, j = np.triu_indices(len(log_f), 1)
     nearest = np.argsort(np.abs(log_f[i] - log_f[j]), kind="stable")[:MOST_PAIRS]

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
+
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 LINES_IN_HALF_BANDWIDTH = 3
 """Groups of lines are this much narrower than the half bandwidth of the nearest mode …"""
@@ -124,7 +123,7 @@ def periodogram(
 
 def group_starts(
     f: FloatArray, duration: float, frequency_hz: FloatArray, damping_ratio: FloatArray
-) -> npt.NDArray[np.intp]:
+) -> IntArray:
     """Return the first line of each group: narrow where the spectrum of the modes bends."""
     half_bandwidth = frequency_hz * damping_ratio
     distance = np.abs(f[:, None] - frequency_hz)
@@ -133,7 +132,7 @@ def group_starts(
     return np.flatnonzero(np.diff(np.floor(np.cumsum(1.0 / lines) + 1e-9), prepend=-1.0) > 0.0)
 
 
-def _local_median(power: FloatArray, line: npt.NDArray[np.intp]) -> FloatArray:
+def _local_median(power: FloatArray, line: IntArray) -> FloatArray:
     """Return the running median over a window proportional to frequency, corrected to a mean.
 
     Medians of fixed width on a logarithmic frequency axis; a periodogram line is exponentially

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.admission import (
     APPROACH,
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 BEYOND_HOPE = 6.0
 """A fit is given up before the doubtful modes are looked at, if it lacks this many times what it may, …"""
@@ -96,7 +93,7 @@ class Refined:
     converged : bool
     """
 
-    candidate: IntArray
+    candidate: Int64Array
     frequency_hz: FloatArray
     damping_ratio: FloatArray
     shapes: FloatArray
@@ -207,7 +204,7 @@ def _beside(
 def _result(
     data: Periodogram,
     climb: likelihood.Climb,
-    chosen: IntArray,
+    chosen: Int64Array,
     gain: FloatArray,
     known: accuracy.Accuracy,
 ) -> Refined:

@@ -15,8 +15,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import SEGMENTS, spectral_matrix
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Identification, ModalEstimate
     from jackettwin.records import Record
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 REACH_LINES = 2.0
 """Lines to either side that a Hann window mixes in …"""
@@ -95,13 +93,13 @@ def _motion(
     return np.asarray(h[..., None] * shapes * of_quantity * np.sqrt(weight / weight.sum())[:, None, None])
 
 
-def _near(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> npt.NDArray[np.bool_]:
+def _near(modes: Sequence[ModalEstimate], f: FloatArray, step: float) -> BoolArray:
     """Return the lines near a mode: there the modes are, elsewhere much else."""
     reach = np.array([NEAR * m.damping_ratio * m.frequency_hz + NEAR_LINES * step for m in modes])
     return np.asarray((np.abs(f[:, None] - [m.frequency_hz for m in modes]) < reach).any(axis=1))
 
 
-def _fitted(measured: ComplexArray, motion: ComplexArray, near: npt.NDArray[np.bool_]) -> ComplexArray:
+def _fitted(measured: ComplexArray, motion: ComplexArray, near: BoolArray) -> ComplexArray:
     """Return E at the S and N most likely by the lines near the modes; every round raises the likelihood."""
     everywhere = np.einsum("fsia,fsjb->ijfab", motion, motion.conj(), optimize=True)
     measured, products = measured[near], everywhere[:, :, near]

@@ -21,15 +21,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import blas
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood.modal_spectrum import kernel, poles
 
 if TYPE_CHECKING:
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
 
 STEP = 1e-5
 """Relative step of the central differences of the kernel, whose error is its square."""
@@ -122,7 +120,7 @@ def linear_bend(data: Periodogram, p: Parameters, model: Expected, covariance: F
     cuts = np.cumsum([p.shapes.size, len(i), len(i), n_channels])
     of_shape, of_real, of_imaginary, level, exponent = np.split(np.arange(len(covariance)), cuts)
 
-    def with_shapes(rows: IntArray) -> FloatArray:
+    def with_shapes(rows: Int64Array) -> FloatArray:
         return covariance[np.ix_(rows, of_shape)].reshape(-1, n_modes, n_channels)
 
     both = with_shapes(of_shape).reshape(n_modes, n_channels, n_modes, n_channels)

@@ -15,8 +15,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.mac import mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.settings import IdentificationSettings
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 MOST_CHANNELS = 24
 """More channels of one kind are taken together."""

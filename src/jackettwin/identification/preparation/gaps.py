@@ -14,11 +14,9 @@ all channels are silent together, a gap stays a gap.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg, ndimage
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
 REACH = (5, 2, 0)
 """Samples before and after that take part; the longest for which there is data enough."""
@@ -114,6 +112,6 @@ def _weights(gram: FloatArray, i: int, there: BoolArray, reach: int) -> FloatArr
     return out
 
 
-def _predict(y: FloatArray, weights: FloatArray, at: npt.NDArray[np.intp], reach: int) -> FloatArray:
+def _predict(y: FloatArray, weights: FloatArray, at: IntArray, reach: int) -> FloatArray:
     near = y[:, at + np.arange(-reach, reach + 1)[:, None]]
     return np.asarray(np.einsum("jk,jkt->t", weights, near))

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.errors import InputError
 from jackettwin.identification.preparation.gaps import fill
 from jackettwin.identification.preparation.resolve import (
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.tones.phase_track import PhaseTrack
     from jackettwin.records import Channel, Record
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 SPARE = 2.0
 """Tones are sought at so many times the rate that a band from the lowest peak on needs: that may be one."""
@@ -81,7 +79,7 @@ class Prepared:
     tones_hz: tuple[float, ...]
     drifting: tuple[PhaseTrack, ...]
     warnings: tuple[str, ...]
-    differentiated: IntArray
+    differentiated: Int64Array
     rotor_orders: tuple[tuple[int, float, float], ...] = ()
 
 

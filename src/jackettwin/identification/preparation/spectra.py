@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage, signal
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 SEGMENTS = 8
 """Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""

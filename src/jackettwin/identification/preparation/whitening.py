@@ -19,10 +19,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import signal
 from scipy.interpolate import CubicSpline
 
+from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import Spectrum
     from jackettwin.records import Channel, Record
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 DERIVATIVES = {"acceleration": 0, "velocity": 1, "displacement": 2, "strain": 2, "inclination": 2}
 """How often a quantity is differentiated in time to follow the acceleration of a mode."""
@@ -55,7 +53,7 @@ KAISER = 8.0
 """… and the parameter of its window: right to 5e-4 up to 0.8 of Nyquist, which is what decimation passes."""
 
 
-def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, IntArray]:
+def accelerated(record: Record, *, as_declared: bool = False) -> tuple[Record, Int64Array]:
     """Return the record differentiated towards accelerations, and how often each channel was, (n_channels,).
 
     Parameters
@@ -105,12 +103,12 @@ def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArr
     return np.where(there, out, np.nan)
 
 
-def left_to_differentiate(channels: Iterable[Channel], times: IntArray) -> list[int]:
+def left_to_differentiate(channels: Iterable[Channel], times: Int64Array) -> list[int]:
     """Return how often more samples must be differentiated for accelerations; integrated, if less than 0."""
     return [DERIVATIVES[c.quantity] - int(n) for c, n in zip(channels, times, strict=True)]
 
 
-def as_measured(spectrum: Spectrum, times: IntArray) -> Spectrum:
+def as_measured(spectrum: Spectrum, times: Int64Array) -> Spectrum:
     """Return a spectrum with the densities of the channels as they were before they were differentiated."""
     if not times.any():
         return spectrum
@@ -127,7 +125,7 @@ def _taps() -> FloatArray:
     return np.asarray(ideal * np.kaiser(len(m), KAISER))
 
 
-def _more(record: Record, declared: IntArray) -> int:
+def _more(record: Record, declared: Int64Array) -> int:
     """Return how many derivatives more than the quantities say make the spectrum nearest to level."""
     if (
         record.data.shape[1] < 2 * HALF_LENGTH
@@ -144,24 +142,24 @@ def _more(record: Record, declared: IntArray) -> int:
     return more
 
 
-def _hides_a_peak(spectrum: Spectrum, times: IntArray) -> bool:
+def _hides_a_peak(spectrum: Spectrum, times: Int64Array) -> bool:
     """Return whether a peak stands out of the channels' mean spectrum only after one derivative more."""
     return _peak_hz(spectrum, times) is None and _peak_hz(spectrum, times + 1) is not None
 
 
-def _peak_hz(spectrum: Spectrum, times: IntArray) -> float | None:
+def _peak_hz(spectrum: Spectrum, times: Int64Array) -> float | None:
     level = _level(spectrum, times)
     return lowest_peak_hz(replace(spectrum, singular_values=np.append(0.0, level)[None, :]))
 
 
-def _level(spectrum: Spectrum, times: IntArray) -> FloatArray:
+def _level(spectrum: Spectrum, times: Int64Array) -> FloatArray:
     """Return the mean of the channels' spectra, each of unit power, from the first line on."""
     density = spectrum.density[:, 1:] * spectrum.frequencies_hz[1:] ** (2 * times[:, None])
     power = np.maximum(density.mean(axis=1, keepdims=True), 1e-300)
     return np.asarray(np.mean(density / power, axis=0))
 
 
-def _exponent(spectrum: Spectrum, times: IntArray) -> float:
+def _exponent(spectrum: Spectrum, times: Int64Array) -> float:
     """Return the power of frequency that the channels' mean spectrum follows above its lowest peak.
 
     Without one, over the highest octaves.

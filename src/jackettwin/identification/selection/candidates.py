@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.intervals import log_interval_95
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
-FloatArray = npt.NDArray[np.float64]
 
 FEWEST_ORDERS = 5
 """A mode appears in at least so many model orders (or 0.4 of them, if there are few)."""

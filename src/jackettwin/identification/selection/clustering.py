@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.cluster import hierarchy
 from scipy.spatial.distance import squareform
 
+from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.mac import mac
 
 if TYPE_CHECKING:
@@ -17,19 +17,16 @@ if TYPE_CHECKING:
 
     from jackettwin.identification.estimate import Stabilisation
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-
 
 @dataclass(frozen=True)
 class Cluster:
     """Poles of one mode, at most one from each model order."""
 
-    poles: IntArray
+    poles: Int64Array
     """Positions in the stabilisation table."""
     representative: int
     """The pole nearest to the median of frequency and damping of the core."""
-    core: IntArray
+    core: Int64Array
     """The half of the poles whose damping is known best; all of them where that is not known."""
     order_share: float
     """Share of the model orders that hold the mode, from the first one on."""
@@ -76,7 +73,7 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
     return apart
 
 
-def _cluster(poles: Stabilisation, members: IntArray, orders: Sequence[int]) -> Cluster:
+def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -> Cluster:
     kept = _one_an_order(poles, members)
     core = kept
     own = np.zeros(len(poles.order))
@@ -94,14 +91,14 @@ def _cluster(poles: Stabilisation, members: IntArray, orders: Sequence[int]) -> 
     )
 
 
-def _one_an_order(poles: Stabilisation, members: IntArray) -> IntArray:
+def _one_an_order(poles: Stabilisation, members: Int64Array) -> Int64Array:
     """Keep of every model order the pole nearest to the middle of the group."""
     order = np.lexsort((_away(poles, members), poles.order[members]))
     _, first = np.unique(poles.order[members][order], return_index=True)
     return np.asarray(members[order[first]])
 
 
-def _away(poles: Stabilisation, members: IntArray) -> FloatArray:
+def _away(poles: Stabilisation, members: Int64Array) -> FloatArray:
     """Return the distance of each pole from the median of ln f and ln ζ, in standard deviations."""
     values = np.log([poles.frequency_hz[members], poles.damping_ratio[members]])
     spread = np.maximum(values.std(axis=1, keepdims=True), 1e-9)

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
 from jackettwin.identification.status import ModeStatus
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
     from jackettwin.identification.preparation.prepared import Prepared
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Verdict = tuple[ModeStatus, Finding]
 
 SHORTER = 0.6
@@ -105,7 +103,7 @@ class Look:
         All of them.
     """
 
-    order: npt.NDArray[np.int64]
+    order: Int64Array
     frequency_hz: FloatArray
     shape: ComplexArray
     orders: tuple[int, ...]

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 SEGMENT_WINDOWS = 8
 """Length of the transforms in lag windows."""

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.cluster import hierarchy
 from scipy.spatial.distance import squareform
 
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.estimate import RealPole
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mac, normalised
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
     from jackettwin.identification.subspace.ssi_cov import OrderPoles
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-IntArray = npt.NDArray[np.int64]
 
 JOINED = 0.3
 """Poles nearer than this, |Δ ln a| + 1 − MAC on average, are one relaxation."""
@@ -41,7 +38,7 @@ FEWEST_ORDERS = 5
 class _Table:
     """Real poles of all orders: (n_poles,) each, shapes (n_poles, n_channels)."""
 
-    order: IntArray
+    order: Int64Array
     log_rate: FloatArray
     log_std: FloatArray
     shape: ComplexArray
@@ -93,7 +90,7 @@ def _table(
     )
 
 
-def _groups(table: _Table, scale: FloatArray) -> list[IntArray]:
+def _groups(table: _Table, scale: FloatArray) -> list[Int64Array]:
     if len(table.order) < 2:
         return []
     unit = table.shape / scale
@@ -106,7 +103,7 @@ def _groups(table: _Table, scale: FloatArray) -> list[IntArray]:
 
 
 def _relaxation(
-    table: _Table, members: IntArray, orders: IntArray, settings: IdentificationSettings
+    table: _Table, members: Int64Array, orders: Int64Array, settings: IdentificationSettings
 ) -> RealPole | None:
     """Return the best known pole of a group, its variance and the scatter over the orders together."""
     held = len(np.unique(table.order[members]))

@@ -10,18 +10,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 from scipy.linalg import lapack
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.identification.mac import normalised
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 LEAST_SQUARE = 1e-9
 """Smallest squared singular value over the largest for which H Hᵀ is as good as H: poles agree to 1e-7."""

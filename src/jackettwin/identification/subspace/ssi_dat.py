@@ -13,16 +13,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.identification.subspace.ssi_cov import Subspace, balanced_subspace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
 
 CHUNK = 4096
 """Columns of the data matrices factorised at a time: memory does not grow with the record."""
@@ -67,7 +66,7 @@ def ssi_dat(
     return balanced_subspace(np.asarray(projection), n_channels, max_order)
 
 
-def _whole_instants(y: FloatArray, block_rows: int) -> npt.NDArray[np.intp]:
+def _whole_instants(y: FloatArray, block_rows: int) -> IntArray:
     """Return the instants whose past and future hold no missing sample."""
     whole = np.isfinite(y).all(axis=0)
     run = np.convolve(whole, np.ones(2 * block_rows), mode="valid")

@@ -22,19 +22,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy import linalg
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.subspace.ssi_cov import Factors, OrderPoles, Subspace, hankel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -190,7 +186,7 @@ def _one_order(
     n: int,
     eigenvalues: ComplexArray,
     vectors: ComplexArray,
-    chosen: npt.NDArray[np.intp],
+    chosen: IntArray,
 ) -> OrderPoles:
     """Propagate to the chosen poles of order n: ``e = Dψ``, then δAψ, then eigenvalue and shape."""
     subspace, n_blocks = shared.subspace, shared.n_blocks

@@ -5,18 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Stabilisation
 from jackettwin.identification.mac import mac, normalised
 from jackettwin.identification.subspace.ssi_cov import OrderPoles, frequency_and_damping
 
 if TYPE_CHECKING:
     from jackettwin.identification.settings import IdentificationSettings
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
-BoolArray = npt.NDArray[np.bool_]
 
 
 def stabilisation(

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.envelopes import independent_values, least_variance, relative_variance
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, first_phase, phase_track
 from jackettwin.identification.tones.sinusoid import lines_around, regular, transform
@@ -23,8 +23,6 @@ from jackettwin.records.tones import less_phase
 if TYPE_CHECKING:
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 DRIFTS = (0.02, 0.07, 0.15)
 """Half widths of the bands that hold the drift, as a share of their middle …"""

@@ -12,11 +12,9 @@ in one record of two thousand (Gaussian modes of ζfT from 0.4 to 180, the small
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from jackettwin.arrays import ComplexArray, FloatArray
 
 HALF_WIDTH = 0.02
 """Half width of the band around a candidate, as a share of its frequency …"""

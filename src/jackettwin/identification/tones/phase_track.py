@@ -20,14 +20,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 from scipy.interpolate import BSpline
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.sinusoid import lines_around, regular, sinusoid
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 INTERVALS = (1, 4, 8, 16, 32)
 """Of the spline: the fewest of these that leave little more than the most."""

@@ -17,17 +17,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.drifting_tones import band_of
 from jackettwin.identification.tones.sinusoid import transform
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 PAIRS = ((3, 1, 3), (2, 3, 6))
 """Ratio of two orders that are compared, the lower order, and the higher."""

@@ -18,11 +18,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 
 LINES = 4
 """Lines on either side that a mode fills as well …"""
@@ -84,13 +82,13 @@ def sinusoid(spectrum: ComplexArray, k: int) -> Sinusoid:
     return Sinusoid(k + delta, float(power / max(around.max(), 1e-300)))
 
 
-def _leakage(delta: float | FloatArray, m: npt.NDArray[np.int64]) -> ComplexArray:
+def _leakage(delta: float | FloatArray, m: Int64Array) -> ComplexArray:
     """Return what a unit sinusoid δ lines off gives the lines m, (…, n_lines)."""
     away = np.asarray(delta)[..., None] - m
     return np.asarray(np.exp(1j * np.pi * away) * np.sinc(away))
 
 
-def _offset(white: ComplexArray, m: npt.NDArray[np.int64]) -> float:
+def _offset(white: ComplexArray, m: Int64Array) -> float:
     """Return the δ of the sinusoid that explains most of whitened lines (n_channels, n_lines)."""
     delta = np.linspace(-FARTHEST, FARTHEST, OFFSETS)
     for _ in range(2):

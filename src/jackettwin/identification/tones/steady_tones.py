@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, least_ratio, phase_track
 from jackettwin.identification.tones.sinusoid import (
     LINES,
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.tones.phase_track import PhaseTrack
     from jackettwin.identification.tones.sinusoid import Sinusoid
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 NEAREST_LINE = 8
 """Tones below this line of the record are not looked for."""

@@ -11,8 +11,8 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import ChannelEntry
 from jackettwin.records.readers.source import Source
@@ -27,8 +27,6 @@ MOST_HEADER_LINES = 50
 # ElastoDyn's accelerations end in the axis and the letter of their frame: YawBrTAxp, TwHt1ALxt, and
 # NcIMUTAxs, which turns with the nacelle.
 _AXIS = re.compile(r"(?:TA|AL)([xyz])([a-z]?)$")
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def read_text(path: Path) -> Table:

@@ -14,8 +14,8 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 SHORTEST = 0.5
 """A first or last piece shorter than this share of the others is left out."""

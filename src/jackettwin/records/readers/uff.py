@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import ChannelEntry, describe, parse_time
 from jackettwin.records.readers.table import Table
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
-FloatArray = npt.NDArray[np.float64]
 
 TIME_RESPONSE = 1
 # Record 9, field 1: specific data type ↔ quantity.

@@ -9,13 +9,11 @@ from collections.abc import Sequence
 from datetime import datetime
 
 import numpy as np
-import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from jackettwin.arrays import FloatArray
 from jackettwin.records import Channel, Record
 from jackettwin.store.streams import WINDOW, Packet
-
-FloatArray = npt.NDArray[np.float64]
 
 _ON_GRID = 0.02
 """Samples nearer to the common grid than this share of a step stand on it: at the fifth of the sampling rate,

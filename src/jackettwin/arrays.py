@@ -1,0 +1,14 @@
+"""The types of arrays that signatures name; their shapes stand in the docstrings."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.intp]
+"""Indices into arrays."""
+Int64Array = npt.NDArray[np.int64]
+"""Whole numbers of a stated width: counts and times in nanoseconds."""
