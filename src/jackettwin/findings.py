@@ -201,6 +201,22 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "other samples of the same minutes are known; if they are of the same sensors, they count twice",
     ),
+    # twin: the days of a state watched
+    "watch_learning": Kind(
+        "info", "learning what is normal: {days:.0f} of {needed:.0f} days; nothing is watched yet"
+    ),
+    "watch_begins": Kind(
+        "info", "watched from {from} on: a false alarm once in {arl_years:g} years or more rarely"
+    ),
+    "structure_changed": Kind(
+        "alarm",
+        "changed by {size:+.2%} ({low:+.2%} to {high:+.2%}), began {began} ({began_low} to {began_high}); "
+        "most likely {cause} ({probability:.0%})",
+    ),
+    "sensor_changed": Kind(
+        "warning",
+        "not as before since {began} ({began_low} to {began_high}); most likely {cause} ({probability:.0%})",
+    ),
     "record_late": Kind("info", "older than {days} days that are known; these are reckoned anew"),
 }
 """Every code there is, by the package that finds it."""

@@ -64,7 +64,7 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
 
 
 def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
-    document = alarm_document(watched, alarm)
+    document = alarm_document(watched.watch, watched.table.time, alarm)
     rows = []
     for cause in document["causes"]:
         size = "–" if np.isnan(cause["size"]) else _size(cause)

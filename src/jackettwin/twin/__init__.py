@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from jackettwin.twin.document import observation_document, run_document, update_document
     from jackettwin.twin.examine import Examination, examine, examine_file
     from jackettwin.twin.files import read_twin, shipped_twins
+    from jackettwin.twin.judge import JUDGED, Judged, judge
     from jackettwin.twin.model import TwinModel, twin_model
     from jackettwin.twin.observation import OBSERVATION, Observation
     from jackettwin.twin.observe import observe
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DampingExcess",
+    "JUDGED",
+    "Judged",
     "Examination",
     "OBSERVATION",
     "Observation",
@@ -33,6 +36,7 @@ __all__ = [
     "empty_state",
     "examine",
     "examine_file",
+    "judge",
     "observation_document",
     "observe",
     "read_twin",
@@ -51,6 +55,7 @@ door(
         "document": "observation_document run_document update_document",
         "examine": "Examination examine examine_file",
         "files": "read_twin shipped_twins",
+        "judge": "JUDGED Judged judge",
         "model": "TwinModel twin_model",
         "observation": "OBSERVATION Observation",
         "observe": "observe",

@@ -7,9 +7,10 @@ then out of date, and a finding says from when on. One whose samples are known a
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from datetime import UTC, datetime
-from math import floor, log
+from math import floor, isfinite, log
 
 import numpy as np
 
@@ -32,6 +33,8 @@ from jackettwin.twin.sums import of_estimate, whole
 
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
+BESIDE = re.compile("level|temp", re.IGNORECASE)
+"""Names of conditions beside wind and waves that a state keeps: those that move frequencies."""
 RATE_BIN = 0.1
 """Width of a bin of logarithmic rates: as near as poles of one relaxation lie over the model orders."""
 
@@ -130,7 +133,16 @@ def _operation(seen: Observation) -> Operation:
         w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole, seen)
         own = RateSums(int(bin_ not in rates), whole(w), whole(w * x), whole(w * x * x))
         rates[bin_] = rates.get(bin_, RateSums()).plus(own)
-    return Operation(conditions, modes, rates)
+    return Operation(conditions, modes, rates, _beside(seen))
+
+
+def _beside(seen: Observation) -> dict[str, tuple[int, int]]:
+    """Return the levels and temperatures that a record says."""
+    return {
+        name: (1, whole(float(value)))
+        for name, value in sorted(seen.conditions.items())
+        if BESIDE.search(name) and isinstance(value, (int, float)) and isfinite(value)
+    }
 
 
 def _shapes(seen: Observation, of_modes: bool) -> dict[str, ClearShape]:

@@ -111,11 +111,18 @@ class ClearShape:
 
 @dataclass(frozen=True)
 class Operation:
-    """What the records of one day in one state of operation say."""
+    """What the records of one day in one state of operation say.
+
+    Attributes
+    ----------
+    beside : {condition: (records, sum)}
+        Levels and temperatures, as whole numbers: what moves frequencies besides wind and waves.
+    """
 
     conditions: Conditions = Conditions()
     modes: Mapping[int, ModeSums] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
+    beside: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -270,7 +277,13 @@ def join(a: Operation, b: Operation) -> Operation:
         a.conditions.plus(b.conditions),
         _joined(a.modes, b.modes, ModeSums()),
         _joined(a.rates, b.rates, RateSums()),
+        {name: _both(a.beside.get(name), b.beside.get(name)) for name in sorted({*a.beside, *b.beside})},
     )
+
+
+def _both(a: tuple[int, int] | None, b: tuple[int, int] | None) -> tuple[int, int]:
+    (n, x), (m, y) = a or (0, 0), b or (0, 0)
+    return n + m, x + y
 
 
 def add_totals(a: Totals, b: Totals) -> dict[str, OperationTotal]:

@@ -107,7 +107,7 @@ def watch_table(
     explained, unexplained = _explained(watch, baseline)
     if structure is not None:
         progress("causes")
-    seen = None if structure is None else _of_structure(structure, gravity, watch, baseline)
+    seen = None if structure is None else structure_causes(structure, gravity, watch, baseline)
     if seen is not None:
         limits.append(f"leaves no trace in these quantities: {', '.join(seen.model.traceless)}")
     looks, alarms = [], []
@@ -116,13 +116,14 @@ def watch_table(
         watch, look = step(watch, day)
         looks.append(look)
         if look.change is not None:
-            alarms.append(_alarm(look.change, watch, baseline, seen))
+            alarms.append(explained_alarm(look.change, watch, baseline, seen))
     return Watched(
         table, (first, end), watch, tuple(looks), tuple(alarms), explained, unexplained, tuple(limits)
     )
 
 
-def _alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | None) -> Alarm:
+def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | None) -> Alarm:
+    """Return a change with its causes: the structure's own, or patterns over modes."""
     kinds = [kind for kind, _ in watch.quantities]
     if seen is None:
         general = general_causes(watch.quantities, watch.labels, _typical(baseline.frequency))
@@ -133,7 +134,8 @@ def _alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | N
     return Alarm(change, diagnosis, further)
 
 
-def _of_structure(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
+def structure_causes(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
+    """Return what may happen to a structure with these modes, over the watched quantities."""
     model = model_causes(
         structure, watch.labels, _typical(baseline.frequency), _typical(baseline.damping), gravity=gravity
     )

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 
 from jackettwin.twin.watched import Alarm, Watched
+from jackettwin.watching import Watch
 from jackettwin.watching.diagnosis import Verdict
 
 _Z90 = 1.645
@@ -18,13 +21,13 @@ def watched_document(watched: Watched) -> dict[str, Any]:
     """Return a judged table as plain data; sizes are relative changes, times UTC."""
     table = watched.table
     first, end = watched.baseline_days
-    alarms = [alarm_document(watched, alarm) for alarm in watched.alarms]
+    alarms = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
     return {
         "name": table.name,
         "statement": statement(watched),
         "alarms": alarms,
         "quantities": {
-            _name(watched, key): {
+            quantity_name(watched.watch, key): {
                 "explained_by": dict(watched.explained[key]),
                 "unexplained_std": watched.unexplained_std[key],
             }
@@ -43,18 +46,18 @@ def watched_document(watched: Watched) -> dict[str, Any]:
     }
 
 
-def alarm_document(watched: Watched, alarm: Alarm) -> dict[str, Any]:
-    """Return an alarm as plain data."""
-    change, table = alarm.change, watched.table
+def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
+    """Return an alarm as plain data; ``time`` gives the time of a day number."""
+    change = alarm.change
     low, high = change.began_interval_90
-    names = [_name(watched, key) for key in watched.watch.quantities]
+    names = [quantity_name(watch, key) for key in watch.quantities]
     members = np.flatnonzero(change.members)
     moved = {names[i]: _sized(change.size[i], change.size_std[i]) for i in range(len(names))}
     lead = members[np.argmax(change.by_mode[members])]
     return {
-        "time_utc": table.time(change.day).isoformat(),
-        "began_utc": table.time(change.began).isoformat(),
-        "began_interval_90": [table.time(low).isoformat(), table.time(high).isoformat()],
+        "time_utc": time(change.day).isoformat(),
+        "began_utc": time(change.began).isoformat(),
+        "began_interval_90": [time(low).isoformat(), time(high).isoformat()],
         "kind": change.kind,
         "quantities": [names[i] for i in members],
         "size": moved[names[lead]]["size"],
@@ -82,9 +85,10 @@ def _cause(verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def _name(watched: Watched, key: tuple[str, int]) -> str:
+def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
+    """Return what a watched quantity is called."""
     kind, mode = key
-    label = watched.watch.labels[mode]
+    label = watch.labels[mode]
     return label if kind == "frequency" else f"{label} damping"
 
 
@@ -102,7 +106,7 @@ def statement(watched: Watched) -> str:
     parts = []
     for alarm in watched.alarms:
         change, best = alarm.change, alarm.diagnosis.verdicts[0]
-        doc = alarm_document(watched, alarm)
+        doc = alarm_document(watched.watch, table.time, alarm)
         low, high = (100.0 * x for x in doc["size_interval_90"])
         what = "scatter of" if change.kind == "scatter" else "change of"
         names = ", ".join(doc["quantities"])

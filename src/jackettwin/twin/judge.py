@@ -1,0 +1,240 @@
+"""The third of the pair: the days of a state, watched.
+
+What is said of a day depends on the days up to it and nothing else: whatever order records came in, however
+the work was split, the same state gives the same judgement, bit for bit. What is kept between two calls only
+saves time: a day that a late record has changed since is judged anew, from the end of the baseline on.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime, timedelta
+from typing import Any
+
+import numpy as np
+
+from jackettwin.findings import Finding
+from jackettwin.twin.model import TwinModel
+from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
+from jackettwin.twin.stored import StoredSchema
+from jackettwin.twin.sums import UNIT, ModeSums
+from jackettwin.twin.watched import explained_alarm, structure_causes
+from jackettwin.twin.watched_document import alarm_document
+from jackettwin.watching import History, Watch, start, step
+from jackettwin.watching.watch import FEWEST_DAYS
+
+EPOCH = date(1970, 1, 1)
+BASELINE_DAYS = 365.0
+"""A season's round."""
+ARL_YEARS = 10.0
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is kept of a watch from one day to the next.
+
+    Attributes
+    ----------
+    baseline_days, arl_years : the promise it was made with
+    baseline, judged : fingerprints of the records of the baseline, and of the days after it up to
+        ``through``
+    through : the last day that was judged; empty before the first one
+    learnt, watch : at the end of the baseline, and after ``through``
+    alarms : as documents, in the order of time
+    """
+
+    baseline_days: float
+    arl_years: float
+    baseline: str = ""
+    judged: str = ""
+    through: str = UNDATED
+    learnt: Watch | None = None
+    watch: Watch | None = None
+    alarms: tuple[Mapping[str, Any], ...] = ()
+
+
+JUDGED = StoredSchema("twin_judged", Judged)
+"""How judgements are kept."""
+
+
+def judge(
+    model: TwinModel,
+    state: TwinState,
+    kept: Judged | None = None,
+    *,
+    baseline_days: float = BASELINE_DAYS,
+    arl_years: float = ARL_YEARS,
+) -> tuple[Judged, tuple[Finding, ...]]:
+    """Return what the days of a state say of a change, and what is worth saying that was not said before.
+
+    The last day is left out until a later one has begun: it may not be whole.
+
+    Parameters
+    ----------
+    kept : what an earlier call returned; any of the same promise, it need not be of the same days
+    """
+    kept = kept or Judged(baseline_days, arl_years)
+    dates = [d for d in state.days if d != UNDATED][:-1]
+    if not dates:
+        return kept, ()
+    end = (date.fromisoformat(dates[0]) + timedelta(days=baseline_days)).isoformat()
+    before, after = [d for d in dates if d < end], [d for d in dates if d >= end]
+    if not after or len(before) < FEWEST_DAYS:
+        days = float(_number(dates[-1]) - _number(dates[0]) + 1)
+        return Judged(baseline_days, arl_years), (
+            Finding("watch_learning", None, {"days": days, "needed": baseline_days}),
+        )
+    known = _known(kept, state, before, after, baseline_days, arl_years)
+    findings = []
+    columns = Columns.of(model, state, before)
+    baseline = history_of(columns, state, before)
+    if known.learnt is None:
+        watch = start(baseline, arl_years=arl_years)
+        known = replace(known, baseline=_fingerprint(state, before), learnt=watch, watch=watch)
+        findings.append(Finding("watch_begins", None, {"from": end, "arl_years": arl_years}))
+    for day in (d for d in after if d > known.through):
+        known = _day(model, known, baseline, history_of(columns, state, [day]), day)
+    known = replace(known, judged=_fingerprint(state, after))
+    told = {alarm["time_utc"] for alarm in kept.alarms}
+    return known, (*findings, *(_finding(a) for a in known.alarms if a["time_utc"] not in told))
+
+
+def _known(
+    kept: Judged,
+    state: TwinState,
+    before: Sequence[str],
+    after: Sequence[str],
+    baseline_days: float,
+    arl_years: float,
+) -> Judged:
+    """Return what still holds of what is kept."""
+    fresh = Judged(baseline_days, arl_years)
+    if (kept.baseline_days, kept.arl_years) != (baseline_days, arl_years):
+        return fresh
+    if kept.learnt is None or kept.baseline != _fingerprint(state, before):
+        return fresh
+    if kept.judged != _fingerprint(state, [d for d in after if d <= kept.through]):
+        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=())
+    return kept
+
+
+def _day(model: TwinModel, known: Judged, baseline: History, day: History, name: str) -> Judged:
+    """Return what is known after one more day."""
+    if known.watch is None or not day.days.size:
+        return replace(known, through=name)
+    watch, look = step(known.watch, day)
+    alarms = known.alarms
+    if look.change is not None:
+        has = model.assembly is not None
+        seen = structure_causes(model.structure.structure, True, watch, baseline) if has else None
+        found = explained_alarm(look.change, watch, baseline, seen)
+        alarms = (*alarms, alarm_document(watch, _time, found))
+    return replace(known, watch=watch, through=name, alarms=alarms)
+
+
+def _finding(alarm: Mapping[str, Any]) -> Finding:
+    """Return what is said of an alarm."""
+    best = alarm["causes"][0]
+    low, high = alarm["size_interval_90"]
+    began_low, began_high = (text[:10] for text in alarm["began_interval_90"])
+    params = {
+        "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
+        "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": best["cause"],
+        "probability": best["probability"],
+    }  # fmt: skip
+    sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
+    return Finding(
+        "sensor_changed" if sensor else "structure_changed", ", ".join(alarm["quantities"]), params
+    )
+
+
+def _fingerprint(state: TwinState, dates: Sequence[str]) -> str:
+    """Return the identity of the records of some days, which these days are a function of."""
+    total = hashlib.sha256()
+    for day in dates:
+        total.update(f"{day}:{','.join(state.days[day].records)};".encode())
+    return total.hexdigest()
+
+
+def _number(day: str) -> int:
+    return (date.fromisoformat(day) - EPOCH).days
+
+
+def _time(day: float) -> datetime:
+    return datetime(1970, 1, 1, tzinfo=UTC) + timedelta(days=day)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What the rows of a history are made of: as the baseline has it, so that days go on in the same way."""
+
+    labels: tuple[str, ...]
+    conditions: tuple[str, ...]
+    kinds: tuple[str, ...]
+
+    @classmethod
+    def of(cls, model: TwinModel, state: TwinState, dates: Sequence[str]) -> Columns:
+        """Return the modes, conditions and states of operation of some days."""
+        operations = [item for d in dates for item in state.days[d].operations.items()]
+        numbers = [n for _, operation in operations for n in operation.modes]
+        return cls(
+            model.labels or tuple(f"mode_{k}" for k in range(1, max(numbers, default=0) + 1)),
+            ("wind_m_s", "wave_height_m", *sorted({name for _, o in operations for name in o.beside})),
+            tuple(sorted({_kind(name) for name, _ in operations})),
+        )
+
+
+def history_of(columns: Columns, state: TwinState, dates: Sequence[str]) -> History:
+    """Return days as rows of modes: one for each day and state of operation."""
+    rows = [
+        (_noon(_number(d), state.days[d]), _kind(name), operation)
+        for d in dates
+        for name, operation in state.days[d].operations.items()
+        if any(sums.known for sums in operation.modes.values())
+    ]
+    values = np.full((4, len(rows), len(columns.labels)), np.nan)
+    beside = np.full((len(rows), len(columns.conditions)), np.nan)
+    for i, (_, _, operation) in enumerate(rows):
+        for number, sums in operation.modes.items():
+            if sums.known and number <= len(columns.labels):
+                values[:, i, number - 1] = _means(sums)
+        beside[i] = [_condition(operation, name) for name in columns.conditions]
+    new = len(columns.kinds)
+    states = [columns.kinds.index(kind) if kind in columns.kinds else new for _, kind, _ in rows]
+    return History(
+        np.array([at for at, *_ in rows]), columns.labels, values[0], values[1], values[2], values[3],
+        beside, columns.conditions,
+        np.array(states, dtype=np.intp), columns.kinds,
+    )  # fmt: skip
+
+
+def _noon(number: int, day: Day) -> float:
+    """Return the middle of a day's records [days]."""
+    middle = day.time_utc
+    return number + 0.5 if middle is None else (middle.timestamp() / 86400.0)
+
+
+def _kind(operation: str) -> str:
+    """Return a state of operation without its bin of wind speed, which is a condition."""
+    words = [word for word in operation.split(", ") if not word.endswith(" m/s")]
+    return ", ".join(words) or "unknown"
+
+
+def _means(s: ModeSums) -> tuple[float, float, float, float]:
+    """Return frequency, its standard deviation, damping ratio and its own, as the records state them."""
+    zeta = s.qz / s.q
+    typical = np.exp(s.log_ratio / UNIT / s.known)
+    f = float(np.exp(s.px / s.p))
+    return f, f * np.sqrt(zeta * UNIT / s.p), zeta, zeta * np.sqrt(typical * UNIT / (zeta * s.q))
+
+
+def _condition(operation: Operation, name: str) -> float:
+    known = operation.conditions
+    if name == "wind_m_s":
+        return np.nan if known.wind_m_s is None else known.wind_m_s
+    if name == "wave_height_m":
+        return np.nan if known.waves is None else known.waves[0]
+    n, total = operation.beside.get(name, (0, 0))
+    return total / UNIT / n if n else np.nan

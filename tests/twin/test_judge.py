@@ -1,0 +1,102 @@
+"""The days of a state watched: the same judgement in whatever order, kept and resumed, and changes found."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from observations import estimate, observation
+
+from jackettwin.twin import Observation, TwinModel, TwinState, advance_all
+from jackettwin.twin.judge import JUDGED, Judged, judge
+
+BEGUN = 75
+"""Day of the change, after a baseline of 60 days."""
+
+
+def seen(days: int, step: float = 0.0, seed: int = 1) -> list[Observation]:
+    """Return four records a day of two modes that temperature and a slow process move; perhaps a step."""
+    rng = np.random.default_rng(seed)
+    out, slow = [], 0.0
+    for day in range(days):
+        slow = 0.6 * slow + 0.8 * 5e-4 * rng.standard_normal()
+        air = 10.0 + 5.0 * np.sin(day / 9.0)
+        for hour in (3, 9, 15, 21):
+            own = slow - 1e-4 * air + step * (day >= BEGUN) + 1e-3 * rng.standard_normal(2)
+            modes = {
+                k + 1: estimate(
+                    float(f * np.exp(x)), float(0.012 * np.exp(0.1 * rng.standard_normal())), 1e-3
+                )
+                for k, (f, x) in enumerate(zip((0.18, 0.183), own, strict=True))
+            }
+            start = datetime(2025, 1, 1, hour, tzinfo=UTC) + timedelta(days=day)
+            conditions = {"state": "parked", "mean_wind_speed_m_s": 5.0 + hour, "air_temperature_c": air}
+            out.append(observation(modes, start, name=f"{day}-{hour}", conditions=conditions))
+    return out
+
+
+MODEL = TwinModel("asset")
+CHANGED = seen(100, step=-0.008)
+
+
+def state_of(observations: list[Observation]) -> TwinState:
+    return advance_all(TwinState("model", by_wind=True), observations)[0]
+
+
+@pytest.fixture(scope="module")
+def judged() -> Judged:
+    return judge(MODEL, state_of(CHANGED), baseline_days=60)[0]
+
+
+def test_levels_and_temperatures_are_kept_with_their_days() -> None:
+    ((_, operation),) = [item for item in state_of(CHANGED[:1]).days["2025-01-01"].operations.items()]
+    assert list(operation.beside) == ["air_temperature_c"]
+
+
+def test_nothing_is_said_before_a_baseline_is_whole() -> None:
+    kept, (finding,) = judge(MODEL, state_of(CHANGED[:100]), baseline_days=60)
+    assert finding.code == "watch_learning" and kept.watch is None
+    assert "24 of 60 days" in str(finding)
+
+
+def test_a_change_is_an_alarm_and_quiet_days_are_none(judged: Judged) -> None:
+    (alarm,) = judged.alarms
+    assert alarm["kind"] == "frequency" and alarm["size"] == pytest.approx(-0.008, abs=0.002)
+    low, high = alarm["began_interval_90"]
+    assert low <= (datetime(2025, 1, 1, tzinfo=UTC) + timedelta(days=BEGUN)).isoformat() <= high
+    assert judge(MODEL, state_of(seen(100)), baseline_days=60)[0].alarms == ()
+
+
+def test_an_alarm_is_said_once_and_says_what_changed() -> None:
+    until = [o for o in CHANGED if o.start_utc and o.start_utc < datetime(2025, 3, 10, tzinfo=UTC)]
+    kept, found = judge(MODEL, state_of(until), baseline_days=60)
+    assert [f.code for f in found] == ["watch_begins"]
+    kept, found = judge(MODEL, state_of(CHANGED), kept, baseline_days=60)
+    assert [(f.code, f.severity) for f in found] == [("structure_changed", "alarm")]
+    assert "began 2025-03-1" in str(found[0])
+    assert judge(MODEL, state_of(CHANGED), kept, baseline_days=60)[1] == ()
+
+
+def test_order_pieces_and_the_disk_make_no_difference(judged: Judged) -> None:
+    kept: Judged | None = None
+    some = list(CHANGED)
+    np.random.default_rng(3).shuffle(some)
+    late = some[:7]
+    state = state_of(some[7:])
+    for last in ("2025-03-05", "2025-03-20"):
+        kept, _ = judge(MODEL, state.until(last), kept, baseline_days=60)
+        kept = JUDGED.load(json.loads(json.dumps(JUDGED.dump(kept))))
+    state, _ = advance_all(state, late)
+    kept, _ = judge(MODEL, state, kept, baseline_days=60)
+    assert json.dumps(JUDGED.dump(kept)) == json.dumps(JUDGED.dump(judged))
+
+
+def test_what_is_kept_does_not_grow() -> None:
+    """A judgement of two quantities of each of two modes is some hundred kilobytes, however many days."""
+    sizes = []
+    for days in (100, 130):
+        kept, _ = judge(MODEL, state_of(seen(days)), baseline_days=60)
+        sizes.append(len(json.dumps(JUDGED.dump(kept))))
+    assert sizes[1] < 1.05 * sizes[0] < 1.5e6
