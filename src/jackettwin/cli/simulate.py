@@ -94,3 +94,23 @@ def _print(done: Simulation, path: Path) -> None:
     if len(modes) > _SHOWN:
         last = modes[-1]["frequency_hz"]
         output.print(f"and {len(modes) - _SHOWN} more up to {last:.2f} Hz, in the record's JSON")
+    _print_levels(done)
+
+
+def _print_levels(done: Simulation) -> None:
+    found = done.record.metadata["levels"]
+    if not found:
+        return
+    table = Table(
+        "band", "direction", r"rms here \[cm/s²]", "OpenFAST, nine records of ten", title_justify="left"
+    )
+    table.title = "acceleration at the tower top, in wind of the same class"
+    for level in found:
+        low, high = level["limits_hz"]
+        there = " to ".join(f"{100.0 * value:.2f}" for value in level["openfast_m_s2"])
+        band = f"{level['band']}, {low:.2f} to {high:.2f} Hz"
+        table.add_row(band, level["direction"], f"{100.0 * level['rms_m_s2']:.2f}", there)
+    output.print(table)
+    beyond = done.record.metadata["levels_beyond_comparison"]
+    if beyond:
+        output.print(f"OpenFAST's levels were not compared in such a case: {'; '.join(beyond)}")

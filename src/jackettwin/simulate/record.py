@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from math import degrees
 from time import perf_counter
@@ -12,6 +12,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.records import Channel, Record
+from jackettwin.simulate.level import beyond_comparison, levels
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.scenario import Instrument, Scenario
@@ -45,6 +46,8 @@ class Simulation:
             "seconds_simulated": self.seconds_simulated,
             "wall_s": self.wall_s,
             "true_modes": self.record.metadata["true_modes"],
+            "levels": self.record.metadata["levels"],
+            "levels_beyond_comparison": self.record.metadata["levels_beyond_comparison"],
         }
 
 
@@ -75,6 +78,8 @@ def simulate(scenario: Scenario) -> Simulation:
             "scenario": scenario.name,
             "true_support": scenario.asset.support_text,
             **_axes(scenario.instruments),
+            "levels": [asdict(level) for level in levels(motion, scenario)],
+            "levels_beyond_comparison": beyond_comparison(scenario),
             "true_modes": [
                 {
                     "label": m.label,
