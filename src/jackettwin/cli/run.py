@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 
+from jackettwin.answers import answer
+from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
@@ -49,7 +51,8 @@ def run_command(
     TWIN is a twin file or the name of a shipped twin: openfast_pile (the default: the reference jacket with
     records that OpenFAST produced) or thesis_table_6_1. With --simulate the records come from
     `jackettwin simulate-set`, by default those of a known asset; the report compares with its truth.
-    The first law of the twin gets a posterior, the others are fitted; --all-laws gives each one.
+    The law to recommend gets a posterior (the twin's first, unless another is ten times as probable), the
+    others are fitted; --all-laws gives each one.
     """
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
@@ -60,21 +63,23 @@ def run_command(
         result = run_twin(
             config,
             compare=compare,
-            posteriors="all" if all_laws else "first",
+            posteriors="all" if all_laws else "likely",
             workers=os.cpu_count() or 1,
             step=step,
             within=step.within,
             keep=keeping(fresh=fresh),
         )
         step("write the report")
-        document = run_document(result, report=str(folder / "report.html"))
+        answers = answer(result)
+        document = run_document(result, report=str(folder / "report.html")) | answers_document(answers)
         with atomic_folder(folder) as temporary:
             build_report(result, temporary)
             write_json(document, temporary / "result.json")
     if as_json:
         print_json(document)
         return
-    print_updates(result)
+    print_answers(answers)
+    print_updates(result, only=answers.law)
     for p in true_parameters(result):
         verdict = {None: "no interval", True: "inside its 90 % interval", False: "outside its 90 % interval"}
         output.print(f"  true {p.name} = {p.true:.4g}, updated {p.value:.4g}: {verdict[p.covered]}")

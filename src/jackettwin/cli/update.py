@@ -33,10 +33,12 @@ def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> No
         print_updates(result)
 
 
-def print_updates(result: TwinResult) -> None:
-    """Print parameters and modes of each law, what no support explains, and what to beware of."""
+def print_updates(result: TwinResult, *, only: str = "") -> None:
+    """Print parameters and modes of each law, or of one, what no support explains, and what to beware of."""
     fitted = {m.label for m in result.measured if m.fits_frequency}
     for u, excess in zip(result.updates, result.excess, strict=True):
+        if only and u.law != only:
+            continue
         output.print(f"\n[bold]{u.law}[/bold]")
         output.print(_parameters(u))
         output.print(_modes(result.measured, u))
@@ -53,10 +55,11 @@ def print_updates(result: TwinResult) -> None:
 
 
 def _parameters(u: Update) -> Table:
-    table = Table("parameter", "value", "90 % interval", "verdict")
+    table = Table("parameter", "best fit" if u.uncertainty is None else "median", "90 % interval", "verdict")
     for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
         span, verdict = "–", "–"
         if u.uncertainty is not None:
+            value = u.uncertainty.median[i]
             low, high = u.uncertainty.interval_90[i]
             span, verdict = f"{low:.2e} … {high:.2e}", u.uncertainty.verdicts[i].verdict
         unit = "" if p.unit == "-" else f" {p.unit}"
@@ -76,6 +79,8 @@ def _solutions(u: Update) -> Table:
 
 def _status(u: Update) -> list[str]:
     """Return why there is no posterior, if there is none."""
+    if u.uncertainty is None and u.problem.weighted:
+        return ["Fitted without intervals: `jackettwin run --all-laws` samples every law."]
     if u.uncertainty is None:
         return ["No intervals: they need the standard deviation of every target."]
     if u.uncertainty.status == "ok":

@@ -97,3 +97,56 @@ def count(n: int, noun: str) -> str:
 def listed(items: list[str]) -> str:
     """Return ``a, b and c``."""
     return items[0] if len(items) == 1 else ", ".join(items[:-1]) + " and " + items[-1] if items else "none"
+
+
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+
+
+def quantity(value: float, unit: str, *, digits: int = 2) -> str:
+    """Return a number of any size with its unit and the prefix that suits; without a unit, none.
+
+    >>> quantity(3.797e9, "N/m"), quantity(0.0352, "-"), quantity(0.9, "")
+    ('3.8 GN/m', '0.035', '0.9')
+    """
+    if unit in ("", "-"):
+        return f"{value:.{digits}g}"
+    scale, prefix = next(((s, p) for s, p in _PREFIXES if abs(value) >= s), (1.0, ""))
+    text = f"{value / scale:.{digits}g}"
+    return f"{float(text):g} {prefix}{unit}"
+
+
+def between(low: float, high: float, unit: str) -> str:
+    """Return ``low to high`` with the unit once where both have the same prefix.
+
+    >>> between(2.01e9, 1.395e10, "N/m"), between(2e8, 4.6e9, "N/m"), between(0.0073, 0.16, "-")
+    ('2 to 14 GN/m', '200 MN/m to 4.6 GN/m', '0.0073 to 0.16')
+    """
+    a, b = quantity(low, unit), quantity(high, unit)
+    number, _, same = a.partition(" ")
+    return f"{number} to {b}" if same == b.partition(" ")[2] else f"{a} to {b}"
+
+
+_PARAMETERS = {
+    "k": "stiffness",
+    "k0": "static stiffness",
+    "k1": "stiffness of the damping branch",
+    "c": "dashpot",
+    "loss_factor": "loss factor",
+    "alpha": "springpot exponent",
+}
+
+
+def parameter_words(name: str) -> str:
+    """Return a ground parameter's name as text.
+
+    >>> parameter_words("loss_factor_vertical"), parameter_words("k0_foot_1_vertical"), parameter_words("c")
+    ('vertical loss factor', 'static stiffness of foot 1 vertical', 'dashpot')
+    """
+    name, _, state = name.partition("@")
+    base = next(
+        (b for b in sorted(_PARAMETERS, key=len, reverse=True) if name == b or name.startswith(f"{b}_")), ""
+    )
+    rest = name[len(base) + 1 :].replace("_", " ") if base else ""
+    said = _PARAMETERS.get(base, name.replace("_", " "))
+    said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
+    return f"{said} ({state})" if state else said

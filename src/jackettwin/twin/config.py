@@ -142,3 +142,5 @@ class TwinConfig:
     update: UpdateSettings
     unsaid: Unsaid = Unsaid()
     """What holds for records whose files do not say it."""
+    rotor_speed_rpm: tuple[float, float] | None = None
+    """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""

@@ -136,7 +136,20 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         identification=_identification(schema.identification),
         picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
         update=_update_settings(schema, path.parent),
+        rotor_speed_rpm=_rotor_speed(schema),
     )
+
+
+def _rotor_speed(schema: TwinSchema) -> tuple[float, float] | None:
+    speed = schema.rotor_speed_rpm
+    if speed is not None and speed[0] > speed[1]:
+        raise InputError(
+            "the rotor's speeds are reversed",
+            field="rotor_speed_rpm",
+            value=list(speed),
+            allowed="[lowest, highest]",
+        )
+    return speed
 
 
 def _unsaid(schema: TwinSchema) -> Unsaid:

@@ -134,6 +134,9 @@ class TwinResult:
         Real poles that the supports were updated to, too, by rate.
     held : tuple of tuple of Held
         For each record, what each identified mode was held against in the model.
+    rotor_speed_hz : (lowest, highest) or None
+        Of the rotor in operation, where the twin says it or its rotor does.
+    blades : int
     """
 
     name: str
@@ -150,6 +153,8 @@ class TwinResult:
     warnings: tuple[str, ...]
     relaxations: tuple[MeasuredRelaxation, ...] = ()
     held: tuple[tuple[Held, ...], ...] = ()
+    rotor_speed_hz: tuple[float, float] | None = None
+    blades: int = 3
 
     @property
     def record(self) -> Record | None:

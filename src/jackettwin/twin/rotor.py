@@ -22,6 +22,8 @@ from jackettwin.updating.nuisance_parameters import DASHPOTS
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
 """How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""
+_BLADES = 3
+"""Of a rotor nobody describes."""
 _ANY_WIND_M_S = 10.0
 """A parked rotor's damping is proportional to the wind."""
 _SIDES = {"c_fore_aft": (0, 2, 4), "c_side_side": (1, 3, 5)}
@@ -36,6 +38,20 @@ def mean_wind(config: TwinConfig, state: TwinState | None) -> float | None:
         return config.update.wind_speed_m_s
     total = None if state is None else state.totals.get(ALL)
     return None if total is None else total.conditions.wind_m_s
+
+
+def rotor_speed_hz(config: TwinConfig) -> tuple[tuple[float, float] | None, int]:
+    """Return lowest and highest speed of the rotor [Hz], as the twin or its rotor says, and its blades."""
+    blades, speed = _BLADES, None
+    if config.update.rotor is not None:
+        with located(file=config.path, field="update"):
+            rotor, control = read_rotor(config.update.rotor)
+        blades = rotor.n_blades
+        speed = (control.lowest_speed_rad_s / (2.0 * np.pi), control.highest_speed_rad_s / (2.0 * np.pi))
+    if config.rotor_speed_rpm is not None:
+        low, high = config.rotor_speed_rpm
+        speed = (low / 60.0, high / 60.0)
+    return speed, blades
 
 
 @dataclass(frozen=True)

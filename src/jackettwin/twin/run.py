@@ -17,10 +17,12 @@ from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import Evidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
-from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping
+from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.updating import Update, update
+from jackettwin.updating.law_choice import likely
+from jackettwin.updating.update import with_posterior
 
-Posteriors = Literal["all", "first"]
+Posteriors = Literal["all", "likely"]
 
 
 def run_twin(
@@ -42,8 +44,8 @@ def run_twin(
         Instead of the twin file's.
     compare : bool
         Identify the first record by every method, to set side by side.
-    posteriors : {"all", "first"}
-        Whether every law's posterior is sampled, or the first one's alone: the others are fitted.
+    posteriors : {"all", "likely"}
+        Whether every law's posterior is sampled, or that of the law to recommend: the others are fitted.
     workers : int
         Processes that identify records.
     step : callable
@@ -79,12 +81,13 @@ def run_twin(
     states = operating_states(config, measured, state, fitted, wind)
     evidence = Evidence(assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations)
     wanted = laws or config.update.laws
-    updates: list[Update] = []
+    shown, updates = tuple(m.mode for m in measured), []
     for law in relaxing(config, wanted) if relaxations else wanted:
         step(f"update {law}")
-        shown = tuple(m.mode for m in measured)
-        sampled = posteriors == "all" or not updates
-        updates.append(_update(config, evidence, law, shown, within, sampled=sampled))
+        updates.append(_update(config, evidence, law, shown, within, sampled=posteriors == "all"))
+    if posteriors == "likely":
+        updates = _with_one_posterior(config, updates, within)
+    speed, blades = rotor_speed_hz(config)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
         name=config.name,
@@ -101,6 +104,8 @@ def run_twin(
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
         held=() if found is None else tuple(one.held for one in found.observations),
+        rotor_speed_hz=speed,
+        blades=blades,
     )
 
 
@@ -144,6 +149,23 @@ def _update(
     except InputError as error:
         source = "records" if config.records else "targets"
         raise error.at(file=config.path, field=None if error.field else source) from None
+
+
+def _with_one_posterior(
+    config: TwinConfig, updates: list[Update], within: Callable[[str], None]
+) -> list[Update]:
+    """Return the updates, the likely one with its posterior."""
+    chosen, how = likely(updates), config.update
+
+    def progress(what: str) -> None:
+        within(f"{'' if chosen is None else chosen.law}: {what}")
+
+    return [
+        with_posterior(u, particles=how.particles, sampler=how.sampler, seed=how.seed, progress=progress)
+        if u is chosen
+        else u
+        for u in updates
+    ]
 
 
 def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:

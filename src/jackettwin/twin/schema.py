@@ -250,5 +250,6 @@ class TwinSchema(Schema):
     records: list[str] = []
     logger: LoggerSchema = LoggerSchema()
     targets: list[TargetSchema] = []
+    rotor_speed_rpm: tuple[Positive, Positive] | None = None
     identification: dict[str, Any] = {}
     update: UpdateSchema = UpdateSchema()

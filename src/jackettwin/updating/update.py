@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -160,28 +160,41 @@ def update(
     best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
-    uncertainty = None
-    if sampled and problem.weighted:
-        if progress is not None:
-            progress("posterior")
-        posterior, status = posterior_or_status(problem, sampler=sampler, particles=particles, seed=seed)
-        uncertainty = _uncertainty(problem, model, shown, best, posterior, status, seed)
     theta = _first(problem, np.log(best.theta)[None])[0]
-    return Update(
+    fitted = Update(
         problem=problem,
         model=model,
         shown=shown,
         search=found,
         best=best,
         modes=model.exact_modes(theta, shown),
-        budget=damping_budget(
-            model,
-            theta,
-            shown,
-            draws=None if uncertainty is None else _first(problem, _thinned(uncertainty.log_theta)),
-        ),
-        uncertainty=uncertainty,
+        budget=damping_budget(model, theta, shown),
+        uncertainty=None,
     )
+    if not sampled:
+        return fitted
+    return with_posterior(fitted, particles=particles, sampler=sampler, seed=seed, progress=progress)
+
+
+def with_posterior(
+    fitted: Update,
+    *,
+    particles: int = 150,
+    sampler: Sampler = "smc",
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Update:
+    """Return a fitted law with its posterior and what follows; without standard deviations as it is."""
+    problem, model, shown = fitted.problem, fitted.model, fitted.shown
+    if not problem.weighted:
+        return fitted
+    if progress is not None:
+        progress("posterior")
+    posterior, status = posterior_or_status(problem, sampler=sampler, particles=particles, seed=seed)
+    uncertainty = _uncertainty(problem, model, shown, fitted.best, posterior, status, seed)
+    theta = _first(problem, np.log(fitted.best.theta)[None])[0]
+    draws = _first(problem, _thinned(uncertainty.log_theta))
+    return replace(fitted, budget=damping_budget(model, theta, shown, draws=draws), uncertainty=uncertainty)
 
 
 def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:

@@ -1,0 +1,13 @@
+"""What a run means: is the model right, what is the ground, whose is the damping, what to do next."""
+
+from typing import TYPE_CHECKING
+
+from jackettwin.doors import door
+
+if TYPE_CHECKING:
+    from jackettwin.answers.answer import answer
+    from jackettwin.answers.result import Answers, Span
+
+__all__ = ["Answers", "Span", "answer"]
+
+door(__name__, {"answer": "answer", "result": "Answers Span"})

@@ -1,0 +1,204 @@
+"""What to measure next: how far each further measurement would narrow what is not known of the ground.
+
+The data's information JᵀJ is computed again with the standard deviations that the further measurement would
+have, at draws from the posterior. The model's own error stays: no number of records takes it away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from math import exp, log, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.answers.result import NextStep
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import Problem, Update
+from jackettwin.updating.identifiability import USABLE, information
+from jackettwin.updating.nuisance_parameters import DASHPOTS
+from jackettwin.updating.problem import State
+from jackettwin.updating.targets import Residuals, Target
+
+FloatArray = npt.NDArray[np.float64]
+
+_POINTS = 6
+"""Draws of the posterior at which the information is computed: their mean is of interest, not their tails."""
+_CALM = 0.1
+"""Share of its damping that a parked rotor keeps in a calm: it is proportional to the wind."""
+_DECAY = 0.03
+"""Relative standard deviation of a damping ratio from a few free decays after a stop of the rotor."""
+_MOST = 4096
+"""Times as many records up to which their number is sought."""
+_FIRST_PAIR = (1, 2)
+_FOOT_AMPLITUDE, _FOOT_PHASE_RAD = 0.1, 0.01
+"""How well low-noise accelerometers in step get a foot's motion beside the tower's: 10 % and 0.6°."""
+
+
+def next_steps(
+    u: Update, measured: Sequence[MeasuredMode], names: Sequence[str], *, days: float
+) -> tuple[NextStep, ...]:
+    """Return what could be measured for parameters that are not identified, the most telling first.
+
+    Parameters
+    ----------
+    names : of the parameters that are to become known
+    days : of records that there are; 0 without any
+    """
+    known = u.uncertainty
+    if known is None or not names or not u.problem.weighted:
+        return ()
+    problem, all_names = u.problem, [p.name for p in u.problem.parameters]
+    draws = known.log_theta[:: max(1, len(known.log_theta) // _POINTS)][:_POINTS]
+    own = {m.mode: m for m in measured}
+    now = {v.name: v.interval_factor for v in known.verdicts}
+    base = _stds(problem, draws)
+    if base is None:
+        return ()
+
+    def factors(changed: Problem) -> dict[str, float] | None:
+        after = _stds(changed, draws)
+        if after is None:
+            return None
+        ratio = dict(zip(all_names, np.minimum(after / base, 1.0), strict=True))
+        return {name: exp(log(max(now[name], 1.0)) * ratio[name]) for name in names}
+
+    steps = [
+        NextStep(what, found)
+        for what, changed in _candidates(problem, own).items()
+        if (found := factors(changed)) is not None
+    ]
+    steps.append(NextStep("feet", _at_the_feet(u, names, now)))
+    if days > 0.0:
+        steps.append(_more_records(lambda k: factors(_repeated(problem, own, k)), days))
+    return tuple(sorted(steps, key=lambda step: _left(step.factors)))
+
+
+def _at_the_feet(u: Update, names: Sequence[str], now: Mapping[str, float]) -> dict[str, float]:
+    """Return what motion measured at the feet leaves open.
+
+    A foot moves by force over D = k(1 + iη): its amplitude beside the tower's gives k, its lag η.
+    """
+    known, found = u.uncertainty, {}
+    for j, p in enumerate(u.problem.parameters):
+        if p.name not in names or known is None:
+            continue
+        suffix = next((s for s in u.model.tie_groups.suffixes if s and p.name.endswith(s)), "")
+        loss = known.predictive.support.get(f"loss_factor{suffix}", np.ones(1))
+        stiff = p.name.startswith("k") and not p.name.startswith("k1")
+        std = _FOOT_AMPLITUDE if stiff else _FOOT_PHASE_RAD / float(np.median(loss))
+        own = max(float(known.log_std[j]), 1e-9)
+        found[p.name] = exp(log(max(now[p.name], 1.0)) / sqrt(1.0 + (own / std) ** 2))
+    return found
+
+
+def _left(factors: Mapping[str, float]) -> float:
+    """Return what stays unknown, as the mean logarithm of the factors."""
+    return sum(map(log, factors.values())) / len(factors)
+
+
+def _more_records(factors: Callable[[float], dict[str, float] | None], days: float) -> NextStep:
+    """Return the least number of records, as a multiple, that makes everything known; else the most tried."""
+    k, found = 1, factors(1.0) or {}
+    while k < _MOST and max(found.values()) > USABLE:
+        k *= 4
+        found = factors(float(k)) or found
+    return NextStep("records", found, days * k)
+
+
+def _candidates(problem: Problem, own: Mapping[int, MeasuredMode]) -> dict[str, Problem]:
+    """Return the problem after each further measurement."""
+    first = problem.states[0]
+    found = {"model": _without_model_error(problem, own)}
+    rotor = [i for i, p in enumerate(problem.model.parameters) if p.name in DASHPOTS]
+    pair = [own[mode] for mode in _FIRST_PAIR if mode in own and own[mode].damping_ratio]
+    if pair and not first.errors.any():
+        decays = tuple(Target(m.mode, None, None, m.damping_ratio, _DECAY * _ratio(m)) for m in pair)
+        found["decays"] = _with_state(problem, decays, rotor)
+    if "model" in found and _same(found["model"], problem):
+        del found["model"]
+    return found
+
+
+def _ratio(m: MeasuredMode) -> float:
+    return m.damping_ratio or 0.0
+
+
+def _same(a: Problem, b: Problem) -> bool:
+    return all(s.residuals == t.residuals for s, t in zip(a.states, b.states, strict=True))
+
+
+def _with_state(problem: Problem, targets: tuple[Target, ...], rotor: list[int]) -> Problem:
+    """Return a problem with one more state, in a calm."""
+    first = problem.states[0]
+    residuals = Residuals(targets, relative=False)
+    shifts = first.shifts.copy()
+    shifts[rotor] += log(_CALM)
+    calm = State("calm", residuals, first.weights, shifts, np.zeros((residuals.count, first.errors.shape[1])))
+    return replace(problem, states=(*problem.states, calm))
+
+
+def _without_model_error(problem: Problem, own: Mapping[int, MeasuredMode]) -> Problem:
+    return _changed(problem, own, records=1.0, error=0.0)
+
+
+def _repeated(problem: Problem, own: Mapping[int, MeasuredMode], times: float) -> Problem:
+    """Return the problem with so many times as many records."""
+    return _changed(problem, own, records=times, error=1.0)
+
+
+def _changed(problem: Problem, own: Mapping[int, MeasuredMode], *, records: float, error: float) -> Problem:
+    """Return the problem with other standard deviations; the model's error is in the first state."""
+    states = []
+    for i, state in enumerate(problem.states):
+        targets = tuple(
+            _target(t, own.get(t.mode) if i == 0 else None, records, error) for t in state.residuals.targets
+        )
+        states.append(replace(state, residuals=Residuals(targets, relative=False)))
+    return replace(problem, states=tuple(states))
+
+
+def _target(t: Target, m: MeasuredMode | None, records: float, error: float) -> Target:
+    own_f = None if m is None else m.frequency_std_hz
+    own_zeta = None if m is None else m.damping_ratio_std
+    return replace(
+        t,
+        frequency_std_hz=_std(t.frequency_std_hz, own_f, records, error),
+        damping_ratio_std=_std(t.damping_ratio_std, own_zeta, records, error),
+    )
+
+
+def _std(total: float | None, own: float | None, records: float, error: float) -> float | None:
+    """Return the standard deviation of the measurement's part (all, if not known) and the model's."""
+    if total is None:
+        return None
+    measured = total if own is None else min(own, total)
+    return sqrt(measured**2 / records + error**2 * max(total**2 - measured**2, 0.0))
+
+
+def _stds(problem: Problem, draws: FloatArray) -> FloatArray | None:
+    """Return the standard deviation (d,) of ln θ to expect, its mean square over the draws."""
+    precision = np.diag(problem.prior.std**-2.0)
+    near = problem.anchor(draws.mean(axis=0))
+    known = [m for m in (information(problem, z, near) for z in draws) if m is not None]
+    if not known:
+        return None
+    variances = [np.diag(np.linalg.inv(m + precision)) for m in known]
+    return np.asarray(np.sqrt(np.mean(variances, axis=0)))
+
+
+def records_for(measured: Sequence[MeasuredMode], records: int, precision: float) -> dict[str, int]:
+    """Return how many records each mode's damping needs to be known to ± ``precision`` (90 %).
+
+    Its standard deviation falls with the root of their number, as the records' scatter does. Only of modes
+    that are not known as well already.
+    """
+    wanted = precision / 1.645
+    found = {}
+    for m in measured:
+        if m.damping_ratio and m.damping_ratio_std and records:
+            times = (m.damping_ratio_std / m.damping_ratio / wanted) ** 2
+            if times > 1.0:
+                found[m.label] = int(np.ceil(records * times))
+    return found

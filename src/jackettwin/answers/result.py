@@ -1,0 +1,194 @@
+"""What a run says to the five questions of its first page, in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, log
+from typing import Literal
+
+NORMAL_90 = 1.6448536269514722
+"""Half a central 90 % interval of a normal, in standard deviations."""
+LEAST_MODEL_ERROR = 0.01
+"""Standard deviation by which a model of beams misses frequencies, where the twin states less."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """A number and its central 90 % interval; None where the interval is not known.
+
+    The number is the posterior's median where there is a posterior, else the best fit or the measured value.
+    """
+
+    value: float
+    low: float | None = None
+    high: float | None = None
+
+    @classmethod
+    def of(cls, value: float | None, std: float | None) -> Span | None:
+        """Return the span of a positive number known with a standard deviation, normal in its logarithm.
+
+        >>> Span.of(2.0, 0.1)
+        Span(value=2.0, low=1.8421..., high=2.1714...)
+        """
+        if value is None:
+            return None
+        if std is None or value <= 0.0:
+            return cls(value)
+        factor = exp(NORMAL_90 * std / value)
+        return cls(value, value / factor, value * factor)
+
+    @property
+    def log_std(self) -> float | None:
+        """Standard deviation of the logarithm that a normal with this interval has."""
+        if self.low is None or self.high is None or not 0.0 < self.low <= self.high:
+            return None
+        return log(self.high / self.low) / (2.0 * NORMAL_90)
+
+    def meets(self, other: Span) -> bool:
+        """Return whether two intervals overlap."""
+        low, high = self.low or self.value, self.high or self.value
+        return low <= (other.high or other.value) and (other.low or other.value) <= high
+
+
+@dataclass(frozen=True)
+class ModeAnswer:
+    """A measured mode beside the design and the updated model.
+
+    Attributes
+    ----------
+    design_hz : Span or None
+        On the foundation the twin's priors state; None where they state no stiffness.
+    rigid_hz : float
+        With feet that cannot move.
+    model_hz, model_damping : Span or None
+        Of the recommended law; None for a mode it has not.
+    sources : {source: Span}
+        Damping ratio that steel, ground, rotor and water give the mode, as far as they are modelled.
+    model_error : float
+        Relative standard deviation by which the twin says that the model misses the frequency.
+    """
+
+    label: str
+    measured_hz: Span | None
+    measured_damping: Span | None
+    fits_frequency: bool
+    fits_damping: bool
+    design_hz: Span | None
+    rigid_hz: float
+    model_hz: Span | None
+    model_damping: Span | None
+    sources: Mapping[str, Span]
+    model_error: float = 0.0
+
+    @property
+    def as_designed(self) -> bool | None:
+        """Whether the measured frequency lies in what design and model error allow; None without either."""
+        design = self.design_hz
+        if self.measured_hz is None or design is None:
+            return None
+        slack = exp(NORMAL_90 * max(self.model_error, LEAST_MODEL_ERROR))
+        low, high = design.low or design.value, design.high or design.value
+        return self.measured_hz.meets(Span(design.value, low / slack, high * slack))
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """How far a mode's frequency stays from a band that the rotor excites.
+
+    ``margin`` is the distance of the nearer end of the mode's 90 % interval to the band's nearer edge, as a
+    share of that edge; negative inside the band.
+    """
+
+    label: str
+    order: str
+    low_hz: float
+    high_hz: float
+    margin: float
+
+
+@dataclass(frozen=True)
+class GroundAnswer:
+    """What is known of one parameter of the ground.
+
+    Attributes
+    ----------
+    kind : {"stiffness", "damping"}
+    before : Span or None
+        What the twin's priors said; None where any value between the bounds was as likely.
+    verdict : str
+        ``identified``, ``weak``, ``unidentified``, or ``""`` without intervals.
+    factor : float or None
+        Upper over lower end of the 90 % interval.
+    """
+
+    name: str
+    unit: str
+    kind: Literal["stiffness", "damping"]
+    value: Span
+    before: Span | None
+    verdict: str
+    factor: float | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class LawAnswer:
+    """One law among those fitted.
+
+    ``misfit`` is χ² (or the relative cost) at the best fit; ``probability`` is None for a law that locks its
+    damper or whose data carry no standard deviations.
+    """
+
+    law: str
+    probability: float | None
+    misfit: float
+    locked: bool
+    sampled: bool
+
+
+@dataclass(frozen=True)
+class NextStep:
+    """Something one could measure, and how far it would narrow what is not known of the ground.
+
+    ``factors`` maps parameters to the factor between the ends of their 90 % interval, expected afterwards.
+    """
+
+    what: str
+    factors: Mapping[str, float]
+    days: float | None = None
+    """Length of the records it takes, if it is a matter of length."""
+
+
+@dataclass(frozen=True)
+class Answers:
+    """The first page in numbers.
+
+    Attributes
+    ----------
+    law : str
+        Recommended; ``""`` where nothing was fitted.
+    probability_from : {"evidence", "approximation", ""}
+        Sampled evidence of every law, or Laplace's approximation at the best fits.
+    rotor_speed_hz : (lowest, highest) or None
+    usable : float
+        Longest interval, as a factor, of a parameter that counts as identified.
+    records, minutes : of measurements
+    records_for : {mode: number}
+        Records like these after which the mode's damping ratio is known to ± ``precision`` (90 %).
+    """
+
+    law: str
+    laws: tuple[LawAnswer, ...]
+    probability_from: str
+    modes: tuple[ModeAnswer, ...]
+    clearances: tuple[Clearance, ...]
+    rotor_speed_hz: tuple[float, float] | None
+    blades: int
+    ground: tuple[GroundAnswer, ...]
+    next_steps: tuple[NextStep, ...]
+    records: int
+    minutes: float
+    records_for: Mapping[str, int]
+    precision: float
+    usable: float

@@ -1,0 +1,32 @@
+"""The answers of a run on a terminal and as JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jackettwin.answers import Answers
+from jackettwin.cli.console import output
+from jackettwin.files.codec import encode
+from jackettwin.report.sentences import sentences
+
+
+def print_answers(answers: Answers) -> None:
+    """Print the headline, then every question with its short answer."""
+    said = sentences(answers)
+    output.print()
+    for line in said.headline:
+        output.print(f"[bold]{line}[/bold]")
+    for question in said.questions:
+        output.print(f"\n{question.title}")
+        for line in question.short:
+            output.print(f"  {line}", markup=False)
+
+
+def answers_document(answers: Answers) -> dict[str, Any]:
+    """Return the answers as plain JSON data, in numbers and in words."""
+    said = sentences(answers)
+    return {
+        "answers": encode(answers),
+        "headline": list(said.headline),
+        "questions": {q.title: [*q.short, *q.more] for q in said.questions},
+    }

@@ -1,0 +1,149 @@
+"""The answers of a run on targets whose truth is the model's own: Kelvin–Voigt feet of 2.5e9 N/m."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.answers import Answers, Span, answer
+from jackettwin.answers.next_steps import records_for
+from jackettwin.answers.result import NORMAL_90
+from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.structure import Rayleigh, assemble, read_structure
+from jackettwin.twin import TwinResult
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import (
+    Residuals,
+    Target,
+    family,
+    law_probability,
+    numbered_modes,
+    single,
+    support_model,
+    update,
+)
+from jackettwin.updating.law_choice import approximate_probability, likely, recommended
+
+TARGETS = (
+    Target(1, 0.1819, 0.0008, 0.0107, 0.0004),
+    Target(2, 0.1838, 0.0008, 0.0107, 0.0004),
+    Target(4, 0.7362, 0.004, 0.0270, 0.001),
+)
+PRIOR = {"k": (2.0e9, 0.5)}
+
+
+@pytest.fixture(scope="module")
+def result() -> TwinResult:
+    assembly = assemble(read_structure("jacket15"))
+    numbered = numbered_modes(assembly, 8)
+    labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
+    updates = []
+    for law in ("maxwell-3", "kelvin-voigt"):
+        model = support_model(
+            assembly,
+            family=family(law),
+            rayleigh=Rayleigh.minimum(0.01, 0.1832),
+            bounds={"k": (5e8, 2e10)},
+            priors=PRIOR,
+        )
+        problem = single(model, Residuals(TARGETS, relative=False))
+        updates.append(update(problem, starts=2, particles=60))
+    measured = tuple(
+        MeasuredMode(
+            t.mode, labels[t.mode - 1], t.frequency_hz, t.frequency_std_hz, t.damping_ratio,
+            t.damping_ratio_std, None, None, True, True,
+        )
+        for t in TARGETS
+    )  # fmt: skip
+    return TwinResult(
+        name="t", assembly=assembly, sensors=(), numbered=numbered, labels=labels, observations=(), names=(),
+        measured=measured, updates=tuple(updates), excess=((), ()), assumptions=(), warnings=(),
+        rotor_speed_hz=(5.0 / 60.0, 7.56 / 60.0),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def answers(result: TwinResult) -> Answers:
+    return answer(result)
+
+
+def test_a_span_is_symmetric_in_the_logarithm() -> None:
+    span = Span.of(2.0, 0.1)
+    assert span is not None and span.low is not None and span.high is not None
+    assert span.low * span.high == pytest.approx(4.0)
+    assert span.log_std == pytest.approx(0.05)
+    assert np.log(span.high / span.value) == pytest.approx(NORMAL_90 * 0.05)
+    assert Span.of(None, 0.1) is None
+
+
+def test_margins_are_positive_outside_and_negative_inside(answers: Answers, result: TwinResult) -> None:
+    by = {(c.label, c.order): c for c in answers.clearances}
+    first = by["side_side_1", "1P"]
+    # the lower end of the interval against the upper end of the band
+    low = 0.1819 * np.exp(-NORMAL_90 * 0.0008 / 0.1819)
+    assert first.margin == pytest.approx(low / (7.56 / 60.0) - 1.0)
+    assert by["side_side_1", "3P"].margin > 0.0
+    inside = answer(replace(result, rotor_speed_hz=(0.15, 0.2)))
+    assert next(c for c in inside.clearances if c.order == "1P").margin < 0.0
+
+
+def test_the_design_is_what_the_prior_allows(answers: Answers) -> None:
+    """A stiffer prior gives a higher design; rigid feet are its limit."""
+    for mode in answers.modes:
+        assert (
+            mode.design_hz is not None and mode.design_hz.low is not None and mode.design_hz.high is not None
+        )
+        assert mode.design_hz.low < mode.design_hz.value < mode.design_hz.high < mode.rigid_hz
+        assert mode.as_designed
+
+
+def test_sources_add_up_to_the_model(answers: Answers, result: TwinResult) -> None:
+    u = recommended(result.updates)
+    assert u is not None
+    for i, mode in enumerate(answers.modes):
+        assert set(mode.sources) == {"structure", "soil"}
+        whole = sum(span.value for span in mode.sources.values())
+        assert whole == pytest.approx(float(u.modes.damping_ratio[i]), rel=1e-6)
+
+
+def test_the_approximate_probability_is_near_the_sampled_one(result: TwinResult) -> None:
+    """Laplace's evidence of nearly normal posteriors is within a factor of two (ln 2) of the sampled one."""
+    exact = law_probability(result.updates)
+    about = approximate_probability(result.updates)
+    assert exact is not None
+    assert sum(about.values()) == pytest.approx(1.0)
+    odds = [np.log(p["maxwell-3"] / p["kelvin-voigt"]) for p in (exact, about)]
+    assert odds[0] == pytest.approx(odds[1], abs=np.log(2.0))
+
+
+def test_the_first_law_stays_unless_another_is_ten_times_as_probable(result: TwinResult) -> None:
+    maxwell, voigt = result.updates
+    chosen = likely(result.updates)
+    odds = approximate_probability(result.updates)
+    assert chosen is (maxwell if odds["maxwell-3"] >= 0.1 * odds["kelvin-voigt"] else voigt)
+    # targets of a dashpot: the second pair loses more than a constant loss factor gives it
+    assert odds["kelvin-voigt"] > odds["maxwell-3"]
+    assert likely((voigt, maxwell)) is voigt
+
+
+def test_further_measurements_never_widen_what_is_known(answers: Answers) -> None:
+    now = {g.name: g.factor for g in answers.ground}
+    for step in answers.next_steps:
+        for name, factor in step.factors.items():
+            assert 1.0 <= factor <= (now[name] or np.inf) * (1.0 + 1e-9)
+
+
+def test_the_number_of_records_goes_with_the_square_of_the_precision(result: TwinResult) -> None:
+    m = replace(result.measured[0], damping_ratio=0.01, damping_ratio_std=0.005)
+    coarse, fine = (records_for([m], 4, p)[m.label] for p in (0.4, 0.2))
+    assert fine == pytest.approx(4 * coarse, abs=4)
+    assert records_for([m], 4, 10.0) == {}
+
+
+def test_without_standard_deviations_nothing_is_called_known(result: TwinResult) -> None:
+    bare = replace(result, updates=tuple(replace(u, uncertainty=None) for u in result.updates))
+    found = answer(bare)
+    assert {g.verdict for g in found.ground} == {""}
+    assert found.next_steps == ()

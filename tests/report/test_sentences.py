@@ -1,0 +1,94 @@
+"""The first page in words, on answers made by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from jackettwin.answers import Answers, Span
+from jackettwin.answers.result import Clearance, GroundAnswer, LawAnswer, ModeAnswer, NextStep
+from jackettwin.report.sentences import percent_words, sentences, span_words
+
+MODE = ModeAnswer(
+    "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
+    0.21, Span(0.2), Span(0.012), {"structure": Span(0.005), "soil": Span(0.007, 0.004, 0.009)}, 0.005,
+)  # fmt: skip
+STIFF = GroundAnswer(
+    "k", "N/m", "stiffness", Span(1e9, 8e8, 1.2e9), Span(2e9, 1e9, 4e9), "identified", 1.5, ""
+)
+LOSS = GroundAnswer(
+    "loss_factor", "-", "damping", Span(0.03, 0.005, 0.2), Span(0.03, 0.004, 0.2), "unidentified", 40.0, ""
+)
+ANSWERS = Answers(
+    law="maxwell-3",
+    laws=(LawAnswer("maxwell-3", 0.6, 2.0, False, True), LawAnswer("zener", 0.4, 2.1, False, False)),
+    probability_from="approximation",
+    modes=(MODE,),
+    clearances=(
+        Clearance("fore_aft_1", "1P", 0.08, 0.126, 0.58), Clearance("fore_aft_1", "3P", 0.25, 0.38, 0.196),
+    ),
+    rotor_speed_hz=(0.08, 0.126),
+    blades=3,
+    ground=(STIFF, LOSS),
+    next_steps=(NextStep("feet", {"loss_factor": 2.0}), NextStep("records", {"loss_factor": 20.0}, 100.0)),
+    records=5,
+    minutes=50.0,
+    records_for={"fore_aft_1": 12},
+    precision=0.2,
+    usable=2.0,
+)  # fmt: skip
+
+
+def test_the_headline_tells_the_story() -> None:
+    lines = sentences(ANSWERS).headline
+    assert lines[0].startswith("The foundation is stiff enough: fore-aft 1 is as designed")
+    assert "58 % above 1P and 20 % below 3P" in lines[0]
+    assert "The ground's damping is not known from these 5 records." in lines
+    assert any("the ground gives 58 % in fore-aft 1" in line for line in lines)
+    assert lines[-1].startswith("What would make the ground's damping known: motion measured at the feet")
+
+
+def test_where_nothing_is_identified_that_is_said() -> None:
+    lost = replace(ANSWERS, ground=(replace(STIFF, verdict="unidentified"), LOSS))
+    assert any(line.startswith("Nothing of the ground is known") for line in sentences(lost).headline)
+
+
+def test_a_mode_within_the_rotors_range_is_the_first_thing_said() -> None:
+    tight = replace(ANSWERS, clearances=(Clearance("fore_aft_1", "3P", 0.19, 0.4, -0.05),))
+    assert sentences(tight).headline[0] == "Fore-aft 1 lies inside the 3P range of the rotor."
+    near = replace(ANSWERS, clearances=(Clearance("fore_aft_1", "3P", 0.21, 0.4, 0.04),))
+    assert sentences(near).headline[0] == "Fore-aft 1 comes within 4 % of the 3P range of the rotor."
+
+
+def test_a_frequency_off_the_design_is_the_first_thing_said() -> None:
+    off = replace(ANSWERS, modes=(replace(MODE, design_hz=Span(0.25, 0.24, 0.26)),))
+    assert "20.0 % below the design's 0.25 Hz" in sentences(off).headline[0]
+
+
+def test_every_question_is_answered_without_nats() -> None:
+    said = sentences(ANSWERS)
+    assert [q.title for q in said.questions] == [
+        "Is the model right?",
+        "How stiff and how damped is the ground?",
+        "Whose damping is it?",
+        "How far can this be trusted?",
+        "What to do next?",
+    ]
+    assert all(q.short for q in said.questions)
+    words = " ".join(s for q in said.questions for s in (*q.short, *q.more))
+    assert "nat" not in words.split() and "nan" not in words.split()
+    assert "about 60 % probable among 2 laws; the data do not tell the laws apart" in words
+
+
+def test_a_law_far_above_the_others_is_said_to_be() -> None:
+    sure = replace(
+        ANSWERS, laws=(replace(ANSWERS.laws[0], probability=0.99), replace(ANSWERS.laws[1], probability=0.01))
+    )
+    assert "no other law comes near" in " ".join(sentences(sure).questions[3].short)
+
+
+def test_numbers_keep_their_units() -> None:
+    assert span_words(Span(3.8e9, 2.0e9, 1.4e10), "N/m") == "3.8 GN/m (2 to 14 GN/m)"
+    assert (
+        percent_words(Span(0.0055, 0.0054, 0.0056)) == "0.55 %"
+    )  # given, not found: its interval says nothing
+    assert percent_words(Span(0.027, 0.02, 0.036)) == "2.7 % (2 to 3.6 %)"
