@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo live test lint types layers security unit servers bench qualify docs lock clean
+.PHONY: help demo gallery live test lint types layers security unit servers bench qualify docs lock clean
 
 help: ## list the commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-9s %s\n", $$1, $$2}'
@@ -30,6 +30,9 @@ $(VENV)/.dev: requirements-dev.lock $(VENV)/.core
 
 demo: $(VENV)/.core ## digital twin of a 15 MW jacket from an OpenFAST record: out/demo/report.html
 	$(BIN)/jackettwin run --out out/demo
+
+gallery: $(VENV)/.core ## the figures of the thesis, recomputed: out/gallery/gallery.html
+	PYTHONPATH=scripts $(BIN)/python -m gallery
 
 live: $(VENV)/.live ## a foundation lives: http://127.0.0.1:8470/, its records arrive in fast motion
 	$(BIN)/jackettwin serve out/live --demo

@@ -9,7 +9,7 @@ import jackettwin
 
 PACKAGES = {
     "records": "Channel Record assess decimate detrend read_record repair write_record",
-    "report": "Plot Section Table Text build_gallery build_report",
+    "report": "Plot Section Table Text build_report",
     "structure": "Assembly Material Rayleigh Section Structure assemble check jacket read_structure",
 }
 

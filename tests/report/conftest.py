@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import plotly.graph_objects as go
 import pytest
+from figure_units import assert_units_of
 
 from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate, identify
 from jackettwin.identification.comparison import compare_methods
@@ -116,35 +116,10 @@ def complete(targets_only: TwinResult, record: Record, observation: Examination)
     )
 
 
-CATEGORIES = {"mode", "member", "law", "parameter"}
-"""Axes that name things have no unit."""
-
-
-def _axes(figure: go.Figure) -> Iterator[tuple[str, dict]]:
-    layout = figure.to_dict()["layout"]
-    for key, value in layout.items():
-        if re.fullmatch(r"[xy]axis\d*", key):
-            yield key, value
-        elif re.fullmatch(r"scene\d*", key):
-            yield from ((f"{key}.{axis}", value[axis]) for axis in ("xaxis", "yaxis", "zaxis"))
-
-
-def _check_units(figure: go.Figure) -> None:
-    axes = list(_axes(figure))
-    assert axes
-    for name, axis in axes:
-        if axis.get("visible") is False or axis.get("showticklabels") is False:
-            continue
-        title = axis.get("title", {}).get("text", "")
-        if axis.get("type") == "category" and name.startswith("y"):
-            continue
-        assert title in CATEGORIES or re.search(r"\S \[.+\]$", title), (name, title)
-
-
 @pytest.fixture(scope="session")
 def assert_units() -> Callable[[go.Figure], None]:
     """Fail on an axis that shows numbers without quantity and unit."""
-    return _check_units
+    return assert_units_of
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.report import Plot, Section, Text, build_gallery, build_report
+from jackettwin.report import Plot, build_report
 from jackettwin.report.build import report_sections
 from jackettwin.report.numbers import frequency, percent
 from jackettwin.report.tables_records import records_table
@@ -132,10 +132,3 @@ def test_a_mode_that_was_lost_shows_as_not_known(complete: TwinResult, tmp_path:
     assert not re.search(r"\bnan\b", " ".join(page.text), flags=re.IGNORECASE)
     for text in page.figures:
         assert "NaN" not in text
-
-
-def test_gallery_takes_any_sections(tmp_path: Path) -> None:
-    path = build_gallery([Section("Only words", (Text(("Nothing to draw.",)),))], tmp_path, "A gallery")
-    text = " ".join(_Page(path.read_text(encoding="utf-8")).text)
-    assert "A gallery" in text and "Nothing to draw." in text
-    assert not (tmp_path / "figures").exists()

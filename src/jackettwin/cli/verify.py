@@ -2,51 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from pathlib import Path
-
 import click
 from rich import table as rich
 
 from jackettwin.cli.console import OUR_FAULT, number, output, print_json, progress
-from jackettwin.files import atomic_folder
-from jackettwin.report import Section, Table, build_gallery
-from jackettwin.report.gallery import STEPS as FIGURE_STEPS
-from jackettwin.report.gallery import thesis_figures
 from jackettwin.verify import STEPS, Row, published_rows
 
 COLUMNS = ("source", "quantity", "published", "computed", "error [%]", "tolerance [%]", "verdict")
 
 
 @click.command("verify")
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("out/verify"),
-    show_default=True,
-    help="Folder of the gallery.",
-)
-@click.option("--no-figures", is_flag=True, help="Only the numbers; writes nothing.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
-def verify_command(ctx: click.Context, out: Path, no_figures: bool, as_json: bool) -> None:
-    """Recompute every number and figure of the thesis; exit 1 if a number fails."""
-    gallery = None if no_figures else out / "gallery.html"
-    with progress(STEPS + (0 if no_figures else FIGURE_STEPS + 1), "verify") as step:
+def verify_command(ctx: click.Context, as_json: bool) -> None:
+    """Recompute every published number of the thesis; exit 1 if one fails."""
+    with progress(STEPS, "verify") as step:
         rows = published_rows(step)
-        if gallery is not None:
-            sections = [Section("Every published number", (_table(rows),)), *thesis_figures(step)]
-            step("write the gallery")
-            with atomic_folder(out) as temporary:
-                build_gallery(sections, temporary, title="The thesis, recomputed")
     if as_json:
-        document = {
-            "rows": [row.document() for row in rows],
-            "gallery": None if gallery is None else str(gallery),
-        }
-        print_json(document)
+        print_json({"rows": [row.document() for row in rows]})
     else:
-        _print(rows, gallery)
+        _print(rows)
     if any(row.ok is False for row in rows):
         ctx.exit(OUR_FAULT)
 
@@ -72,17 +47,7 @@ def _summary(rows: tuple[Row, ...]) -> str:
     )
 
 
-def _table(rows: tuple[Row, ...]) -> Table:
-    failed = frozenset(i for i, row in enumerate(rows) if row.ok is False)
-    cells = tuple(_cells(replace(row, quantity=_with_note(row))) for row in rows)
-    return Table(_summary(rows) + ".", COLUMNS, cells, text_columns=2, marked=failed)
-
-
-def _with_note(row: Row) -> str:
-    return f"{row.quantity} ({row.note})" if row.note else row.quantity
-
-
-def _print(rows: tuple[Row, ...], gallery: Path | None) -> None:
+def _print(rows: tuple[Row, ...]) -> None:
     colours = {True: "green", False: "bold red", None: "dim"}
     table = rich.Table(*COLUMNS)
     for row in rows:
@@ -90,5 +55,3 @@ def _print(rows: tuple[Row, ...], gallery: Path | None) -> None:
         table.add_row(*cells, f"[{colours[row.ok]}]{verdict}[/]")
     output.print(table)
     output.print(_summary(rows))
-    if gallery is not None:
-        output.print(f"gallery: {gallery}")

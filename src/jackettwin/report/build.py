@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from jackettwin.identification import Identification
@@ -41,12 +41,6 @@ def build_report(result: TwinResult, out_dir: Path) -> Path:
     write_figures(sections, out_dir / "figures")
     title = f"{result.name}: digital twin of {result.assembly.structure.name}"
     return write_page(sections, out_dir / "report.html", title=title, subtitle=_subtitle(result))
-
-
-def build_gallery(sections: Sequence[Section], out_dir: Path, title: str) -> Path:
-    """Write sections as ``gallery.html`` with its figures beside it; return the path of the page."""
-    write_figures(sections, out_dir / "figures")
-    return write_page(sections, out_dir / "gallery.html", title=title, subtitle=f"jackettwin {__version__}")
 
 
 def report_sections(result: TwinResult) -> list[Section]:

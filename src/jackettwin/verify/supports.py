@@ -146,7 +146,7 @@ def _figure_8_1(assembly: Assembly) -> list[Row]:
 
 
 def fitted(model: SupportModel, residuals: Residuals) -> Update:
-    """Return the multi-start fit that ``verify`` and the gallery show."""
+    """Return the multi-start fit that ``verify`` shows."""
     return update(single(model, residuals), starts=12, seed=0)
 
 

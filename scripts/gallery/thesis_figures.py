@@ -9,16 +9,10 @@ from importlib.resources import as_file, files
 import numpy as np
 import plotly.graph_objects as go
 
+from gallery import figures_theory, schematics
 from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
-from jackettwin.report import (
-    explore,
-    figures_identification,
-    figures_landscape,
-    figures_record,
-    figures_theory,
-    schematics,
-)
+from jackettwin.report import explore, figures_identification, figures_landscape, figures_record
 from jackettwin.report.figures_elevation import elevation
 from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.figures_structure import structure_3d

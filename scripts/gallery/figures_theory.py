@@ -8,8 +8,9 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from gallery import schematics
 from jackettwin.arrays import FloatArray
-from jackettwin.report import schematics, style
+from jackettwin.report import style
 from jackettwin.response.sdof import free_vibration
 from jackettwin.soil.viscoelastic import Law, hysteresis
 
