@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.records import Channel
-from jackettwin.service.tasks import Outcome, Task
 from jackettwin.store import read_waveform
 from jackettwin.twin import TwinModel, TwinState, advance, observe, read_twin, twin_model
 from jackettwin.twin.follow import estimate
@@ -57,10 +56,12 @@ def channels(folder: Path) -> dict[str, Channel]:
     }
 
 
-def observed(model: TwinModel, task: Task) -> Outcome:
-    """Return the observation of a stored record as a document, with its modes and findings as rows."""
-    record = read_waveform(Path(task.waveform))
-    record = replace(record, conditions={**task.conditions, **record.conditions})
+def observed(
+    model: TwinModel, waveform: Path, conditions: Mapping[str, Any]
+) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...]]:
+    """Return the observation of a stored record as a document, its modes and its findings as rows."""
+    record = read_waveform(waveform)
+    record = replace(record, conditions={**conditions, **record.conditions})
     seen = observe(record, model)
     rows = []
     for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
@@ -78,7 +79,7 @@ def observed(model: TwinModel, task: Task) -> Outcome:
             }
         )
     document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
-    return Outcome(document, tuple(rows), tuple(_finding(f) for f in seen.findings))
+    return document, tuple(rows), tuple(_finding(f) for f in seen.findings)
 
 
 def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:

@@ -139,7 +139,8 @@ def observe_stored(task: Task) -> Outcome:
     from jackettwin.service.engine import load_model, observed
 
     try:
-        return observed(load_model(Path(task.twin_folder)), task)
+        model = load_model(Path(task.twin_folder))
+        return Outcome(*observed(model, Path(task.waveform), task.conditions))
     except InputError as error:
         return Outcome(None, problem=problem_of(error))
     except JackettwinError as error:

@@ -19,7 +19,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.refinement import Refined
+    from jackettwin.identification.maximum_likelihood.refined import Refined
 
 
 BESIDE_THE_MODES = 3

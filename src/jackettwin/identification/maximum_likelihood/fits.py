@@ -18,7 +18,8 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import strayed
-from jackettwin.identification.maximum_likelihood.refinement import Refined, refine
+from jackettwin.identification.maximum_likelihood.refined import Refined
+from jackettwin.identification.maximum_likelihood.refinement import refine
 
 if TYPE_CHECKING:
     from collections.abc import Callable

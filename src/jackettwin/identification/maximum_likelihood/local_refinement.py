@@ -16,7 +16,8 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.identification.maximum_likelihood.directions import at_channels, directions, projected
-from jackettwin.identification.maximum_likelihood.refinement import Narrow, Refined, refine
+from jackettwin.identification.maximum_likelihood.refined import Refined
+from jackettwin.identification.maximum_likelihood.refinement import Narrow, refine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.refinement import Refined
+    from jackettwin.identification.maximum_likelihood.refined import Refined
 
 
 HALF_BANDWIDTHS = 3.0

@@ -25,6 +25,7 @@ from jackettwin.identification.maximum_likelihood.admission import (
 )
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
+from jackettwin.identification.maximum_likelihood.refined import Refined
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,42 +68,6 @@ class Narrow:
     frequency_hz: FloatArray
     damping_ratio: FloatArray
     shapes: FloatArray
-
-
-@dataclass(frozen=True)
-class Refined:
-    """Maximum-likelihood estimates of the modes of a band.
-
-    Attributes
-    ----------
-    candidate : (n_modes,) int
-        Position among the candidates.
-    frequency_hz, damping_ratio : (n_modes,)
-        Corrected for the small sample.
-    shapes : (n_modes, n_channels)
-        Real parts.
-    covariance : (n_modes, 2, 2)
-        Of (ln f, ln ζ).
-    shape_covariance : (n_modes, n_channels, n_channels)
-    cramer_rao : (n_modes, 2)
-        Least standard deviations of ln f and ln ζ of the fitted model.
-    gain : (n_candidates,)
-        Log-likelihood a doubtful candidate would add; infinite for modes that were sure.
-    lack_of_fit : float
-        ``accuracy.lack_of_fit``: near 1 where the record is what the model says.
-    converged : bool
-    """
-
-    candidate: Int64Array
-    frequency_hz: FloatArray
-    damping_ratio: FloatArray
-    shapes: FloatArray
-    covariance: FloatArray
-    shape_covariance: FloatArray
-    cramer_rao: FloatArray
-    gain: FloatArray
-    lack_of_fit: float
-    converged: bool
 
 
 def refine(

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from jackettwin.identification.estimate import ModalEstimate, ResolvedSettings
-    from jackettwin.identification.maximum_likelihood.refinement import Refined
+    from jackettwin.identification.maximum_likelihood.refined import Refined
     from jackettwin.identification.preparation.prepared import Prepared
     from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.screening import Evidence

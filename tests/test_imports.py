@@ -1,0 +1,41 @@
+"""No module needs, at run time or for its types, a module that needs it."""
+
+from __future__ import annotations
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src"
+
+
+def imported(root: Path) -> dict[str, set[str]]:
+    """Return which modules each module under a folder names in an import, wherever it stands."""
+    names = {".".join(path.relative_to(root).with_suffix("").parts): path for path in root.rglob("*.py")}
+    graph = {}
+    for name, path in names.items():
+        if path.stem == "__init__":
+            continue  # a door names its rooms for type checkers; it loads them on first use
+        wanted: set[str] = set()
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                wanted |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+            elif isinstance(node, ast.Import):
+                wanted |= {alias.name for alias in node.names}
+        graph[name] = wanted & set(names)
+    return graph
+
+
+def test_no_module_needs_what_needs_it() -> None:
+    graph = imported(SOURCE)
+    assert len(graph) > 300
+    TopologicalSorter(graph).prepare()
+
+
+def test_a_circle_of_types_alone_is_seen(tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text("from b import f\n")
+    (tmp_path / "b.py").write_text("if TYPE_CHECKING:\n    from a import T\n")
+    with pytest.raises(CycleError):
+        TopologicalSorter(imported(tmp_path)).prepare()
