@@ -23,7 +23,6 @@ from jackettwin.service.app import create_app
 from jackettwin.service.catalogue import add_text_version
 from jackettwin.service.context import Service
 from jackettwin.service.dispatch import Dispatcher
-from jackettwin.service.tasks import Outcome, Task
 from jackettwin.store import open_database, read_waveform, work, writing
 from jackettwin.twin import OBSERVATION
 
@@ -73,14 +72,14 @@ class Here:
         """Nothing to stop."""
 
 
-def quick(model: Any, task: Task) -> Outcome:
+def quick(model: Any, waveform: Path, conditions: dict[str, Any]) -> tuple[Any, ...]:
     """Stand in for the identification: two modes whose frequencies depend on the samples alone."""
-    record = read_waveform(Path(task.waveform))
+    record = read_waveform(waveform)
     a, b = (0.18 + 1e-4 * float(np.sum(record.data)) % 1e-3, 0.55)
     modes = {1: estimate(a, 0.012, 4e-3, 0.2), 3: estimate(b, 0.01, 4e-3, 0.2)}
     seen = replace(
-        observation(modes, record.start_utc, name=record.name, conditions=dict(task.conditions)),
-        record_id=Path(task.waveform).stem,
+        observation(modes, record.start_utc, name=record.name, conditions=dict(conditions)),
+        record_id=waveform.stem,
         model_hash=model.model_hash,
     )
     rows = tuple(
@@ -96,7 +95,7 @@ def quick(model: Any, task: Task) -> Outcome:
         }
         for number, mode in modes.items()
     )
-    return Outcome(json.dumps(OBSERVATION.dump(seen)), rows)
+    return json.dumps(OBSERVATION.dump(seen)), rows, ()
 
 
 def record_file(k: int = 0, *, samples: int = 200) -> bytes:

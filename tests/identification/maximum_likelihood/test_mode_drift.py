@@ -10,7 +10,7 @@ import pytest
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
 from jackettwin.identification.maximum_likelihood.mode_drift import has_left, long_data_limits, strayed
-from jackettwin.identification.maximum_likelihood.refinement import Refined
+from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.synthetic import ModalSystem, simulate
 
 T = 600.0
