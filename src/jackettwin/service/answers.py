@@ -22,7 +22,7 @@ from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
 
 if TYPE_CHECKING:
-    from jackettwin.service.context import Place
+    from jackettwin.service.context import Service
 
 RowNumber = Path(ge=1, le=2**53)
 """A row's number, as JavaScript can hold it."""
@@ -101,16 +101,13 @@ def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) ->
 
 
 def twin(
-    connection: Connection, service: Place, version: assets.Version, at: datetime | None = None
+    connection: Connection, service: Service, version: assets.Version, at: datetime | None = None
 ) -> TwinOut:
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
-    days = {
-        s.day: s.document for s in results.states_until(connection, version.asset, version.model_hash, last)
-    }
     model = engine.load_model(twin_folder(connection, service, version.asset, version.version))
-    state = engine.state_of(model, days)
-    known = engine.knowledge(model, state)
+    told = service.remembered.told(connection, version, model, last)
+    known = engine.knowledge(model, told.sums)
     supports = (
         None if at is not None else results.find_knowledge(connection, version.asset, version.model_hash)
     )
@@ -120,8 +117,8 @@ def twin(
         version=version.version,
         model_hash=version.model_hash,
         code_version=__version__,
-        state_hash=state.state_hash,
-        days=len(days),
+        state_hash=told.state_hash,
+        days=told.days,
         **known,
     )
 

@@ -94,18 +94,21 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
 
 
 def overview(connection: Connection) -> list[AssetOut]:
-    """Return every asset with its status."""
+    """Return every asset with its status; as many queries for a hundred as for one."""
     counts, said = records.count_by_status(connection), results.count_findings(connection)
+    unseen = results.unacknowledged_alarms(connection)
     return [
-        _asset(connection, name, counts.get(name, {}), said.get(name, {}))
-        for name in assets.asset_names(connection)
+        _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
+        for row in assets.summaries(connection)
     ]
 
 
 def one(connection: Connection, name: str) -> AssetOut:
     """Return an asset with its status."""
-    counts, said = records.count_by_status(connection), results.count_findings(connection)
-    return _asset(connection, name, counts.get(name, {}), said.get(name, {}))
+    counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
+    unseen = results.unacknowledged_alarms(connection, name).get(name, 0)
+    (row,) = assets.summaries(connection, name)
+    return _asset_out(row, counts.get(name, {}), said.get(name, {}), unseen)
 
 
 def version_out(connection: Connection, version: assets.Version) -> VersionOut:
@@ -125,26 +128,11 @@ def version_out(connection: Connection, version: assets.Version) -> VersionOut:
     )
 
 
-def _asset(connection: Connection, name: str, counts: dict[str, int], said: dict[str, int]) -> AssetOut:
-    version = assets.found_version(connection, name)
-    first = assets.all_versions(connection, name)[0]
-    last = records.last_start(connection, name)
-    unseen = results.unacknowledged_alarms(connection, name, version.model_hash)
-    if last is None:
+def _asset_out(row: assets.Summary, counts: dict[str, int], said: dict[str, int], unseen: int) -> AssetOut:
+    if row.last_record_utc is None:
         status = "no data"
     elif unseen:
         status = "alarm"
-    elif counts.get("set_aside") or counts.get("refused"):
-        status = "warning"
     else:
-        status = "ok"
-    return AssetOut(
-        name=name,
-        version=version.version,
-        model_hash=version.model_hash,
-        created_utc=first.created_utc,
-        last_record_utc=last,
-        records=counts,
-        findings=said,
-        status=status,  # type: ignore[arg-type]
-    )
+        status = "warning" if counts.get("set_aside") or counts.get("refused") else "ok"
+    return AssetOut(**vars(row), records=counts, findings=said, status=status)  # type: ignore[arg-type]

@@ -16,6 +16,7 @@ from sqlalchemy import Engine
 from jackettwin.service.auth import Guesses
 from jackettwin.service.compute import Compute
 from jackettwin.service.feed import Feed
+from jackettwin.service.remembered import Remembered
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
 from jackettwin.version import __version__
@@ -67,6 +68,7 @@ class Service:
     server_id: str
     now: Callable[[], datetime] = _now
     guesses: Guesses = field(default_factory=Guesses)
+    remembered: Remembered = field(default_factory=Remembered)
     chores: list[Chore] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True

@@ -121,7 +121,7 @@ class Dispatcher(Thread):
         if free <= 0:
             return
         with reading(self.service.database) as connection:
-            if not work.queue_sizes(connection).get("queued"):
+            if not work.any_queued(connection):
                 return
         with writing(self.service.database) as connection:
             asking = any(running.job.kind == consequences.KNOW for running in self._running.values())

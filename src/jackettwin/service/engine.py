@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -113,16 +114,36 @@ def _finding(finding: Any) -> dict[str, Any]:
     }
 
 
-def knowledge(model: TwinModel, state: TwinState) -> dict[str, Any]:
-    """Return what a state says.
+@dataclass(frozen=True)
+class Sums:
+    """What some days say together, without the days themselves: it does not grow with their number."""
 
-    The mean of every mode with its standard deviations, and from when to when.
-    """
-    days = [day for day in state.days.values() if day.records]
-    total = state.totals.get(ALL)
+    state: TwinState
+    records: int = 0
+    first_utc: datetime | None = None
+    last_utc: datetime | None = None
+
+
+def no_days(model: TwinModel) -> Sums:
+    """Return what no day says."""
+    return Sums(empty_state(model))
+
+
+def with_day(sums: Sums, day: str, document: str) -> Sums:
+    """Return what some days and one more say together."""
+    new = DAY.load(json.loads(document))
+    state = replace(sums.state.with_day(day, new), days={})
+    times = [t for t in (sums.first_utc, sums.last_utc, new.first, new.last) if t is not None]
+    first, last = (min(times), max(times)) if times else (None, None)
+    return Sums(state, sums.records + len(new.records), first, last)
+
+
+def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
+    """Return what some days say: the mean of every mode with its standard deviations, from when to when."""
+    total = sums.state.totals.get(ALL)
     modes = []
-    for number, sums in sorted(total.modes.items()) if total is not None else ():
-        mean = average(sums)
+    for number, seen in sorted(total.modes.items()) if total is not None else ():
+        mean = average(seen)
         modes.append(
             {
                 "mode": number,
@@ -131,15 +152,13 @@ def knowledge(model: TwinModel, state: TwinState) -> dict[str, Any]:
                 "frequency_std_hz": mean.frequency_hz * mean.log_std[0],
                 "damping_ratio": mean.damping_ratio,
                 "damping_ratio_std": mean.damping_ratio * mean.log_std[1],
-                "records": sums.sums.n,
+                "records": seen.sums.n,
             }
         )
-    first = min((day.first for day in days if day.first is not None), default=None)
-    last = max((day.last for day in days if day.last is not None), default=None)
     return {
-        "records": sum(len(day.records) for day in days),
-        "first_utc": first,
-        "last_utc": last,
+        "records": sums.records,
+        "first_utc": sums.first_utc,
+        "last_utc": sums.last_utc,
         "modes": modes,
         "parameters": {},
         "status": "ok" if modes else "no mode of the model has been seen",

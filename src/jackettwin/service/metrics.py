@@ -18,7 +18,7 @@ def readiness(service: Service) -> Ready:
     """Return whether records can be taken and observed now."""
     try:
         with reading(service.database) as connection:
-            work.queue_sizes(connection)
+            work.any_queued(connection)
         database = True
     except SQLAlchemyError:
         database = False
@@ -42,17 +42,16 @@ def exposition(service: Service) -> bytes:
         for state, n in work.queue_sizes(connection).items():
             gauge("work", "Pieces of work by state", n, state=state)
         oldest = work.oldest_queued(connection)
-        for asset, counts in records.count_by_status(connection).items():
+        for name, counts in records.count_by_status(connection).items():
             for status, n in counts.items():
-                gauge("records", "Records by asset and status", n, asset=asset, status=status)
-        for asset, said in results.count_findings(connection).items():
+                gauge("records", "Records by asset and status", n, asset=name, status=status)
+        for name, said in results.count_findings(connection).items():
             for severity, n in said.items():
-                gauge("findings", "Findings by asset and severity", n, asset=asset, severity=severity)
-        for asset in assets.asset_names(connection):
-            last = records.last_start(connection, asset)
-            if last is not None:
-                age = (now - last).total_seconds()
-                gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset)
+                gauge("findings", "Findings by asset and severity", n, asset=name, severity=severity)
+        for asset in assets.summaries(connection):
+            if asset.last_record_utc is not None:
+                age = (now - asset.last_record_utc).total_seconds()
+                gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
     gauge("queue_age_seconds", "Time since the oldest queued work was asked for", waited)
     gauge("workers", "Workers there are", service.compute.workers)

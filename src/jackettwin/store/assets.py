@@ -16,7 +16,7 @@ from sqlalchemy import Connection, func, insert, select, update
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_folder
-from jackettwin.store.tables import assets, versions
+from jackettwin.store.tables import assets, records, versions
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 """What an asset may be called: its name becomes part of paths and topics."""
@@ -125,6 +125,34 @@ def adopt(connection: Connection, name: str, version: int) -> None:
 def asset_names(connection: Connection) -> list[str]:
     """Return the names of all assets, sorted."""
     return list(connection.scalars(select(assets.c.name).order_by(assets.c.name)))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """An asset, its adopted version, and when its latest record began."""
+
+    name: str
+    version: int
+    model_hash: str
+    created_utc: datetime
+    last_record_utc: datetime | None
+
+
+def summaries(connection: Connection, name: str | None = None) -> list[Summary]:
+    """Return every asset by name, or one."""
+    start = records.c.start_utc
+    last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
+    adopted = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
+    query = select(
+        assets.c.name,
+        versions.c.version,
+        versions.c.model_hash,
+        assets.c.created_utc,
+        last.correlate(assets).scalar_subquery().label("last_record_utc"),
+    ).join(versions, adopted)
+    if name is not None:
+        query = query.where(assets.c.name == name)
+    return [Summary(*row) for row in connection.execute(query.order_by(assets.c.name))]
 
 
 def found_version(connection: Connection, name: str, version: int | None = None) -> Version:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
-from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
+from sqlalchemy import Connection, CursorResult, Engine, Table, create_engine, event, inspect, make_url, text
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError, OperationalError
 
 from jackettwin.errors import InputError
@@ -51,8 +52,12 @@ def open_database(url: str, *, migrate: bool = True) -> Engine:
             allowed="sqlite:///FILE or postgresql+psycopg://USER@HOST/NAME",
             remedy=f"see that it runs and may be reached ({str(error).splitlines()[0][:200]})",
         ) from None
-    if migrate:
-        _migrate(engine, url)
+    try:
+        if migrate:
+            _migrate(engine, url)
+    except BaseException:
+        engine.dispose()
+        raise
     return engine
 
 
@@ -73,6 +78,13 @@ def reading(engine: Engine) -> Iterator[Connection]:
         yield connection
 
 
+def insert_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
+    """Insert a row unless one with its key is there; tell whether it is new, whoever else puts it in too."""
+    dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
+    done: CursorResult[Any] = connection.execute(dialect.insert(table).values(**row).on_conflict_do_nothing())
+    return done.rowcount == 1
+
+
 def _sqlite(url: str) -> Engine:
     engine = create_engine(url, connect_args={"timeout": _BUSY_S}, pool_size=8, max_overflow=24)
 
@@ -91,7 +103,7 @@ def _sqlite(url: str) -> Engine:
 
 
 def _migrate(engine: Engine, url: str) -> None:
-    """Bring the schema up to date; a SQLite file of an older schema is copied beside itself before."""
+    """Bring the schema up to date, once however many servers start; what was there is copied before."""
     with engine.connect() as connection:
         current = MigrationContext.configure(connection).get_current_revision()
     if current == SCHEMA_VERSION:
@@ -104,28 +116,34 @@ def _migrate(engine: Engine, url: str) -> None:
             allowed=f"up to {SCHEMA_VERSION}",
             remedy="install the newer jackettwin, or restore a backup of this one",
         )
-    if current is not None and engine.dialect.name == "sqlite":
-        _copy_sqlite(Path(str(make_url(url).database)), current)
-    config = Config()
-    config.set_main_option("script_location", str(_MIGRATIONS))
-    with engine.connect() as connection:
-        if engine.dialect.name == "postgresql":  # two servers starting at once migrate one after the other
-            connection.execute(text("select pg_advisory_lock(740113)"))
-        try:
-            config.attributes["connection"] = connection
-            command.upgrade(config, "head")
-            connection.commit()
-        finally:
-            if engine.dialect.name == "postgresql":
-                connection.execute(text("select pg_advisory_unlock(740113)"))
-                connection.commit()
+    with writing(engine) as connection:
+        if engine.dialect.name == "postgresql":
+            connection.execute(text("select pg_advisory_xact_lock(740113)"))
+        current = MigrationContext.configure(connection).get_current_revision()
+        if current == SCHEMA_VERSION:  # another server was quicker
+            return
+        if current is not None:
+            _copy(connection, url, current)
+        config = Config()
+        config.set_main_option("script_location", str(_MIGRATIONS))
+        config.attributes["connection"] = connection
+        command.upgrade(config, SCHEMA_VERSION)
 
 
-def _copy_sqlite(path: Path, version: str) -> None:
-    """Copy a database whole, whatever is being written to it."""
-    target = path.with_name(f"{path.stem}.schema-{version}{path.suffix}")
-    with sqlite3.connect(path) as source, sqlite3.connect(target) as copy:
-        source.backup(copy)
+def _copy(connection: Connection, url: str, version: str) -> None:
+    """Keep the database as it is: a file beside SQLite's, a schema of its own in PostgreSQL."""
+    if connection.dialect.name == "sqlite":
+        path = Path(str(make_url(url).database))
+        target = path.with_name(f"{path.stem}.schema-{version}{path.suffix}")
+        with closing(sqlite3.connect(path)) as source, closing(sqlite3.connect(target)) as copy:
+            source.backup(copy)
+        return
+    schema = f"schema_{version}"
+    names = inspect(connection).get_table_names()
+    connection.execute(text(f"drop schema if exists {schema} cascade"))
+    connection.execute(text(f"create schema {schema}"))
+    for name in names:
+        connection.execute(text(f'create table {schema}."{name}" as table "{name}"'))
 
 
 def _without_password(url: str) -> str:

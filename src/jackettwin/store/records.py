@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, and_, func, insert, or_, select, update
+from sqlalchemy import Connection, and_, func, or_, select, update
 
 from jackettwin.errors import InputError
+from jackettwin.store.database import insert_new
 from jackettwin.store.tables import records
 
 STATUSES = ("received", "observing", "observed", "refused", "set_aside")
@@ -39,10 +40,7 @@ class StoredRecord:
 
 def add_record(connection: Connection, record: StoredRecord) -> bool:
     """Keep a record unless its content is known; return whether it is new."""
-    if find_record(connection, record.asset, record.record_id) is not None:
-        return False
-    connection.execute(insert(records).values(**vars(record)))
-    return True
+    return insert_new(connection, records, vars(record))
 
 
 def find_record(connection: Connection, asset: str, record_id: str) -> StoredRecord | None:
@@ -129,23 +127,16 @@ def forget_samples(connection: Connection, record: StoredRecord) -> None:
     connection.execute(update(records).where(where).values(waveform=None))
 
 
-def count_by_status(connection: Connection) -> dict[str, dict[str, int]]:
-    """Return how many records of each asset have each status."""
-    query = select(records.c.asset, records.c.status, func.count()).group_by(
-        records.c.asset, records.c.status
-    )
+def count_by_status(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:
+    """Return how many records of each asset, or of one, have each status."""
+    query = select(records.c.asset, records.c.status, func.count())
+    query = query.group_by(records.c.asset, records.c.status)
+    if asset is not None:
+        query = query.where(records.c.asset == asset)
     counts: dict[str, dict[str, int]] = {}
     for asset, status, n in connection.execute(query):
         counts.setdefault(asset, {})[status] = n
     return counts
-
-
-def last_start(connection: Connection, asset: str) -> datetime | None:
-    """Return when the latest record of an asset began."""
-    found: datetime | None = connection.scalar(
-        select(func.max(records.c.start_utc, type_=records.c.start_utc.type)).where(records.c.asset == asset)
-    )
-    return found
 
 
 def write_cursor(*place: str | int) -> str:

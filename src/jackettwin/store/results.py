@@ -8,9 +8,18 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, and_, delete, func, insert, select
+from sqlalchemy import Connection, Select, and_, delete, func, insert, select
 
-from jackettwin.store.tables import acknowledgements, findings, knowledge, modes, observations, states
+from jackettwin.store.tables import (
+    acknowledgements,
+    assets,
+    findings,
+    knowledge,
+    modes,
+    observations,
+    states,
+    versions,
+)
 
 
 @dataclass(frozen=True)
@@ -109,20 +118,26 @@ def find_state(connection: Connection, asset: str, model_hash: str, day: str) ->
 
 
 def states_until(
-    connection: Connection, asset: str, model_hash: str, day: str | None = None
+    connection: Connection, asset: str, model_hash: str, day: str | None = None, *, after: str | None = None
 ) -> list[StoredState]:
-    """Return the states of all days, or of those up to a day, in their order."""
+    """Return the states of all days, or of those up to a day or after one, in their order."""
     where = [states.c.asset == asset, states.c.model_hash == model_hash]
     if day is not None:
         where.append(states.c.day <= day)
+    if after is not None:
+        where.append(states.c.day > after)
     rows = connection.execute(select(states).where(*where).order_by(states.c.day))
     return [_state(dict(row._mapping)) for row in rows]
 
 
-def state_hashes(connection: Connection, asset: str, model_hash: str) -> dict[str, str]:
-    """Return the content hash of every day's state."""
+def state_hashes(
+    connection: Connection, asset: str, model_hash: str, day: str | None = None
+) -> dict[str, str]:
+    """Return the content hash of the state of every day, or of those up to a day."""
     query = select(states.c.day, states.c.document_hash)
     query = query.where(states.c.asset == asset, states.c.model_hash == model_hash).order_by(states.c.day)
+    if day is not None:
+        query = query.where(states.c.day <= day)
     return {day: found for day, found in connection.execute(query)}
 
 
@@ -220,11 +235,15 @@ def find_knowledge(connection: Connection, asset: str, model_hash: str) -> Mappi
     return None if row is None else row.document
 
 
-def unacknowledged_alarms(connection: Connection, asset: str, model_hash: str) -> int:
-    """Return how many alarms nobody took note of."""
-    rows = list_findings(connection, asset, model_hash, severity="alarm", limit=1000)
-    noted = acknowledgements_of(connection, asset)
-    return sum(alarm_key(row) not in noted for row in rows)
+def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
+    """Return how many alarms of the adopted versions nobody took note of, {asset: number}."""
+    columns = (findings.c.asset, findings.c.day, findings.c.code, findings.c.subject)
+    query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
+    noted = set(connection.scalars(select(acknowledgements.c.alarm_key)))
+    counts: dict[str, int] = {}
+    for row in connection.execute(query):
+        counts[row.asset] = counts.get(row.asset, 0) + (alarm_key(dict(row._mapping)) not in noted)
+    return counts
 
 
 def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:
@@ -233,13 +252,21 @@ def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] |
     return None if row is None else dict(row._mapping)
 
 
-def count_findings(connection: Connection) -> dict[str, dict[str, int]]:
-    """Return how many findings of each severity each asset has."""
-    query = select(findings.c.asset, findings.c.severity, func.count())
+def count_findings(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:
+    """Return how many findings of each severity the adopted version of each asset, or of one, has."""
+    query = _adopted(select(findings.c.asset, findings.c.severity, func.count()), asset)
     counts: dict[str, dict[str, int]] = {}
-    for asset, severity, n in connection.execute(query.group_by(findings.c.asset, findings.c.severity)):
-        counts.setdefault(asset, {})[severity] = n
+    for name, severity, n in connection.execute(query.group_by(findings.c.asset, findings.c.severity)):
+        counts.setdefault(name, {})[severity] = n
     return counts
+
+
+def _adopted(query: Select[Any], asset: str | None) -> Select[Any]:
+    """Return a query on findings, of the adopted versions alone, of all assets or one."""
+    own = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
+    same = (findings.c.asset == versions.c.asset) & (findings.c.model_hash == versions.c.model_hash)
+    query = query.select_from(assets.join(versions, own).join(findings, same))
+    return query if asset is None else query.where(assets.c.name == asset)
 
 
 def _state(row: Mapping[str, Any]) -> StoredState:

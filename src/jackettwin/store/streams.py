@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import numpy as np
-from sqlalchemy import Connection, delete, func, insert, select, update
+from sqlalchemy import Connection, ScalarSelect, delete, func, insert, select, update
 
 from jackettwin.arrays import FloatArray
+from jackettwin.store.database import insert_new
 from jackettwin.store.tables import conditions, packets, windows
 
 WINDOW = timedelta(minutes=10)
 """Streams become records of ten minutes on UTC boundaries, the field's habit."""
 KEPT = timedelta(days=2)
 """How late a packet may come and still be put into its record."""
+LONGEST = timedelta(hours=1)
+"""The longest packet that is taken."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -30,12 +33,18 @@ class Packet:
     rate_hz: float
     samples: FloatArray
 
+    @property
+    def end_utc(self) -> datetime:
+        """When its last sample's step ends."""
+        return self.t0_utc + timedelta(seconds=self.samples.size / self.rate_hz)
 
-def add_packets(connection: Connection, new: Iterable[Packet]) -> int:
+
+def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) -> int:
     """Keep packets that are not known yet, by asset, channel and start; return how many were new.
 
     One that begins :data:`KEPT` before the newest of its asset is left out: its window's other packets are
-    gone.
+    gone. So is one that is as far ahead of its asset's stream and of our clock: a logger's clock that jumped
+    into the future must not make everything after it come too late.
     """
     added = 0
     newest: dict[str, datetime | None] = {}
@@ -45,23 +54,20 @@ def add_packets(connection: Connection, new: Iterable[Packet]) -> int:
         clock = newest[packet.asset]
         if clock is not None and packet.t0_utc < clock - KEPT:
             continue
-        same = (
-            packets.c.asset == packet.asset,
-            packets.c.channel == packet.channel,
-            packets.c.t0_utc == packet.t0_utc,
-        )
-        if connection.scalar(select(packets.c.id).where(*same)) is not None:
+        if packet.t0_utc > max(now, clock or now) + KEPT:
             continue
-        connection.execute(
-            insert(packets).values(
-                asset=packet.asset,
-                channel=packet.channel,
-                t0_utc=packet.t0_utc,
-                window_utc=window_start(packet.t0_utc),
-                rate_hz=packet.rate_hz,
-                samples=np.asarray(packet.samples, dtype="<f8").tobytes(),
-            )
-        )
+        row = {
+            "asset": packet.asset,
+            "channel": packet.channel,
+            "t0_utc": packet.t0_utc,
+            "window_utc": window_start(packet.t0_utc),
+            "rate_hz": packet.rate_hz,
+            "samples": np.asarray(packet.samples, dtype="<f8").tobytes(),
+        }
+        if not insert_new(connection, packets, row):
+            continue
+        for window_utc in _reached(packet):
+            _count(connection, packet.asset, window_utc)
         added += 1
     return added
 
@@ -72,7 +78,7 @@ class OpenWindow:
 
     asset: str
     window_utc: datetime
-    n_packets: int
+    n_known: int
     record_id: str | None
 
 
@@ -83,44 +89,37 @@ def window_start(time: datetime) -> datetime:
 
 def open_windows(connection: Connection) -> list[OpenWindow]:
     """Return the windows that have packets no record contains yet, oldest first."""
-    counted = (
-        select(packets.c.asset, packets.c.window_utc, func.count().label("n"))
-        .group_by(packets.c.asset, packets.c.window_utc)
-        .subquery()
-    )
-    same = (windows.c.asset == counted.c.asset) & (windows.c.window_utc == counted.c.window_utc)
-    query = select(
-        counted.c.asset, counted.c.window_utc, counted.c.n, windows.c.record_id, windows.c.n_packets
-    )
-    rows = connection.execute(query.outerjoin(windows, same).order_by(counted.c.window_utc, counted.c.asset))
-    return [OpenWindow(*row[:4]) for row in rows if row[4] != row[2]]
+    columns = (windows.c.asset, windows.c.window_utc, windows.c.n_known, windows.c.record_id)
+    query = select(*columns).where(windows.c.n_known != windows.c.n_packets)
+    return [OpenWindow(*row) for row in connection.execute(query.order_by(windows.c.window_utc))]
 
 
 def newest_packet(connection: Connection, asset: str) -> datetime | None:
     """Return the start of the newest packet of an asset: the stream's own clock."""
+    where = (packets.c.asset == asset, packets.c.window_utc == _last_window(asset))
     newest: datetime | None = connection.scalar(
-        select(func.max(packets.c.t0_utc, type_=packets.c.t0_utc.type)).where(packets.c.asset == asset)
+        select(func.max(packets.c.t0_utc, type_=packets.c.t0_utc.type)).where(*where)
     )
     return newest
 
 
 def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list[Packet]:
     """Return every packet that may reach into a window, by channel and time."""
-    near = (packets.c.window_utc == window_utc) | (packets.c.window_utc == window_utc - WINDOW)
+    near = packets.c.window_utc.between(window_utc - LONGEST, window_utc)
     order = (packets.c.channel, packets.c.t0_utc)
     rows = connection.execute(select(packets).where(packets.c.asset == asset, near).order_by(*order))
-    return [
+    found = [
         Packet(row.asset, row.channel, row.t0_utc, row.rate_hz, np.frombuffer(row.samples, dtype="<f8"))
         for row in rows
     ]
+    return [packet for packet in found if packet.end_utc > window_utc]
 
 
 def close_window(connection: Connection, window: OpenWindow, record_id: str | None) -> None:
     """Say of which record, made of how many packets, a window's samples are."""
     same = (windows.c.asset == window.asset, windows.c.window_utc == window.window_utc)
-    connection.execute(delete(windows).where(*same))
-    row = {"asset": window.asset, "window_utc": window.window_utc, "n_packets": window.n_packets}
-    connection.execute(insert(windows).values(**row, record_id=record_id))
+    made = {"n_packets": window.n_known, "record_id": record_id}
+    connection.execute(update(windows).where(*same).values(**made))
 
 
 def forget_packets(connection: Connection, asset: str, before: datetime) -> None:
@@ -162,3 +161,23 @@ def conditions_between(
         elif len(set(values)) == 1:
             known[name] = values[0]
     return known
+
+
+def _reached(packet: Packet) -> Iterator[datetime]:
+    """Yield the windows in which a packet has samples."""
+    window_utc = window_start(packet.t0_utc)
+    while window_utc < packet.end_utc:
+        yield window_utc
+        window_utc += WINDOW
+
+
+def _count(connection: Connection, asset: str, window_utc: datetime) -> None:
+    """Count one more packet of a window: a record made of fewer is made anew."""
+    insert_new(connection, windows, {"asset": asset, "window_utc": window_utc, "n_packets": 0, "n_known": 0})
+    same = (windows.c.asset == asset, windows.c.window_utc == window_utc)
+    connection.execute(update(windows).where(*same).values(n_known=windows.c.n_known + 1))
+
+
+def _last_window(asset: str) -> ScalarSelect[datetime]:
+    """Return the query for the last window in which a packet began, which the index answers."""
+    return select(func.max(packets.c.window_utc)).where(packets.c.asset == asset).scalar_subquery()

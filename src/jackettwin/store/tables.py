@@ -29,7 +29,7 @@ from sqlalchemy import (
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
-SCHEMA_VERSION = "0001"
+SCHEMA_VERSION = "0002"
 """Newest migration; a database of an older one is migrated when it is opened, a newer one is refused."""
 
 
@@ -106,6 +106,7 @@ records = Table(
     Column("picks", JSON),
     Index("ix_records_time", "asset", "start_utc", "record_id"),
     Index("ix_records_status", "asset", "status"),
+    Index("ix_records_content", "record_id"),
 )
 """``status``: received, observing, observed, refused (with a problem) or set_aside (with a reason)."""
 
@@ -175,6 +176,7 @@ modes = Table(
     Column("status", String(255), nullable=False),
     Index("ix_modes_label", "asset", "label", "time_utc"),
     Index("ix_modes_record", "asset", "record_id"),
+    Index("ix_modes_page", "asset", "model_hash", "id"),
 )
 
 states = Table(
@@ -216,6 +218,7 @@ findings = Table(
     Column("text", Text, nullable=False),
     Index("ix_findings_time", "asset", "time_utc"),
     Index("ix_findings_record", "asset", "record_id"),
+    Index("ix_findings_page", "asset", "model_hash", "severity", "id"),
 )
 """``origin``: observe or advance. Those of advance are written anew when a day is advanced anew."""
 
@@ -262,9 +265,10 @@ windows = Table(
     Column("asset", String(64), primary_key=True),
     Column("window_utc", Utc, primary_key=True),
     Column("n_packets", Integer, nullable=False),
+    Column("n_known", Integer, nullable=False),
     Column("record_id", String(64)),
 )
-"""The record that was made of a window's packets, and of how many."""
+"""How many packets of a window are known, and the record that was made of how many."""
 
 users = Table(
     "users",

@@ -7,13 +7,14 @@ the lease.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import Connection, CursorResult, delete, func, insert, select, update
 
+from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
 
 MOST_TRIES = 3
@@ -64,31 +65,40 @@ def enqueue(
         "settings_hash": settings_hash,
         "code_version": code_version,
     }
-    known = connection.scalar(
-        select(work.c.id).where(*(work.c[name] == value for name, value in key.items()))
-    )
-    if known is not None:
-        return int(known)
     row = {**key, "version": version, "state": "queued", "priority": priority, "tries": 0, "created_utc": now}
-    return int(connection.execute(insert(work).values(**row)).inserted_primary_key[0])  # type: ignore[index]
+    insert_new(connection, work, row)
+    return int(connection.execute(select(work.c.id).filter_by(**key)).scalar_one())
 
 
 def lease(
     connection: Connection, owner: str, most: int, now: datetime, *, without: str | None = None
 ) -> list[Job]:
     """Take up to ``most`` pieces of queued work, urgent ones first, then the oldest, but none of one kind."""
-    queued = (
-        select(work)
-        .where(work.c.state == "queued", work.c.kind != (without or ""))
-        .order_by(work.c.priority.desc(), work.c.id)
-        .limit(most)
-        .with_for_update(skip_locked=True)
-    )
-    jobs = [Job(**row._mapping) for row in connection.execute(queued)]
+    jobs: list[Job] = []
+    for priority in _priorities(connection):
+        queued = (
+            select(work)
+            .where(work.c.state == "queued", work.c.priority == priority, work.c.kind != (without or ""))
+            .order_by(work.c.id)
+            .limit(most - len(jobs))
+            .with_for_update(skip_locked=True)
+        )
+        jobs += [Job(**row._mapping) for row in connection.execute(queued)]
+        if len(jobs) == most:
+            break
     if jobs:
         taken = {"state": "leased", "owner": owner, "started_utc": now, "tries": work.c.tries + 1}
         connection.execute(update(work).where(work.c.id.in_([job.id for job in jobs])).values(**taken))
     return jobs
+
+
+def _priorities(connection: Connection) -> Iterator[int]:
+    """Yield the priorities of queued work, highest first, each found in the index however long the queue."""
+    highest = select(func.max(work.c.priority)).where(work.c.state == "queued")
+    found = connection.scalar(highest)
+    while found is not None:
+        yield found
+        found = connection.scalar(highest.where(work.c.priority < found))
 
 
 def finish(
@@ -166,6 +176,11 @@ def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
     """Return all work on a record, oldest first."""
     where = (work.c.asset == asset, work.c.record_id == record_id)
     return [Job(**row._mapping) for row in connection.execute(select(work).where(*where).order_by(work.c.id))]
+
+
+def any_queued(connection: Connection) -> bool:
+    """Tell whether work waits; it costs the same however much is done."""
+    return connection.scalar(select(work.c.id).where(work.c.state == "queued").limit(1)) is not None
 
 
 def queue_sizes(connection: Connection) -> dict[str, int]:

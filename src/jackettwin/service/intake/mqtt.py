@@ -24,7 +24,7 @@ from jackettwin.service.intake.files import accept
 from jackettwin.service.intake.packets import assembled
 from jackettwin.service.tasks import Parsed, about
 from jackettwin.store import assets, reading, streams, waveform_path, write_waveform, writing
-from jackettwin.store.streams import KEPT, WINDOW, Packet
+from jackettwin.store.streams import KEPT, LONGEST, WINDOW, Packet
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -37,7 +37,6 @@ GRACE = timedelta(seconds=30)
 SILENT_S = 120.0
 """... or when nothing came for so long, by our stopwatch."""
 _BATCH = 500
-_LONGEST_S = 3600.0
 _CHORE_S = 2.0
 
 
@@ -80,8 +79,10 @@ def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
         raise InputError(
             "a packet's clock has no zone", field="t0_utc", value=body["t0_utc"], remedy="write ...Z"
         )
+    if not all(name[:1] and name.isprintable() for name in named) or not 1900 <= start.year <= 9000:
+        raise InputError("a channel's name or a clock is out of range", field="payload", value=topic)
     longest = max((p.samples.size for p in found), default=0)
-    if not 1e-3 <= rate <= 1e5 or not 0 < longest <= _LONGEST_S * rate:
+    if not 1e-3 <= rate <= 1e5 or not 0 < longest <= LONGEST.total_seconds() * rate:
         raise InputError(
             "the packet's rate or length is out of range",
             field="rate_hz",
@@ -101,6 +102,7 @@ class MqttIntake:
     def __init__(self, service: Service, url: str) -> None:
         self.service = service
         self._inbox: queue.Queue[mqtt.MQTTMessage] = queue.Queue(maxsize=100_000)
+        self._held: list[mqtt.MQTTMessage] = []
         self._heard: dict[str, float] = {}
         self._last_chore = 0.0
         self.refused = 0
@@ -146,21 +148,28 @@ class MqttIntake:
         client.subscribe(f"{TOPIC}/#", qos=1)
 
     def _commit(self) -> None:
-        while messages := list(_waiting(self._inbox)):
-            packets: list[Packet] = []
-            for message in messages:
-                try:
-                    packets += read_packets(message.topic, message.payload)
-                except InputError as error:
-                    self.refused += 1
-                    log.warning("%s", error)
+        """Commit what came; a message that could not be committed is held until it can be."""
+        while self._held or not self._inbox.empty():
+            self._held += list(_waiting(self._inbox, _BATCH - len(self._held)))
+            packets = [packet for message in self._held for packet in self._packets(message)]
             with writing(self.service.database) as connection:
                 known = set(assets.asset_names(connection))
-                streams.add_packets(connection, [p for p in packets if p.asset in known])
+                ours = [p for p in packets if p.asset in known]
+                streams.add_packets(connection, ours, self.service.now())
             for packet in packets:
                 self._heard[packet.asset] = time.monotonic()
-            for message in messages:
+            for message in self._held:
                 self._client.ack(message.mid, message.qos)
+            self._held = []
+
+    def _packets(self, message: mqtt.MQTTMessage) -> list[Packet]:
+        """Return the packets of a message, none of one that is no message of ours."""
+        try:
+            return read_packets(message.topic, message.payload)
+        except InputError as error:
+            self.refused += 1
+            log.warning("%s", error)
+            return []
 
     def _silent(self, asset: str) -> bool:
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
@@ -211,8 +220,8 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
         streams.close_window(connection, window, number)
 
 
-def _waiting(inbox: queue.Queue[mqtt.MQTTMessage]) -> Iterable[mqtt.MQTTMessage]:
-    for _ in range(_BATCH):
+def _waiting(inbox: queue.Queue[mqtt.MQTTMessage], most: int) -> Iterable[mqtt.MQTTMessage]:
+    for _ in range(most):
         try:
             yield inbox.get_nowait()
         except queue.Empty:
