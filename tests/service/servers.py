@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime, timedelta
@@ -172,11 +173,11 @@ class Broker:
 class Server:
     """``jackettwin serve`` as a process of its own."""
 
-    def __init__(self, store: Path, *options: str) -> None:
+    def __init__(self, store: Path, *options: str, log: Path | None = None) -> None:
         self.store, self.options, self.port = store, options, free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         self._process: subprocess.Popen[bytes] | None = None
-        self._log = store.parent / "serve.log"
+        self._log = log or store.parent / "serve.log"
 
     def __enter__(self) -> Server:
         self.start()
@@ -207,21 +208,21 @@ class Server:
         """Ask."""
         return httpx.get(self.url + path, timeout=60.0)
 
-    def post(self, name: str, file: bytes, description: str) -> httpx.Response:
+    def post(self, name: str, file: bytes, description: str, asset: str = "wtg") -> httpx.Response:
         """Send a record."""
         return httpx.post(
-            f"{self.url}/api/v1/assets/wtg/records",
+            f"{self.url}/api/v1/assets/{asset}/records",
             files={"file": (name, file)},
             data={"description": description},
             timeout=120.0,
         )
 
-    def send(self, name: str, file: bytes, description: str) -> None:
+    def send(self, name: str, file: bytes, description: str, asset: str = "wtg") -> None:
         """Send a record until it is taken, as a client does that must not lose it."""
         end = time.monotonic() + 120.0
         while time.monotonic() < end:
             with suppress(httpx.TransportError):
-                answer = self.post(name, file, description)
+                answer = self.post(name, file, description, asset)
                 if answer.status_code in (200, 202):
                     return
             time.sleep(0.5)
@@ -230,10 +231,10 @@ class Server:
     def wait_until_observed(self, n: int, seconds: float = 240.0) -> None:
         """Wait until so many records are observed."""
         end = time.monotonic() + seconds
-        counts: dict[str, int] = {}
+        counts: Counter[str] = Counter()
         while time.monotonic() < end:
-            with suppress(httpx.TransportError, KeyError, IndexError):
-                counts = self.get("/api/v1/assets").json()["items"][0]["records"]
+            with suppress(httpx.TransportError, KeyError):
+                counts = self.records()
                 if (
                     counts.get("observed", 0) >= n
                     and not counts.get("observing")
@@ -243,19 +244,43 @@ class Server:
             time.sleep(0.3)
         raise TimeoutError(f"{counts}: {self._log.read_text()[-2000:]}")
 
-    def states(self) -> dict[str, str]:
-        """Return the content hash of the state of every day."""
-        with self._database() as database, reading(database) as connection:
-            version = assets.found_version(connection, "wtg")
-            return results.state_hashes(connection, "wtg", version.model_hash)
+    def records(self) -> Counter[str]:
+        """Return how many records have each status, of all turbines."""
+        counts: Counter[str] = Counter()
+        for asset in self.get("/api/v1/assets").json()["items"]:
+            counts.update(asset["records"])
+        return counts
 
-    def counts(self) -> dict[str, int]:
-        """Return how many records and observations are kept."""
+    def states(self) -> dict[str, str]:
+        """Return the content hash of the state of every day of every turbine."""
         with self._database() as database, reading(database) as connection:
             return {
-                table.name: len(connection.execute(select(table.c.record_id)).all())
-                for table in (tables.records, tables.observations)
+                f"{asset} {day}": found
+                for asset in assets.asset_names(connection)
+                for day, found in results.state_hashes(
+                    connection, asset, assets.found_version(connection, asset).model_hash
+                ).items()
             }
+
+    def counts(self) -> dict[str, int]:
+        """Return how many records and observations count: not those that others took the place of."""
+        with self._database() as database, reading(database) as connection:
+            counted = select(tables.records.c.record_id).where(tables.records.c.status != "set_aside")
+            return {
+                "records": len(connection.execute(counted).all()),
+                "observations": len(connection.execute(select(tables.observations.c.record_id)).all()),
+            }
+
+    def cpu_s(self) -> tuple[float, float]:
+        """Return the CPU seconds of the server's own process and of its workers so far."""
+        assert self._process is not None
+        return _cpu_s(self._process.pid), sum(_cpu_s(pid) for pid in self.workers())
+
+    def resident_bytes(self) -> int:
+        """Return the memory of the server's own process."""
+        assert self._process is not None
+        pages = int(Path(f"/proc/{self._process.pid}/statm").read_text().split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE")
 
     @contextmanager
     def _database(self) -> Iterator[Engine]:
@@ -312,7 +337,9 @@ def stream() -> dict[str, np.ndarray]:
     return {name: table[name].to_numpy() for name in table.column_names}
 
 
-def publish(port: int, *, first_s: float, last_s: float, seed: int, doubled: bool = False) -> None:
+def publish(
+    port: int, *, first_s: float, last_s: float, seed: int, doubled: bool = False, asset: str = "wtg"
+) -> None:
     """Send two channels as packets of five seconds, in disorder, some of them twice."""
     rng = random.Random(seed)
     start = datetime(2025, 3, 1, 12, tzinfo=UTC)
@@ -329,11 +356,18 @@ def publish(port: int, *, first_s: float, last_s: float, seed: int, doubled: boo
     client = mqtt.Client(CallbackAPIVersion.VERSION2, client_id=f"logger{seed}")
     client.connect("127.0.0.1", port)
     client.loop_start()
-    sent = [client.publish("jackettwin/wtg", body, qos=1) for body in bodies]
+    sent = [client.publish(f"jackettwin/{asset}", body, qos=1) for body in bodies]
     for message in sent:
         message.wait_for_publish(timeout=30.0)
     client.disconnect()
     client.loop_stop()
+
+
+def _cpu_s(pid: int) -> float:
+    with suppress(FileNotFoundError, ProcessLookupError):
+        after_name = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(after_name[11]) + int(after_name[12])) / os.sysconf("SC_CLK_TCK")
+    return 0.0
 
 
 def _quiet() -> dict[str, int]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 
-from fastapi import FastAPI, Request, Response
-from fastapi.responses import JSONResponse
+from fastapi import FastAPI, Request
 from sqlalchemy.exc import SQLAlchemyError
+from starlette.datastructures import MutableHeaders
 from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from jackettwin.service import auth, pages, problems
 from jackettwin.service.context import Service
@@ -59,40 +59,45 @@ def create_app(service: Service) -> FastAPI:
     for router in ROUTERS:
         app.include_router(router, prefix=API)
     app.include_router(pages.router)
-    app.middleware("http")(_guarded(service))
-    app.add_middleware(GZipMiddleware, minimum_size=1000)
+    app.add_middleware(Guard, service=service)
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
     return app
 
 
-def _guarded(
-    service: Service,
-) -> Callable[[Request, Callable[[Request], Awaitable[Response]]], Awaitable[Response]]:
-    async def guard(request: Request, go_on: Callable[[Request], Awaitable[Response]]) -> Response:
-        """Know who asks.
+class Guard:
+    """Know who asks; refuse what is forged or too large; say to browsers what they may do with answers."""
 
-        Refuse what is forged or too large, mark answers so that unchanged ones need not be sent.
-        """
+    def __init__(self, app: ASGIApp, service: Service) -> None:
+        self._app, self._service = app, service
+        own = {"Strict-Transport-Security": "max-age=31536000"} if service.settings.secure else {}
+        self._headers = {**_HEADERS, **own}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or answer it."""
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        request = Request(scope)
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in self._headers.items():
+                    headers.setdefault(name, value)
+            await send(message)
+
         try:
-            length = request.headers.get("content-length", "0")
-            most = service.settings.upload_limit_bytes + _FIELDS_BYTES
-            if not length.isdecimal() or int(length) > most:
-                raise problems.ApiError(413, "the request is too large", allowed=f"up to {most} bytes")
-            request.state.who = await _who(service, request)
+            self._refuse_large(request)
+            request.state.who = await _who(self._service, request)
             auth.refuse_forged(request, request.state.who)
         except problems.ApiError as error:
-            return JSONResponse(
-                error.problem.model_dump(exclude_none=True),
-                error.problem.status,
-                error.headers,
-                media_type=problems.MEDIA_TYPE,
-            )
-        response = await go_on(request)
-        response.headers.update({k: v for k, v in _HEADERS.items() if k not in response.headers})
-        if service.settings.secure:
-            response.headers["Strict-Transport-Security"] = "max-age=31536000"
-        return await _tagged(request, response)
+            return await problems.answered(error)(scope, receive, with_headers)
+        await self._app(scope, receive, with_headers)
 
-    return guard
+    def _refuse_large(self, request: Request) -> None:
+        length = request.headers.get("content-length", "0")
+        most = self._service.settings.upload_limit_bytes + _FIELDS_BYTES
+        if not length.isdecimal() or int(length) > most:
+            raise problems.ApiError(413, "the request is too large", allowed=f"up to {most} bytes")
 
 
 async def _who(service: Service, request: Request) -> auth.Who | None:
@@ -105,17 +110,3 @@ async def _who(service: Service, request: Request) -> auth.Who | None:
         if request.url.path in (f"{API}/health", f"{API}/ready"):
             return None
         raise problems.no_database() from None
-
-
-async def _tagged(request: Request, response: Response) -> Response:
-    """Give an answer of JSON a tag of its content; one the reader has already is not sent again."""
-    kind = response.headers.get("content-type", "")
-    if request.method != "GET" or response.status_code != 200 or not kind.startswith("application/json"):
-        return response
-    body = b"".join([piece async for piece in response.body_iterator])  # type: ignore[attr-defined]
-    tag = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
-    headers = {k: v for k, v in response.headers.items() if k != "content-length"} | {"ETag": tag}
-    headers["Cache-Control"] = "private, no-cache"
-    if request.headers.get("if-none-match") == tag:
-        return Response(status_code=304, headers={k: v for k, v in headers.items() if k != "content-type"})
-    return Response(body, headers=headers)

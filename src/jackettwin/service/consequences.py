@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     from jackettwin.service.context import Place, Service
 
 
-KNOW = "know"
-"""Kind of the work that says what a state says of the supports."""
-
-
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
     """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
     record = records.find_record(connection, job.asset, job.record_id)
@@ -87,7 +83,7 @@ def ask_known(connection: Connection, service: Place, job: work.Job) -> None:
     """Queue the question what the state says now, behind everything that is observed."""
     number = work.enqueue(
         connection,
-        kind=KNOW,
+        kind=work.KNOW,
         asset=job.asset,
         record_id="",
         version=job.version,
@@ -160,7 +156,7 @@ def failed(connection: Connection, service: Service, job: work.Job, reason: str)
     """Put work back that its worker did not survive, or set its record aside after the last try."""
     problem = {"detail": reason, "field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
     state = work.put_back(connection, job, service.server_id, problem)
-    if state == "set_aside" and job.kind != KNOW:
+    if state == "set_aside" and job.kind != work.KNOW:
         records.set_status(connection, job.asset, job.record_id, "set_aside", problem)
         payload = {"record_id": job.record_id, "status": "set_aside", "detail": reason}
         journal.tell(connection, "record", job.asset, payload, service.now())

@@ -30,6 +30,8 @@ _BEAT_S = 2.0
 DEAD_AFTER_S = 15.0
 """A server whose beat stood still for so long, by the stopwatch of another, is dead."""
 _TURN_S = 0.25
+_RESTS = 3.0
+"""What a state says of the supports may take a quarter of one worker, however many turbines there are."""
 _AHEAD = 2
 """Tasks a worker has before it, so that none waits for the next lease."""
 
@@ -55,6 +57,7 @@ class Dispatcher(Thread):
         self._running: dict[int, _Running] = {}
         self._seen: dict[str, tuple[int, float]] = {}
         self._last_beat = -_BEAT_S
+        self._rest_until = 0.0
 
     def run(self) -> None:
         """Turn; a database that is away for a while is waited for."""
@@ -120,21 +123,30 @@ class Dispatcher(Thread):
         free = _AHEAD * max(self.service.compute.workers, 1) - len(self._running)
         if free <= 0:
             return
-        with reading(self.service.database) as connection:
-            if not work.any_queued(connection):
-                return
+        kind = self._next_kind()
+        if kind is None:
+            return
         with writing(self.service.database) as connection:
-            asking = any(running.job.kind == consequences.KNOW for running in self._running.values())
-            without = consequences.KNOW if asking else None  # a long answer must not hold up all workers
-            jobs = work.lease(connection, self.service.server_id, free, self.service.now(), without=without)
+            most = free if kind == work.OBSERVE else 1
+            jobs = work.lease(connection, self.service.server_id, most, self.service.now(), kind=kind)
             tasks = [self._task(connection, job) for job in jobs]
         for job, (function, argument) in zip(jobs, tasks, strict=True):
             future = self.service.compute.submit(function, argument, priority=job.priority)
             future.add_done_callback(lambda _: self.wake.set())
             self._running[job.id] = _Running(job, future, time.monotonic())
 
+    def _next_kind(self) -> str | None:
+        """Return what to lease: records first; what a state says only when it was rested for long enough."""
+        with reading(self.service.database) as connection:
+            if work.any_queued(connection, work.OBSERVE):
+                return work.OBSERVE
+            asking = any(running.job.kind == work.KNOW for running in self._running.values())
+            if asking or time.monotonic() < self._rest_until or not work.any_queued(connection, work.KNOW):
+                return None
+            return work.KNOW
+
     def _task(self, connection: Connection, job: work.Job) -> tuple[Callable[..., Outcome], Task | Question]:
-        if job.kind == consequences.KNOW:
+        if job.kind == work.KNOW:
             return know, consequences.question_of(connection, self.service, job)
         consequences.observing(connection, self.service, job)
         return observe_stored, consequences.task_of(connection, self.service, job)
@@ -144,12 +156,15 @@ class Dispatcher(Thread):
             if running.future.done():
                 self._keep(running)
                 del self._running[number]
+                if running.job.kind == work.KNOW:
+                    took = time.monotonic() - running.since
+                    self._rest_until = time.monotonic() + _RESTS * took
 
     def _keep(self, running: _Running) -> None:
         if running.future.status == "finished":
             outcome: Outcome = running.future.result()
             with writing(self.service.database) as connection:
-                asked = running.job.kind == consequences.KNOW
+                asked = running.job.kind == work.KNOW
                 keep = consequences.keep_known if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
         else:

@@ -18,7 +18,7 @@ def readiness(service: Service) -> Ready:
     """Return whether records can be taken and observed now."""
     try:
         with reading(service.database) as connection:
-            work.any_queued(connection)
+            work.any_queued(connection, work.OBSERVE)
         database = True
     except SQLAlchemyError:
         database = False

@@ -11,9 +11,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from jackettwin.service import auth, catalogue
 from jackettwin.service.problems import answers
-from jackettwin.service.routes.common import AssetName, Reads, known_asset
+from jackettwin.service.routes.common import AssetName, Reads, Transaction, known_asset
 
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=Transaction)
 
 _templates = Environment(
     loader=PackageLoader("jackettwin.service", "templates"), autoescape=True, undefined=StrictUndefined

@@ -114,9 +114,14 @@ def _answer(problem: Problem, headers: dict[str, str] | None = None) -> JSONResp
     return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
 
 
+def answered(error: ApiError) -> JSONResponse:
+    """Return the answer that an error is."""
+    return _answer(error.problem, error.headers)
+
+
 async def _api_error(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, ApiError)
-    return _answer(error.problem, error.headers)
+    return answered(error)
 
 
 async def _input_error(_: Request, error: Exception) -> JSONResponse:

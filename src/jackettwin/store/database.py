@@ -20,6 +20,8 @@ from jackettwin.store.tables import SCHEMA_VERSION
 
 _BUSY_S = 30.0
 """How long a writer of SQLite waits for another one."""
+_POOL = {"pool_size": 16, "max_overflow": 32}
+"""Connections: as many as there are threads that answer, wait or work."""
 _MIGRATIONS = Path(__file__).with_name("migrations")
 
 
@@ -41,7 +43,7 @@ def open_database(url: str, *, migrate: bool = True) -> Engine:
         if parsed.get_backend_name() == "sqlite":
             engine = _sqlite(url)
         else:
-            engine = create_engine(url, pool_size=8, max_overflow=24, pool_pre_ping=True)
+            engine = create_engine(url, **_POOL, pool_pre_ping=True)
         with engine.connect() as connection:
             connection.execute(text("select 1"))
     except (ArgumentError, NoSuchModuleError, ModuleNotFoundError, OperationalError) as error:
@@ -86,7 +88,7 @@ def insert_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> 
 
 
 def _sqlite(url: str) -> Engine:
-    engine = create_engine(url, connect_args={"timeout": _BUSY_S}, pool_size=8, max_overflow=24)
+    engine = create_engine(url, connect_args={"timeout": _BUSY_S}, **_POOL)
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: sqlite3.Connection, _: Any) -> None:

@@ -17,6 +17,8 @@ from sqlalchemy import Connection, CursorResult, delete, func, insert, select, u
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
 
+OBSERVE, KNOW = "observe", "know"
+"""Kinds of work: observe a record; say what a state says of the supports."""
 MOST_TRIES = 3
 """A record that three workers died of, or could not finish in time, is set aside."""
 
@@ -70,16 +72,15 @@ def enqueue(
     return int(connection.execute(select(work.c.id).filter_by(**key)).scalar_one())
 
 
-def lease(
-    connection: Connection, owner: str, most: int, now: datetime, *, without: str | None = None
-) -> list[Job]:
-    """Take up to ``most`` pieces of queued work, urgent ones first, then the oldest, but none of one kind."""
+def lease(connection: Connection, owner: str, most: int, now: datetime, *, kind: str = OBSERVE) -> list[Job]:
+    """Take up to ``most`` pieces of queued work of a kind: urgent ones first, then what waits longest."""
+    order = (work.c.id,) if kind == OBSERVE else (work.c.started_utc.nulls_first(), work.c.id)
     jobs: list[Job] = []
     for priority in _priorities(connection):
         queued = (
             select(work)
-            .where(work.c.state == "queued", work.c.priority == priority, work.c.kind != (without or ""))
-            .order_by(work.c.id)
+            .where(work.c.state == "queued", work.c.priority == priority, work.c.kind == kind)
+            .order_by(*order)
             .limit(most - len(jobs))
             .with_for_update(skip_locked=True)
         )
@@ -178,9 +179,10 @@ def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
     return [Job(**row._mapping) for row in connection.execute(select(work).where(*where).order_by(work.c.id))]
 
 
-def any_queued(connection: Connection) -> bool:
-    """Tell whether work waits; it costs the same however much is done."""
-    return connection.scalar(select(work.c.id).where(work.c.state == "queued").limit(1)) is not None
+def any_queued(connection: Connection, kind: str) -> bool:
+    """Tell whether work of a kind waits; it costs the same however much is done."""
+    query = select(work.c.id).where(work.c.state == "queued", work.c.kind == kind).limit(1)
+    return connection.scalar(query) is not None
 
 
 def queue_sizes(connection: Connection) -> dict[str, int]:

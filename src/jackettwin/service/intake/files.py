@@ -134,7 +134,7 @@ def queue(
     """Ask for a record to be observed by a version of a twin."""
     return work.enqueue(
         connection,
-        kind="observe",
+        kind=work.OBSERVE,
         asset=version.asset,
         record_id=record_id,
         version=version.version,

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Path
 
 from jackettwin.service import auth, catalogue
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Writes, known_asset
+from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Transaction, Writes, known_asset
 from jackettwin.service.schemas import AssetOut, ConditionsIn, Count, NewAsset, NewVersion, Page, VersionOut
 from jackettwin.store import assets, people, streams
 
-router = APIRouter(tags=["assets"])
+router = APIRouter(tags=["assets"], route_class=Transaction)
 
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401))

@@ -13,11 +13,11 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from jackettwin.service import auth, metrics
 from jackettwin.service.problems import answers
-from jackettwin.service.routes.common import Parts
+from jackettwin.service.routes.common import Parts, Transaction
 from jackettwin.service.schemas import Health, Ready
 from jackettwin.version import __version__
 
-router = APIRouter(tags=["operation"])
+router = APIRouter(tags=["operation"], route_class=Transaction)
 
 
 @router.get("/health")

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Path, Query
 
 from jackettwin.service import auth
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, Parts, Reads, Writes
+from jackettwin.service.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.schemas import JobOut, Page
 from jackettwin.store import journal, people, records, work
 
-router = APIRouter(tags=["jobs"])
+router = APIRouter(tags=["jobs"], route_class=Transaction)
 
 JobId = Annotated[int, Path(ge=1, le=2**53)]
 State = Literal["queued", "leased", "done", "failed", "set_aside", "cancelled"]

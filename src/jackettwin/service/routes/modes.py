@@ -10,11 +10,11 @@ from fastapi import APIRouter, Query, Response
 from jackettwin.service import answers as said
 from jackettwin.service import auth, signals
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Writes, known_asset
+from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Transaction, Writes, known_asset
 from jackettwin.service.schemas import Acknowledgement, AlarmOut, FindingOut, ModeOut, Page, TwinOut
 from jackettwin.store import journal, people, results
 
-router = APIRouter(tags=["answers"])
+router = APIRouter(tags=["answers"], route_class=Transaction)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]

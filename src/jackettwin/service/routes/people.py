@@ -9,11 +9,11 @@ from fastapi import APIRouter, Request, Response
 
 from jackettwin.service import auth
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, Parts, Reads, Writes
+from jackettwin.service.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.schemas import Login, Me, NewToken, NewUser, Page, Token, UserOut
 from jackettwin.store import people, writing
 
-router = APIRouter(tags=["people"])
+router = APIRouter(tags=["people"], route_class=Transaction)
 
 
 @router.post("/login", responses=answers(401, 403, 422, 429))

@@ -15,14 +15,16 @@ from jackettwin.service.routes.common import (
     Parts,
     Reads,
     RecordId,
+    Transaction,
     Writes,
     known_asset,
     known_record,
+    waits,
 )
 from jackettwin.service.schemas import Page, PicksIn, RecordAccepted, RecordOut, Signal, Spectra
 from jackettwin.store import records
 
-router = APIRouter(tags=["records"])
+router = APIRouter(tags=["records"], route_class=Transaction)
 
 Status = Literal["received", "observing", "observed", "refused", "set_aside"]
 Limit = Annotated[int, Query(ge=1, le=1000)]
@@ -37,6 +39,7 @@ Limit = Annotated[int, Query(ge=1, le=1000)]
         **answers(400, 401, 403, 404, 413, 422, 503, 507),
     },
 )
+@waits
 def add_record(
     asset: AssetName,
     parts: Parts,
@@ -92,6 +95,7 @@ def get_record(record_id: RecordId, connection: Reads) -> RecordOut:
         **answers(401, 404, 422),
     },
 )
+@waits
 def signal(
     record_id: RecordId,
     parts: Parts,
@@ -111,6 +115,7 @@ def signal(
 
 
 @router.get("/records/{record_id}/spectrum", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@waits
 def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
     """Return the power spectral densities of a record's channels."""
     return signals.spectra(signals.samples(parts, known_record(connection, record_id)))
@@ -119,6 +124,7 @@ def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
 @router.get(
     "/records/{record_id}/stabilisation", dependencies=[auth.VIEWER], responses=answers(401, 404, 422, 503)
 )
+@waits
 def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> dict[str, Any]:
     """Return the poles of every model order, computed anew by a worker."""
     return uploads.stabilisation(connection, parts, known_record(connection, record_id))

@@ -9,6 +9,7 @@ down_revision = "0001"
 
 def upgrade() -> None:
     """Add them, and count the packets that are there."""
+    op.create_index("ix_work_state", "work", ["state", "id"])
     op.create_index("ix_records_content", "records", ["record_id"])
     op.create_index("ix_modes_page", "modes", ["asset", "model_hash", "id"])
     op.create_index("ix_findings_page", "findings", ["asset", "model_hash", "severity", "id"])
@@ -34,4 +35,5 @@ def downgrade() -> None:
         windows.drop_column("n_known")
     op.drop_index("ix_findings_page", table_name="findings")
     op.drop_index("ix_modes_page", table_name="modes")
+    op.drop_index("ix_work_state", table_name="work")
     op.drop_index("ix_records_content", table_name="records")
