@@ -2,10 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.structure import read_structure
+from jackettwin.structure.iso19902 import Tube
+from jackettwin.structure.iso19902_pressure import hoop_strength
 
 
 def run(*arguments: str):
@@ -53,3 +57,42 @@ def test_bad_input_exits_2(arguments: list[str], message: str) -> None:
     result = run("jacket15", *arguments)
     assert result.exit_code == 2, result.stderr
     assert message in result.stderr.replace("\n", " ")
+
+
+def test_water_presses_what_is_not_flooded() -> None:
+    """The lowest leg, D/t from the file: U = 1.25·pD/2t/f_h; flooded it has none, and buoyancy lifts it."""
+    rows = []
+    for flooded in ((), ("--flooded", "jacket")):
+        found = json.loads(run("jacket15", "--still-water", *flooded, "--json").stdout)
+        rows.append({row["member"]: row for row in found["members"]}["leg_1_bay_1"])
+    dry, wet = rows
+    section = next(m for m in read_structure("jacket15").members if m.name == "leg_1_bay_1").section_start
+    D, t, L = section.outer_diameter_m, section.thickness_m, dry["column_length_m"]
+    depth = read_structure("jacket15").sea_level_z_m
+    tube = Tube(*(np.array(v) for v in (D, t, 210e9, 355e6, L)))
+    f_h = float(hoop_strength(tube, np.array(L)).f_h)
+    wanted = 1.25 * 1025.0 * 9.80665 * depth * D / (2.0 * t) / f_h
+    assert dry["by_check"]["hoop"] == pytest.approx(wanted, rel=2e-3)
+    assert "hoop" not in wet["by_check"]
+    assert dry["by_check"]["compression"] < wet["by_check"]["compression"]
+
+
+def test_joints_are_listed() -> None:
+    """Weakest kinds use no joint less; the terminal and --json name them."""
+    uses = []
+    for how in ("load-path", "conservative"):
+        found = json.loads(run("jacket15", "--joints", how, "--json").stdout)
+        uses.append({(row["node"], row["brace"]): row["utilisation"] for row in found["joints"]})
+        assert sum(found["joints"][0]["shares"].values()) == pytest.approx(1.0)
+    path, weakest = uses
+    assert path.keys() == weakest.keys() and len(path) > 50
+    assert all(weakest[key] >= 0.999 * path[key] for key in path)
+    text = run("jacket15").stdout
+    assert "tubular joints, ISO 19902 14.3" in text
+
+
+def test_water_is_asked_for_once() -> None:
+    result = run("jacket15", "--flooded", "jacket")
+    assert result.exit_code == 2 and "needs --still-water" in result.stderr.replace("\n", " ")
+    result = run("--scenario", "parked", "--still-water")
+    assert result.exit_code == 2 and "own water" in result.stderr.replace("\n", " ")

@@ -4,11 +4,13 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
 from jackettwin.records import read_record
+from jackettwin.structure import read_structure
 
 CASE = """
 structure: jacket15
@@ -152,3 +154,25 @@ def test_what_is_odd_of_an_asset_is_noted(tmp_path: Path) -> None:
     assert re.search(r"structure gives side_side_1 \d[.\d]* % damping, more than the 1 to 2 %", notes)
     assert "water gives" not in notes  # there is none
     assert "soil gives" not in notes  # nothing in it damps
+
+
+def test_still_water_is_told_apart(case: Path) -> None:
+    """Buoyancy is ρg times the volume of what is under water; conical members within 2 %."""
+    document = json.loads(CliRunner().invoke(main, ["loads", str(case), "--json"]).stdout)
+    still = document["still_water"]
+    assert still["pressure_at_the_bed_pa"] == pytest.approx(1025.0 * 9.80665 * 72.0)
+    volume = sum(
+        0.25 * np.pi * m.section_start.outer_diameter_m**2 * length
+        for m, length in wet_lengths(read_structure("jacket15"))
+    )
+    assert still["buoyancy_n"] == pytest.approx(1025.0 * 9.80665 * volume, rel=0.02)
+    assert -72.0 < still["center_of_buoyancy_m"][2] < 0.0
+    assert "still water, not in the loads above" in CliRunner().invoke(main, ["loads", str(case)]).stdout
+
+
+def wet_lengths(structure):
+    for m in structure.members:
+        low, high = sorted(structure.nodes[n][2] - structure.sea_level_z_m for n in (m.start, m.end))
+        length = np.linalg.norm(np.subtract(structure.nodes[m.end], structure.nodes[m.start]))
+        share = 1.0 if high <= 0.0 else max(-low, 0.0) / max(high - low, 1e-9)
+        yield m, share * length

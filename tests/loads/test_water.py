@@ -6,7 +6,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import GROWTH_KG_M3, SEA_WATER_KG_M3, Coefficients, GrowthBand
 from jackettwin.loads.morison import morison_points
-from jackettwin.loads.water import Water, water_mass, water_weight
+from jackettwin.loads.water import Water, outside_pressure, water_mass, water_weight
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import clamped
@@ -83,3 +83,22 @@ def test_unknown_members_are_refused(cylinder) -> None:
     assembly, grid = cylinder
     with pytest.raises(InputError, match="no such member or part"):
         water_mass(assembly, grid, Water(flooded=("legs",)))
+
+
+def test_pressure_is_the_head_of_water_and_wave(cylinder) -> None:
+    """ρ g d at the bed; under a crest ρ g H/2 more at still level and ρ g H/(2 cosh kd) at the bed."""
+    assembly, _ = cylinder
+    mesh, rho, g = assembly.mesh, 1000.0, 9.80665
+    calm = outside_pressure(assembly, Water(), density_kg_m3=rho, depth_m=DEPTH)
+    z = mesh.coordinates[np.stack([mesh.start, mesh.end], axis=1), 2] - DEPTH
+    np.testing.assert_allclose(calm, rho * g * np.maximum(-z, 0.0), atol=1e-6)
+    k, H = 0.08, 6.0
+    wave = outside_pressure(
+        assembly, Water(), density_kg_m3=rho, depth_m=DEPTH, wave_height_m=H, wavenumber=k
+    )
+    more = rho * g * 0.5 * H * np.cosh(k * (DEPTH + z)) / np.cosh(k * DEPTH)
+    np.testing.assert_allclose((wave - calm)[z <= 0.0], more[z <= 0.0], rtol=1e-9)
+    assert not outside_pressure(assembly, Water(("leg",)), density_kg_m3=rho, depth_m=DEPTH).any()
+    # what stands deeper than the bed is in the ground
+    shallow = outside_pressure(assembly, Water(), density_kg_m3=rho, depth_m=20.0)
+    assert not shallow[z < -20.1].any()

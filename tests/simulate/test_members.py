@@ -19,10 +19,10 @@ def test_calm_is_statics_and_waves_add_to_it(scenario_file) -> None:
     assembly = assemble(structure)
     rest = static_displacement(build_system(assembly, pinned(structure)), self_weight(assembly))
     still = {use.member: use for use in member_uses(assembly, rest, along=element_weight(assembly))}
-    calm = scenario_uses(read_scenario(scenario_file(support="pinned")))
+    calm = scenario_uses(read_scenario(scenario_file(support="pinned"))).members
     for use in calm:
         assert use.by_check == pytest.approx(still[use.member].by_check, rel=1e-6, abs=1e-12)
-    rough = scenario_uses(read_scenario(scenario_file(support="pinned", waves=SEA, water={})))
+    rough = scenario_uses(read_scenario(scenario_file(support="pinned", waves=SEA, water={}))).members
     more = [now.utilisation - then.utilisation for now, then in zip(rough, calm, strict=True)]
     assert min(more) > -1e-6  # the worst instant is never better than rest
     legs = [m for m, use in zip(more, rough, strict=True) if use.member.startswith("leg")]
@@ -33,7 +33,7 @@ def test_buoyancy_lifts_and_flooding_takes_it_back(scenario_file) -> None:
     """Added mass weighs nothing: water about closed members can only lift the legs."""
     compression = []
     for water in ({}, {"adds_mass": True}, {"adds_mass": True, "flooded": True}):
-        uses = scenario_uses(read_scenario(scenario_file(support="pinned", water=water)))
+        uses = scenario_uses(read_scenario(scenario_file(support="pinned", water=water))).members
         compression.append(sum(u.by_check["compression"] for u in uses if u.member.startswith("leg")))
     dry, afloat, flooded = compression
     assert afloat < flooded < dry
@@ -61,6 +61,6 @@ def test_the_foot_of_a_monopile_feels_the_overturning_moment(scenario_file, tmp_
     waves = {"type": "airy", "height_m": 3.0, "period_s": 12.0, "direction_deg": 30.0}
     scenario = read_scenario(scenario_file(structure=str(file), support="clamped", waves=waves))
     moment = loads_document(scenario)["mudline"]["overturning_moment_n_m"]
-    use = scenario_uses(scenario)[0].by_check["bending"]
+    use = scenario_uses(scenario).members[0].by_check["bending"]
     # static to (f/f1)² = 1e-4; 2 m pieces and a load step of 0.05 s
     assert use / per_moment == pytest.approx(moment, rel=3e-3)

@@ -5,25 +5,35 @@ from __future__ import annotations
 from typing import Any
 
 import click
+import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import fixed, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.morison import morison_points
+from jackettwin.loads.water import Water, outside_pressure
+from jackettwin.loads.water import still_water as still_water_loads
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.members import scenario_uses
-from jackettwin.structure import assemble, read_structure
+from jackettwin.simulate.members import scenario_uses, water_notes
+from jackettwin.structure import Assembly, assemble, read_structure
 from jackettwin.structure.check import few
 from jackettwin.structure.forces import element_weight
-from jackettwin.structure.iso19902 import CHECKS, EDITIONS
-from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses
+from jackettwin.structure.iso19902 import EDITIONS
+from jackettwin.structure.iso19902_joints import KINDS
+from jackettwin.structure.joint_check import BraceUse
+from jackettwin.structure.member_check import ALL_CHECKS, DesignBasis, FrameUse, MemberUse, frame_use
 
 _SHOWN = 15
 """Members in the terminal."""
 _COMPONENTS = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
+_JOINT_FORCES = ("N", "M in plane", "M out of plane")
+_TRACE = 0.005
+"""A share of a joint's class that rounds to nothing."""
 _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 
 
@@ -46,6 +56,17 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     "--edition", default="2007", show_default=True, type=click.Choice(EDITIONS), help="Of ISO 19902."
 )
 @click.option(
+    "--joints",
+    default="load-path",
+    show_default=True,
+    type=click.Choice(("load-path", "conservative")),
+    help="Class of tubular joints: by load path, or the weakest of K, Y and X.",
+)
+@click.option(
+    "--still-water", is_flag=True, help="Buoyancy, and hydrostatic pressure on what is not flooded."
+)
+@click.option("--flooded", multiple=True, metavar="MEMBER|PART", help="With --still-water; may be repeated.")
+@click.option(
     "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -57,37 +78,69 @@ def check_command(
     no_weight: bool,
     yield_strength: float,
     edition: str,
+    joints: str,
+    still_water: bool,
+    flooded: tuple[str, ...],
     subdivide: int | None,
     as_json: bool,
 ) -> None:
-    """Check every member of STRUCTURE at rest under its weight and the forces given, or of a scenario."""
-    basis = DesignBasis(yield_strength, edition)
+    """Check members and joints of STRUCTURE at rest under weight and forces given, or of a scenario."""
+    basis = DesignBasis(yield_strength, edition, conservative_joints=joints == "conservative")
     if (structure is None) == (scenario is None):
         raise InputError(
             "give a structure or --scenario", field="STRUCTURE", remedy="keep exactly one of them"
         )
+    if flooded and not still_water:
+        raise InputError("needs --still-water", field="--flooded", value=flooded, remedy="add --still-water")
     if scenario is not None:
+        if still_water:
+            raise InputError("a scenario has its own water", field="--still-water", remedy="leave it out")
         chosen_scenario = read_scenario(scenario)
-        _report(chosen_scenario.name, scenario_uses(chosen_scenario, basis), as_json)
+        use = scenario_uses(chosen_scenario, basis)
+        _report(chosen_scenario.name, use, water_notes(chosen_scenario), as_json)
         return
     assert structure is not None
-    chosen = read_structure(structure)
-    assembly = assemble(chosen, subdivide=subdivide)
+    assembly = assemble(read_structure(structure), subdivide=subdivide)
     held = support_option(support, assembly)
-    load = nodal_load(assembly, dict(nodal_force(text) for text in forces))
-    along = None
+    load, along = nodal_load(assembly, dict(nodal_force(text) for text in forces)), None
     if not no_weight:
         load, along = load + self_weight(assembly), element_weight(assembly)
+    pressure = None
+    if still_water:
+        load, along, pressure = _in_water(assembly, Water(flooded), load, along)
     u = static_displacement(build_system(assembly, held), load)
-    _report(chosen.name, member_uses(assembly, u, basis, along=along), as_json)
+    use = frame_use(assembly, u, basis, along=along, pressure=pressure)
+    _report(assembly.structure.name, use, [], as_json)
 
 
-def _report(name: str, uses: tuple[MemberUse, ...], as_json: bool) -> None:
+def _in_water(
+    assembly: Assembly, water: Water, load: FloatArray, along: FloatArray | None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return loads with buoyancy, and the pressure on the elements' ends; the bed is at the lowest foot."""
+    structure = assembly.structure
+    depth = structure.sea_level_z_m - min(structure.nodes[name][2] for name in structure.reaction_nodes)
+    if not depth > 0.0:
+        raise InputError(
+            "the structure stands above still water",
+            field="--still-water",
+            value=structure.sea_level_z_m,
+            allowed="sea_level_z_m above the lowest foot",
+            remedy="state sea_level_z_m in the structure's file, or leave --still-water out",
+        )
+    coefficients = Coefficients()
+    grid = morison_points(assembly, highest_z=0.0, lowest_z=-depth, coefficients=coefficients)
+    wet = still_water_loads(assembly, grid, water)
+    pressure = outside_pressure(assembly, water, density_kg_m3=coefficients.density_kg_m3, depth_m=depth)
+    return load + wet.load, wet.along if along is None else along + wet.along, pressure
+
+
+def _report(name: str, use: FrameUse, notes: list[str], as_json: bool) -> None:
     document = {
         "structure": name,
-        "largest_von_mises_stress_pa": max(use.von_mises_pa for use in uses),
-        "members": [_row(use) for use in sorted(uses, key=lambda use: -use.utilisation)],
-        "warnings": _warnings(uses),
+        "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
+        "members": [_row(one) for one in sorted(use.members, key=lambda one: -one.utilisation)],
+        "joints": [_joint_row(one) for one in sorted(use.joints, key=lambda one: -one.utilisation)],
+        "warnings": [*_warnings(use), *notes],
     }
     if as_json:
         print_json(document)
@@ -119,7 +172,7 @@ def _row(use: MemberUse) -> dict[str, Any]:
         "part": use.part,
         "utilisation": use.utilisation,
         "check": use.check,
-        "clause": CHECKS[use.check],
+        "clause": ALL_CHECKS[use.check],
         "by_check": dict(use.by_check),
         "effective_length_factor": use.buckling.K,
         "column_length_m": use.buckling.L,
@@ -135,14 +188,44 @@ def _forces(six: FloatArray) -> dict[str, float]:
     return dict(zip(_COMPONENTS, map(float, six), strict=True))
 
 
-def _warnings(uses: tuple[MemberUse, ...]) -> list[str]:
-    thin = [use.member for use in uses if not use.covered]
-    over = [use.member for use in uses if use.utilisation > 1.0]
+def _joint_row(use: BraceUse) -> dict[str, Any]:
+    joint = use.joint
+    return {
+        "node": use.node,
+        "chord": use.chord,
+        "brace": use.brace,
+        "utilisation": use.utilisation,
+        "kind": use.kind,
+        "shares": dict(zip(KINDS, use.shares, strict=True)),
+        "axial_n": use.forces[0],
+        "in_plane_nm": use.forces[1],
+        "out_of_plane_nm": use.forces[2],
+        "strength_factor": use.Q_u,
+        "chord_factor": use.Q_f,
+        "beta": joint.beta,
+        "gamma": joint.gamma,
+        "tau": joint.t / joint.T,
+        "theta_deg": float(np.degrees(joint.theta)),
+        "gap_m": joint.gap if np.isfinite(joint.gap) else None,
+        "beyond_validity": list(joint.beyond_validity),
+    }
+
+
+def _warnings(use: FrameUse) -> list[str]:
+    thin = [one.member for one in use.members if not one.covered]
+    over = [one.member for one in use.members if one.utilisation > 1.0]
+    joints = [f"{one.brace} at {one.node}" for one in use.joints if one.utilisation > 1.0]
+    beyond = [(f"{one.brace} at {one.node}", why) for one in use.joints for why in one.joint.beyond_validity]
     found = []
     if thin:
         found.append(f"D/t above 120, beyond ISO 19902 13: {few(thin)}")
     if over:
         found.append(f"used above 1: {few(over)}")
+    if joints:
+        found.append(f"joints used above 1: {few(joints)}")
+    if beyond:
+        named = few(list(dict.fromkeys(name for name, _ in beyond)))
+        found.append(f"joints beyond the ranges of ISO 19902 14.3.1 ({beyond[0][1]}, …): {named}")
     return found
 
 
@@ -168,9 +251,33 @@ def _print(document: dict[str, Any]) -> None:
     output.print(forces)
     if left_out > 0:
         output.print(f"and {left_out} more members; --json has all of them, with the forces at both ends")
+    _print_joints(document["joints"])
     output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
     for warning in document["warnings"]:
         output.print(f"warning: {warning}")
+
+
+def _print_joints(rows: list[dict[str, Any]]) -> None:
+    if not rows:
+        return
+    table = Table(
+        "joint", "chord", "brace", "utilisation", "class", "β", "γ", "θ [°]", *_JOINT_FORCES,
+        title="tubular joints, ISO 19902 14.3; forces in kN, kN·m", title_justify="left",
+    )  # fmt: skip
+    for row in rows[:_SHOWN]:
+        kinds = " ".join(f"{kind} {share:.2f}" for kind, share in row["shares"].items() if share > _TRACE)
+        table.add_row(
+            *(row[name] for name in ("node", "chord", "brace")),
+            f"{row['utilisation']:.3f}" + ("*" if row["beyond_validity"] else ""),
+            kinds,
+            *(fixed(row[name], digits) for name, digits in (("beta", 2), ("gamma", 1), ("theta_deg", 0))),
+            *(fixed(row[name] / 1e3, 1) for name in ("axial_n", "in_plane_nm", "out_of_plane_nm")),
+        )
+    output.print(table)
+    if any(row["beyond_validity"] for row in rows[:_SHOWN]):
+        output.print("* beyond the ranges of 14.3.1; --json says in what")
+    if len(rows) > _SHOWN:
+        output.print(f"and {len(rows) - _SHOWN} more braces at joints; --json has all of them")
 
 
 def _place(position: float) -> str:

@@ -38,6 +38,8 @@ def _print(name: str, document: dict[str, Any]) -> None:
             f"{1e-6 * mudline['base_shear_n']:.4f} MN, overturning moment "
             f"{1e-6 * mudline['overturning_moment_n_m']:.3f} MN·m"
         )
+    if document["still_water"] is not None:
+        _print_still_water(document["still_water"])
     if document["phases"] is not None:
         _print_phases(document["phases"])
     for warning in document["warnings"]:
@@ -52,6 +54,18 @@ def _print_loads(title: str, loads: dict[str, Any]) -> None:
             shown = (fixed(1e-6 * row[what], 4) for what in ("max", "min", "mean", "std"))
             table.add_row(rf"{letter}{axis} \[{unit}]", *shown)
     output.print(table)
+
+
+def _print_still_water(still: dict[str, Any]) -> None:
+    centre = still["center_of_buoyancy_m"]
+    inside = still["water_inside_n"]
+    filled = "not known what is filled" if inside is None else f"water inside weighs {1e-6 * inside:.3f} MN"
+    at = "" if centre is None else f" at z = {centre[2]:.2f} m"
+    output.print(
+        f"still water, not in the loads above: buoyancy {1e-6 * still['buoyancy_n']:.3f} MN{at}, {filled}, "
+        f"growth {1e-6 * still['growth_weight_n']:.3f} MN in air; "
+        f"{1e-6 * still['pressure_at_the_bed_pa']:.3f} MPa at the bed"
+    )
 
 
 def _print_phases(phases: list[dict[str, Any]]) -> None:

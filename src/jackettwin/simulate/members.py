@@ -3,30 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.morison import loads_along, nodal_loads
-from jackettwin.loads.water import weight_forces
+from jackettwin.loads.morison import loads_along
+from jackettwin.loads.water import outside_pressure, still_water
+from jackettwin.loads.waves import wave_number
 from jackettwin.response.static import self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_loads, water_points
+from jackettwin.simulate.water import is_regular, water_loads, water_points
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.forces import element_weight
-from jackettwin.structure.member_check import DesignBasis, MemberUse, member_uses, worst_uses
+from jackettwin.structure.member_check import DesignBasis, FrameUse, frame_use
 
 _BLOCK = 2000
 """Instants at a time: records are long, and every element has twelve loads."""
+HIGHEST_WAVE = sqrt(0.5 * log(1000.0))
+"""Of a random sea over Hs: the most probable highest of a thousand Rayleigh waves, 1.86."""
 _SPACING_M = 2.0
 """Longest piece of a member: what it carries itself is the matter."""
 
 
-def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> tuple[MemberUse, ...]:
-    """Return the worst use of every member over a scenario, its weight in air and water included.
+def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> FrameUse:
+    """Return the worst use of every member and joint over a scenario, weight in air and water included.
 
     Joints move with the modes up to the simulation's band; between them members also bend under their weight
     and under the waves along them. What the members' own acceleration adds in between is left out.
@@ -43,14 +47,41 @@ def scenario_uses(scenario: Scenario, basis: DesignBasis | None = None) -> tuple
     t = np.arange(len(q), dtype=np.float64) * motion.step_s
     rest = at_rest(scenario, motion)
     waves = _waves_along(scenario, assembly)
-    uses: tuple[MemberUse, ...] = ()
+    pressure = _pressure(scenario, assembly)
+    worst = FrameUse()
     for first in range(round(scenario.clock.discard_s / motion.step_s), len(q), _BLOCK):
         here = slice(first, first + _BLOCK)
         along = rest.along if waves is None else np.add(rest.along, waves(t[here]))
         u = rest.displacement + q[here] @ modes
-        found = member_uses(assembly, u, basis, along=along)
-        uses = worst_uses(uses, found) if uses else found
-    return uses
+        worst = worst.worse(frame_use(assembly, u, basis, along=along, pressure=pressure))
+    return worst
+
+
+def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
+    """Return what water presses on the elements' ends, (n_elements, 2) [Pa]; None if not known inside."""
+    sea = scenario.sea
+    if sea is None or sea.water is None:
+        return None
+    highest = 0.0 if sea.waves is None else sea.height_m * (1.0 if is_regular(sea) else HIGHEST_WAVE)
+    k = float(wave_number(2.0 * pi / sea.period_s, sea.depth_m)) if sea.period_s > 0.0 else 0.0
+    return outside_pressure(
+        assembly,
+        sea.water,
+        density_kg_m3=sea.coefficients.density_kg_m3,
+        depth_m=sea.depth_m,
+        wave_height_m=highest,
+        wavenumber=k,
+    )
+
+
+def water_notes(scenario: Scenario) -> list[str]:
+    """Return what a check of the scenario leaves out of the water's static part."""
+    if scenario.sea is None or scenario.sea.water is not None:
+        return []
+    return [
+        "buoyancy and hydrostatic pressure are left out: the structure's density holds its water already; "
+        "give water: {adds_mass: true} with the density of bare steel"
+    ]
 
 
 class Rest(NamedTuple):
@@ -67,9 +98,8 @@ def at_rest(scenario: Scenario, motion: Motion) -> Rest:
     load, along = self_weight(_dry(scenario, assembly)), element_weight(assembly)
     if sea is not None and sea.water is not None:
         grid = water_points(assembly, sea, spacing=_SPACING_M)
-        forces = weight_forces(assembly, grid, sea.water)
-        load = load + nodal_loads(grid, forces)
-        along = along + (loads_along(assembly, grid) @ forces.ravel()).reshape(along.shape)
+        wet = still_water(assembly, grid, sea.water)
+        load, along = load + wet.load, along + wet.along
     return Rest(static_displacement(build_system(assembly, asset.support), load), along)
 
 

@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
+from jackettwin.loads.morison import morison_points
+from jackettwin.loads.water import Water, water_weights
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.naming import in_words_of
@@ -92,6 +95,7 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
     return {
         **_statistics(total),
         **_at_the_mudline(scenario, total),
+        "still_water": _still_water(scenario),
         "parts": {name: _statistics(loads) for name, loads in parts.items()},
         "reference_point_m": [0.0, 0.0, sea_level],
         "phases": _phases(scenario, parts),
@@ -115,6 +119,26 @@ def _at_the_mudline(scenario: Scenario, total: FloatArray) -> dict[str, Any]:
             "overturning_moment_n_m": float(np.hypot(moved[:, 3], moved[:, 4]).max()),
             "moment_n_m": {axis: _spread(column) for axis, column in axes.items()},
         }
+    }
+
+
+def _still_water(scenario: Scenario) -> dict[str, Any] | None:
+    """Return buoyancy, what is filled and grown, and the pressure at the bed; None without a sea."""
+    sea = scenario.sea
+    if sea is None:
+        return None
+    assembly = assemble(scenario.asset.structure, subdivide=scenario.asset.subdivide)
+    grid = morison_points(
+        assembly, highest_z=0.0, lowest_z=-sea.depth_m, coefficients=sea.coefficients, spacing=_FINE_M
+    )
+    weights = water_weights(assembly, grid, sea.water or Water())
+    lifted = float(weights.displaced.sum())
+    return {
+        "buoyancy_n": lifted,
+        "center_of_buoyancy_m": (weights.displaced @ grid.points / lifted).tolist() if lifted else None,
+        "water_inside_n": None if sea.water is None else float(weights.inside.sum()),
+        "growth_weight_n": float(weights.growth.sum()),
+        "pressure_at_the_bed_pa": sea.coefficients.density_kg_m3 * GRAVITY_M_S2 * sea.depth_m,
     }
 
 

@@ -1,4 +1,4 @@
-r"""Strength of tubular members to ISO 19902, clause 13, without hydrostatic pressure (13.2.6, 13.4).
+r"""Strength of tubular members to ISO 19902, clause 13, without hydrostatic pressure (iso19902_pressure.py).
 
 Symbols are the standard's; stresses are those of factored actions. Equations are those of the 2007 edition.
 The 2020 edition keeps the strengths and puts a cosine into the interaction of axial force and bending of a
@@ -21,7 +21,7 @@ C_X = 0.3
 MOST_SLENDER_WALL = 120.0
 """Largest D/t of clause 13.1."""
 EDITIONS = ("2007", "2020")
-_STEEPEST = 0.99
+STEEPEST = 0.99
 """σ_c/f_e from which the amplification of bending stays; such a column has failed by 13.2.3 already."""
 
 
@@ -141,7 +141,7 @@ def utilisation(s: Strength, stress: Stress, *, C_m: float = 1.0, edition: str =
     if edition == "2020":
         axial = 1.0 - np.cos(0.5 * np.pi * np.minimum(axial, 1.0)) + np.maximum(axial - 1.0, 0.0)
     column = GAMMA_C * compression / s.f_c
-    amplified = C_m * bending / (1.0 - np.minimum(compression / s.f_e, _STEEPEST))
+    amplified = C_m * bending / (1.0 - np.minimum(compression / s.f_e, STEEPEST))
     return Utilisation(
         GAMMA_T * tension / s.f_t,
         column,

@@ -15,12 +15,17 @@ from jackettwin.structure.forces import SectionForces, section_forces, von_mises
 from jackettwin.structure.iso19902 import (
     CHECKS,
     MOST_SLENDER_WALL,
+    Strength,
     Stress,
     Tube,
     strength,
     utilisation,
 )
+from jackettwin.structure.iso19902_pressure import PRESSURE_CHECKS, HoopStrength, hoop_strength, pressure_use
+from jackettwin.structure.joint_check import BraceUse, joint_plans, joint_uses, worst_joints
 
+ALL_CHECKS = CHECKS | PRESSURE_CHECKS
+"""Checks of a member and their clauses; those under pressure only where there is some."""
 _BLOCK = 512
 """Instants checked at a time."""
 
@@ -38,12 +43,15 @@ class DesignBasis:
     K : mapping of part or member name to effective length factor
         On the length between joints that hold a member; unless given, 2 for a cantilever and 1 for everything
         else (table 13.5-1 allows 0.7 to 0.8 for braces).
+    conservative_joints : bool
+        Take the weakest of K, Y and X for every brace instead of its load path.
     """
 
     yield_strength_pa: float = 355e6
     edition: str = "2007"
     C_m: float = 1.0
     K: Mapping[str, float] = field(default_factory=dict)
+    conservative_joints: bool = False
 
 
 class Buckling(NamedTuple):
@@ -89,20 +97,49 @@ class MemberUse:
     """Whether D/t ≤ 120, the scope of clause 13."""
 
 
+@dataclass(frozen=True)
+class FrameUse:
+    """The worst use of every member and of every brace's joint."""
+
+    members: tuple[MemberUse, ...] = ()
+    joints: tuple[BraceUse, ...] = ()
+
+    def worse(self, other: FrameUse) -> FrameUse:
+        """Return the worst use over both sets of cases."""
+        if not self.members:
+            return other
+        return FrameUse(worst_uses(self.members, other.members), worst_joints(self.joints, other.joints))
+
+
 def member_uses(
     assembly: Assembly,
     displacement: FloatArray,
     basis: DesignBasis | None = None,
     *,
     along: FloatArray | None = None,
+    pressure: FloatArray | None = None,
 ) -> tuple[MemberUse, ...]:
-    """Return the use of every member.
+    """Return the use of every member; arguments as in ``frame_use``."""
+    return frame_use(assembly, displacement, basis, along=along, pressure=pressure).members
+
+
+def frame_use(
+    assembly: Assembly,
+    displacement: FloatArray,
+    basis: DesignBasis | None = None,
+    *,
+    along: FloatArray | None = None,
+    pressure: FloatArray | None = None,
+) -> FrameUse:
+    """Return the use of every member and of every brace's joint.
 
     Parameters
     ----------
     displacement : (..., assembly.n_dof) of one load case, many, or every instant of a record [m, rad]
     along : (n_elements, 12) or one for every case, optional
         Loads spread along the elements, as for ``section_forces``.
+    pressure : (n_elements, 2), optional
+        Of water outside over what is inside, at both ends of the elements [Pa].
 
     Raises
     ------
@@ -110,21 +147,43 @@ def member_uses(
         If the edition is unknown.
     """
     basis = DesignBasis() if basis is None else basis
-    lengths = buckling_lengths(assembly, basis)
-    tube = _tubes(assembly, basis, lengths)
+    held = _Held(assembly, basis, pressure)
+    plans = joint_plans(assembly, basis.yield_strength_pa)
     cases = displacement.reshape(-1, assembly.n_dof)
     spread = None if along is None else along.reshape(-1, *along.shape[-2:])
-    uses: tuple[MemberUse, ...] = ()
+    worst = FrameUse()
     for first in range(0, len(cases), _BLOCK):  # records are long
         here = slice(first, first + _BLOCK)
-        held = spread if spread is None or len(spread) == 1 else spread[here]
-        forces = section_forces(assembly, cases[here], along=held)
-        U = utilisation(
-            strength(tube), section_stress(assembly, forces), C_m=basis.C_m, edition=basis.edition
-        )
-        found = _uses(assembly, np.stack(U), forces, lengths, (tube.D / tube.t)[:, 0])
-        uses = worst_uses(uses, found) if uses else found
-    return uses
+        loads = spread if spread is None or len(spread) == 1 else spread[here]
+        forces = section_forces(assembly, cases[here], along=loads)
+        joints = joint_uses(assembly, plans, forces, conservative=basis.conservative_joints)
+        worst = worst.worse(FrameUse(held.uses(forces), joints))
+    return worst
+
+
+class _Held:
+    """What the checks of members hold through all instants: tubes, strengths, pressure."""
+
+    def __init__(self, assembly: Assembly, basis: DesignBasis, pressure: FloatArray | None) -> None:
+        self.assembly, self.basis = assembly, basis
+        self.lengths = buckling_lengths(assembly, basis)
+        self.tube = _tubes(assembly, basis, self.lengths)
+        self.strength: Strength = strength(self.tube)
+        self.pressure = pressure if pressure is not None and (pressure > 0.0).any() else None
+        spacing = np.array([L for _, L in self.lengths])[assembly.mesh.member][:, None]
+        self.hoop: HoopStrength = hoop_strength(self.tube, spacing)
+
+    def uses(self, forces: SectionForces) -> tuple[MemberUse, ...]:
+        """Return the use of every member under section forces (n_cases, n_elements, 2)."""
+        stress, basis = section_stress(self.assembly, forces), self.basis
+        U = [*utilisation(self.strength, stress, C_m=basis.C_m, edition=basis.edition)]
+        if self.pressure is not None:
+            under = pressure_use(
+                self.tube, self.strength, self.hoop, stress, self.pressure[None], C_m=basis.C_m
+            )
+            U += [np.broadcast_to(one, U[0].shape) for one in under]
+        slender = (self.tube.D / self.tube.t)[:, 0]
+        return _uses(self.assembly, np.stack(U), forces, self.lengths, slender)
 
 
 def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
@@ -132,7 +191,7 @@ def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> t
     found = []
     for a, b in zip(first, second, strict=True):
         worse = a if a.utilisation >= b.utilisation else b
-        by_check = {name: max(a.by_check[name], b.by_check[name]) for name in CHECKS}
+        by_check = {name: max(a.by_check[name], b.by_check[name]) for name in a.by_check}
         stress = max(a.von_mises_pa, b.von_mises_pa)
         found.append(replace(worse, by_check=by_check, von_mises_pa=stress))
     return tuple(found)
@@ -155,8 +214,8 @@ def _uses(
                 member.name,
                 member.part,
                 float(own.max()),
-                list(CHECKS)[check],
-                dict(zip(CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=True)),
+                list(ALL_CHECKS)[check],
+                dict(zip(ALL_CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=False)),
                 lengths[index],
                 worst,
                 float(stress[:, mine].max()),
