@@ -96,6 +96,7 @@ class _Tried:
     fit: Refined | None
     strayed: BoolArray
     obstacle: str = ""
+    converged: bool = False
 
 
 def accepted_fits(
@@ -134,7 +135,11 @@ def accepted_fits(
 
 
 def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start) -> _Tried:
-    """Return the fit of the whole band in which fewest modes stray, that of the modes alone if none does."""
+    """Return the fit of the whole band in which fewest modes stray, that of the modes alone if none does.
+
+    A background is tried beside modes that were fitted but strayed, or nearly: where they cannot be fitted
+    at all, it costs as much again and helps in no record that was seen.
+    """
     best: _Tried | None = None
     for background in (False, True):
         work = partial(refine, y, sample_rate_hz, band_hz, background=background, **_given(start))
@@ -142,7 +147,7 @@ def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, floa
         tried = _tried(work, MOST_LACK_OF_FIT, start, y.shape[1] / sample_rate_hz)
         if best is None or _rank(tried, start) < _rank(best, start):
             best = tried
-        if best.fit is not None and not np.any(best.strayed & start.sure):
+        if not tried.converged or (best.fit is not None and not np.any(best.strayed & start.sure)):
             break
     assert best is not None
     return best
@@ -175,6 +180,7 @@ def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: fl
             none,
             f"the spectrum is not that of these modes under smooth random forces "
             f"(lack of fit {refined.lack_of_fit:.1f}, at most {most:g})",
+            converged=True,
         )
     lost = strayed(
         refined,
@@ -185,7 +191,7 @@ def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: fl
         most_damping=start.most_damping,
     )
     none[refined.candidate[lost]] = True
-    return _Tried(refined, none)
+    return _Tried(refined, none, converged=True)
 
 
 def _finite(refined: Refined) -> bool:

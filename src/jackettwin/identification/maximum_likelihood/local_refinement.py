@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 REACH = 1.35
 """Modes nearer than this ratio are fitted together, in a band wider by this ratio on both sides."""
 
-DITHER_SHARES = (0.3, 3.0, 10.0)
+DITHER_SHARES = (1.0, 10.0)
 """Share of the local median spectrum added; the next one where a fit with the one before does not describe
 the lines. One force moves all channels, and between the peaks their ratios fix the damping more sharply than
 the record allows, as far as the model is exact; the more is added, the less they count."""

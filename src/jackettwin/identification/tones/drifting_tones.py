@@ -8,16 +8,15 @@ and is taken out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.tones.envelopes import independent_values, least_variance, relative_variance
+from jackettwin.identification.tones.bands import Band, bands_of, overlapping
 from jackettwin.identification.tones.phase_track import INTERVALS, baseband, first_phase, phase_track
-from jackettwin.identification.tones.sinusoid import lines_around, regular, transform
+from jackettwin.identification.tones.sinusoid import lines_around, transform
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
@@ -42,26 +41,6 @@ HIGHEST = 0.4
 """Of the sample rate: the highest band."""
 MOST = 9
 """Tones taken out at most."""
-
-
-@dataclass(frozen=True)
-class Band:
-    """A band, the signal of the channels' best combination in it, and how steady its envelope is.
-
-    Attributes
-    ----------
-    middle_hz, half_hz : float
-    combination : (n_channels,) complex
-    variance : float
-    expected : float
-        What the variance of a Gaussian process of as many independent values is hardly ever below.
-    """
-
-    middle_hz: float
-    half_hz: float
-    combination: ComplexArray
-    variance: float
-    expected: float
 
 
 def drifting_tones(
@@ -128,8 +107,8 @@ def tone_at(lines: ComplexArray, duration_s: float, frequency_hz: float) -> Phas
     lines : (n_channels, n_lines)
         Of the channels' transforms, from zero frequency.
     """
-    for drift in DRIFTS:
-        band = band_of(lines, duration_s, frequency_hz, max(drift * frequency_hz, FEWEST_LINES / duration_s))
+    half = np.maximum(np.array(DRIFTS) * frequency_hz, FEWEST_LINES / duration_s)
+    for band in bands_of(lines, duration_s, np.full(len(half), frequency_hz), half):
         share = STEADY_SHARE if band.variance < band.expected else 1.0
         track = _tone_in(lines, duration_s, band, share)
         if track is not None and track.passes(frequency_hz):
@@ -141,42 +120,11 @@ def _bands(lines: ComplexArray, duration_s: float, highest_hz: float) -> list[Ba
     """Return the bands whose envelope is steadier than those of the bands on either side."""
     found: list[Band] = []
     for drift in DRIFTS:
-        middle, row = LOWEST_LINE / duration_s, []
-        while middle < highest_hz:
-            half = max(drift * middle, FEWEST_LINES / duration_s)
-            row.append(band_of(lines, duration_s, middle, half))
-            middle += STEP * half
+        middle, half = overlapping(
+            LOWEST_LINE / duration_s, highest_hz, drift, FEWEST_LINES / duration_s, STEP
+        )
+        row = bands_of(lines, duration_s, middle, half)
         v = np.array([band.variance for band in row])
         least = (v <= np.append(v[1:], np.inf)) & (v <= np.append(np.inf, v[:-1])) & (v < WORTH_FOLLOWING)
         found += [row[i] for i in np.flatnonzero(least)]
     return found
-
-
-def band_of(lines: ComplexArray, duration_s: float, middle_hz: float, half_hz: float) -> Band:
-    """Combine the channels so that most is from the band, and least from as many lines on either side.
-
-    Or, where that makes a steadier envelope, along their main direction: a tone may move them as a mode does.
-    """
-    around = max(half_hz * duration_s, lines_around(len(lines)))
-    first, last = int(np.ceil((middle_hz - half_hz) * duration_s)), int((middle_hz + half_hz) * duration_s)
-    low, high = max(first - int(around), 1), min(last + int(around), lines.shape[1] - 1)
-    inside = lines[:, first : last + 1]
-    outside = np.concatenate([lines[:, low:first], lines[:, last + 1 : high + 1]], axis=1)
-    noise = _covariance(outside)
-    power = np.diag(np.diag(_covariance(inside)))
-    found = [_combination(inside, noise), _combination(inside, power)]
-    combination, signal = min(found, key=lambda pair: relative_variance(fft.ifft(pair[1])))
-    expected = least_variance(independent_values(signal))
-    return Band(middle_hz, half_hz, combination, relative_variance(fft.ifft(signal)), expected)
-
-
-def _combination(inside: ComplexArray, noise: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return the channels' combination with most over a noise, and its lines."""
-    root = np.linalg.cholesky(regular(noise))
-    white = np.linalg.solve(root, inside)
-    direction = np.linalg.eigh(white @ white.conj().T)[1][:, -1]
-    return np.asarray(np.linalg.solve(root.conj().T, direction)), np.asarray(direction.conj() @ white)
-
-
-def _covariance(lines: ComplexArray) -> ComplexArray:
-    return np.asarray(lines @ lines.conj().T / lines.shape[1])

@@ -51,7 +51,7 @@ def envelope_variance(
     shape : (n_channels,) complex
     """
     half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES * sample_rate_hz / y.shape[1])
-    return relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape))
+    return float(relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape)))
 
 
 def is_suspiciously_steady(
@@ -73,7 +73,7 @@ def is_suspiciously_steady(
     if 2.0 * np.pi * bandwidth / line > MANY_VALUES:
         return False
     half = max(BANDWIDTHS * bandwidth, 0.5 * HALF_WIDTH * frequency_hz, FEWEST_LINES * line)
-    return relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape)) < SUSPICIOUS
+    return bool(relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape)) < SUSPICIOUS)
 
 
 def least_variance(n: float) -> float:
@@ -110,19 +110,19 @@ def _analytic(
     return np.asarray(fft.ifft(np.where(np.abs(f - frequency_hz) <= half_hz, lines, 0.0)))
 
 
-def relative_variance(analytic: ComplexArray) -> float:
-    """Return the relative variance of a squared envelope."""
+def relative_variance(analytic: ComplexArray) -> FloatArray:
+    """Return the relative variance of a squared envelope, over the last axis."""
     power = np.abs(analytic) ** 2
-    return float(np.var(power) / np.mean(power) ** 2)
+    return np.asarray(np.var(power, axis=-1) / np.mean(power, axis=-1) ** 2)
 
 
-def independent_values(lines: ComplexArray) -> float:
+def independent_values(lines: ComplexArray) -> FloatArray:
     """Return 2(Σp)²/Σp² of the powers of lines, which of a Gaussian process scatter as exponentials.
 
     Examples
     --------
-    >>> independent_values(np.array([1.0, 1.0j, -1.0, 0.0]))
+    >>> float(independent_values(np.array([1.0, 1.0j, -1.0, 0.0])))
     6.0
     """
     power = np.abs(lines) ** 2
-    return float(2.0 * np.sum(power) ** 2 / max(np.sum(power**2), 1e-300))
+    return np.asarray(2.0 * np.sum(power, axis=-1) ** 2 / np.maximum(np.sum(power**2, axis=-1), 1e-300))

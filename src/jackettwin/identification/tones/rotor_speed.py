@@ -20,11 +20,11 @@ import numpy as np
 from scipy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.tones.drifting_tones import band_of
+from jackettwin.identification.tones.bands import Band, bands_of, overlapping
 from jackettwin.identification.tones.sinusoid import transform
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator, Sequence
 
 
 PAIRS = ((3, 1, 3), (2, 3, 6))
@@ -103,50 +103,60 @@ def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | No
     lines, duration = transform(y), y.shape[1] / sample_rate_hz
     highest = 0.45 * sample_rate_hz
     best: EstimatedSpeed | None = None
-    for ratio, lower, higher in PAIRS:
+    for pair in PAIRS:
         for width in WIDTHS:
-            for f in _middles(width, lower, duration):
-                half = max(width * f, FEWEST_LINES / duration)
-                if ratio * (f + 3.0 * half) > highest:
-                    break
-                found = _together(lines, duration, f, half, (ratio, lower, higher))
-                if found is not None and (best is None or found.coherence > best.coherence):
+            for found in _together(lines, duration, *_bands(width, pair, duration, highest), pair):
+                if best is None or found.coherence > best.coherence:
                     best = found
     return best
 
 
-def _middles(width: float, order: int, duration_s: float) -> Iterable[float]:
-    """Yield the middles of overlapping bands in which an order of the speeds may lie."""
-    f = max(order * LEAST_SPEED_HZ, 4.0 * FEWEST_LINES / duration_s)
-    while f < order * MOST_SPEED_HZ:
-        yield f
-        f += STEP * max(width * f, FEWEST_LINES / duration_s)
+def _bands(
+    width: float, pair: tuple[int, int, int], duration_s: float, highest_hz: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return middles and half widths of overlapping bands in which the lower order of a pair may lie."""
+    ratio, order, _ = pair
+    least = FEWEST_LINES / duration_s
+    middle, half = overlapping(
+        max(order * LEAST_SPEED_HZ, 4.0 * least), order * MOST_SPEED_HZ, width, least, STEP
+    )
+    below = ratio * (middle + 3.0 * half) <= highest_hz
+    return middle[below], half[below]
 
 
 def _together(
-    lines: ComplexArray, duration_s: float, f: float, half: float, pair: tuple[int, int, int]
-) -> EstimatedSpeed | None:
-    """Return the speed if the two orders of a pair are in the bands at f and at the multiple of it."""
+    lines: ComplexArray, duration_s: float, f: FloatArray, half: FloatArray, pair: tuple[int, int, int]
+) -> Iterator[EstimatedSpeed]:
+    """Yield the speeds of orders of a pair that are in the bands at f and at the multiple of it."""
     ratio, lower, higher = pair
-    n = fft.next_fast_len(int(8.0 * ratio * half * duration_s) + 8)
-    a = _analytic(lines, duration_s, f, half, n)
-    b = _analytic(lines, duration_s, ratio * f, ratio * half, n)
-    unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
-    # both basebands are about their own middle line; the multiple of the one is not quite the other
-    low, high = _line(f, duration_s), _line(ratio * f, duration_s)
-    turn = np.exp(2j * np.pi * (high - ratio * low) * np.arange(n) / n)
-    product = unit_a.conj() ** ratio * turn
-    coherence = float(np.abs(np.mean(unit_b * product)))
-    if coherence < LEAST_COHERENCE:
-        return None
-    if coherence < CERTAIN and not _only_together(unit_b, product, coherence):
-        return None
-    angle = (np.unwrap(np.angle(b)) + 2.0 * np.pi * high * np.arange(n) / n) / higher
+    lows, highs = bands_of(lines, duration_s, f, half), bands_of(lines, duration_s, ratio * f, ratio * half)
+    length = 2 ** np.ceil(np.log2(8.0 * ratio * half * duration_s + 8.0)).astype(np.intp)
+    for n in np.unique(length):
+        at = np.flatnonzero(length == n)
+        a = _analytic(lines, duration_s, [lows[k] for k in at], int(n))
+        b = _analytic(lines, duration_s, [highs[k] for k in at], int(n))
+        unit_a, unit_b = a / (np.abs(a) + 1e-300), b / (np.abs(b) + 1e-300)
+        # both basebands are about their own middle line; the multiple of the one is not quite the other
+        low, high = (np.array([_line(band, duration_s) for band in x]) for x in (lows, highs))
+        turn = np.exp(2j * np.pi * np.outer(high - ratio * low, np.arange(n))[at] / n)
+        product = unit_a.conj() ** ratio * turn
+        coherence = np.abs(np.mean(unit_b * product, axis=1))
+        for i in np.flatnonzero(coherence >= LEAST_COHERENCE):
+            c = float(coherence[i])
+            if c >= CERTAIN or _only_together(unit_b[i], product[i], c):
+                yield EstimatedSpeed(_speed(b[i], int(high[at[i]]), higher, duration_s), c, (lower, higher))
+
+
+def _speed(b: ComplexArray, line: int, order: int, duration_s: float) -> FloatArray:
+    """Return the speed that the phase of an order tells, smoothed, (n_instants,)."""
+    n = len(b)
+    angle = (np.unwrap(np.angle(b)) + 2.0 * np.pi * line * np.arange(n) / n) / order
     width = max(int(SMOOTHED * n), 3)
     kernel = np.hanning(width + 2)[1:-1]
     speed = np.gradient(angle) * n / (2.0 * np.pi * duration_s)
-    smooth = np.convolve(np.pad(speed, width, mode="reflect"), kernel / kernel.sum(), "same")[width:-width]
-    return EstimatedSpeed(np.asarray(smooth), float(coherence), (lower, higher))
+    return np.asarray(
+        np.convolve(np.pad(speed, width, mode="reflect"), kernel / kernel.sum(), "same")[width:-width]
+    )
 
 
 def _only_together(b: ComplexArray, product: ComplexArray, coherence: float) -> bool:
@@ -162,16 +172,15 @@ def _any_offset(product: ComplexArray, shift: int, n: int) -> float:
     return max((float(np.abs(np.mean(part))) for part in parts), default=0.0)
 
 
-def _analytic(lines: ComplexArray, duration_s: float, f: float, half: float, n: int) -> ComplexArray:
-    """Return the analytic signal of the channels' best combination in a band, about its middle line, (n,)."""
-    combination = band_of(lines, duration_s, f, half).combination
-    middle = _line(f, duration_s)
-    reach = int(half * duration_s)
-    inside = np.arange(max(middle - reach, 1), min(middle + reach, lines.shape[1] - 1) + 1)
-    spread = np.zeros(n, dtype=complex)
-    spread[(inside - middle) % n] = combination.conj() @ lines[:, inside]
+def _analytic(lines: ComplexArray, duration_s: float, bands: Sequence[Band], n: int) -> ComplexArray:
+    """Return the signals of the channels' best combinations, about their middle lines, (n_bands, n)."""
+    spread = np.zeros((len(bands), n), dtype=complex)
+    for row, band in zip(spread, bands, strict=True):
+        middle, reach = _line(band, duration_s), int(band.half_hz * duration_s)
+        inside = np.arange(max(middle - reach, 1), min(middle + reach, lines.shape[1] - 1) + 1)
+        row[(inside - middle) % n] = band.combination.conj() @ lines[:, inside]
     return np.asarray(fft.ifft(spread))
 
 
-def _line(f: float, duration_s: float) -> int:
-    return round(f * duration_s)
+def _line(band: Band, duration_s: float) -> int:
+    return round(band.middle_hz * duration_s)
