@@ -15,12 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import write_record
 from jackettwin.twin.export import export_modes
+from jackettwin.twin.kept import KeptInFolder
 from jackettwin.twin.many import Batch, observe_many
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.model import TwinModel
 from jackettwin.twin.together import fuse_batch
 
 YEAR, WORKERS = 52_560, 2
@@ -41,7 +42,8 @@ def measured(folder: Path, n: int) -> Batch:
     files = sorted(folder.glob("*.parquet"))[:n]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     started = time.perf_counter()
-    batch = observe_many(files, IdentificationSettings(), folder=folder / f"results{n}", workers=WORKERS)
+    keep = KeptInFolder(folder / f"results{n}")
+    batch = observe_many(files, TwinModel("benchmark"), keep=keep, workers=WORKERS)
     wall = time.perf_counter() - started
     document = many_document(batch, fuse_batch(batch))
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

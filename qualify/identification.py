@@ -28,9 +28,9 @@ from time import perf_counter, process_time
 import numpy as np
 
 from jackettwin import identification
+from jackettwin.files.codec import decode, encode
 from jackettwin.identification import FusedIdentification, Identification, fuse, identify, mac
 from jackettwin.identification.preparation.resolve import guarded_band_hz
-from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.identification.synthetic import ModalSystem, cramer_rao, simulate
 
 PAGE = Path("docs/verification/identification.md")
@@ -110,7 +110,7 @@ def one(seed: tuple[int, int], *, case: Case) -> dict[str, object]:
     at: list[float] = []
     found = identify(record, progress=lambda _: at.append(process_time()))
     seconds = np.diff([*at, process_time()])
-    return {"seed": seed[1], "seconds": seconds.tolist(), "found": to_plain(slim(found))}
+    return {"seed": seed[1], "seconds": seconds.tolist(), "found": encode(found.without_figures)}
 
 
 def identified(case: Case, n: int, seed: int) -> tuple[list[Identification], np.ndarray]:
@@ -131,7 +131,9 @@ def identified(case: Case, n: int, seed: int) -> tuple[list[Identification], np.
                 left = (perf_counter() - start) * (len(missing) / done - 1.0) / 60.0
                 say(f"{case.title}: {n - len(missing) + done} of {n}, {left:.1f} min left")
     chosen = sorted((line for line in lines if line["seed"] < n), key=lambda line: line["seed"])
-    return [from_plain(line["found"]) for line in chosen], np.array([line["seconds"] for line in chosen])
+    return [decode(Identification, line["found"]) for line in chosen], np.array(
+        [line["seconds"] for line in chosen]
+    )
 
 
 def read_lines(file: Path) -> Iterator[dict]:

@@ -24,7 +24,7 @@ SETTINGS = IdentificationSettings(refine=False)
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return tmp_path / "jackettwin" / "identified"
+    return tmp_path / "jackettwin" / "kept"
 
 
 @pytest.fixture

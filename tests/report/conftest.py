@@ -16,6 +16,7 @@ from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.twin import Examination, TwinResult
+from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.result import DampingExcess, MeasuredMode
 from jackettwin.updating import Residuals, Target, family, numbered_modes, single, support_model, update
 
@@ -46,8 +47,8 @@ def targets_only() -> TwinResult:
         numbered=numbered,
         labels=labels,
         observations=(),
+        shown=None,
         measured=measured,
-        names=(),
         updates=(fitted,),
         excess=((),),
         assumptions=("The steel has 1 %.",),
@@ -103,14 +104,19 @@ def complete(targets_only: TwinResult, record: Record, observation: Examination)
         )
         for m, mode in zip(targets_only.measured, found.modes[:2], strict=False)
     )
+    known = [Recognised(m.mode, m.label, 0.97) for m in measured]
+    seen = Observation(
+        "id", "model", "settings", "0", record.name, None, {}, observation.quality.summary(),
+        found.without_figures, (*known, *[None] * (len(found.modes) - len(known))), (),
+    )  # fmt: skip
     excess = (DampingExcess("side_side_1", 0.0456, 0.004, 0.0123),)
     return replace(
         targets_only,
         name="from_record",
         sensors=tuple(Sensor(c.name, c.direction, height_m=c.height_m) for c in record.channels),
-        observations=(replace(observation, identification=found),),
+        observations=(seen,),
+        shown=replace(observation, identification=found),
         measured=(*measured, *targets_only.measured[len(measured) :]),
-        names=((*(m.label for m in measured), *[""] * (len(found.modes) - len(measured))),),
         excess=(excess,),
         warnings=("Beware <script>alert(1)</script>.",),
     )

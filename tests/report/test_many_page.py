@@ -15,7 +15,7 @@ from jackettwin.identification.many_records.sightings import sightings
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.many_page import build_many_page
-from jackettwin.twin.many import Failed
+from jackettwin.twin.observe_files import Failed
 from jackettwin.twin.together import Together
 
 

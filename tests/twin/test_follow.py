@@ -12,6 +12,7 @@ from observations import observation
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate, RealPole
+from jackettwin.progress import Progress, Told
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, TwinConfig, TwinModel, follow, read_twin, twin_model
@@ -103,7 +104,7 @@ def test_a_late_record_renews_its_day_and_those_after(
 ) -> None:
     without = follow_observations(config, model, [*records[:3], *records[4:]])
     steps: list[str] = []
-    late = follow_observations(config, model, records[3:4], prior=without, step=steps.append)
+    late = follow_observations(config, model, records[3:4], prior=without, progress=Told(steps.append))
     assert steps == ["update after 2025-01-02", "update after 2025-01-03"]
     assert late.state == followed.state and late.days == followed.days
     assert any("older than 1 days" in line for line in late.warnings)
@@ -224,7 +225,7 @@ def test_shapes_and_real_poles_are_followed_and_kept(
     """Each day's problem holds the clearest shapes so far, and after a file the same ones."""
     problems: list[Problem] = []
 
-    def drawn(_: TwinConfig, problem: Problem) -> tuple[np.ndarray, str]:
+    def drawn(_: TwinConfig, problem: Problem, progress: Progress) -> tuple[np.ndarray, str]:
         problems.append(problem)
         return np.zeros((3, len(problem.parameters))), "ok"
 

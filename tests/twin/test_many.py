@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +16,20 @@ from jackettwin.errors import InputError
 from jackettwin.files import json_pieces
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.records import read_record, write_record
-from jackettwin.twin import examine_file, many
+from jackettwin.progress import Told
+from jackettwin.records import Record, read_record, write_record
+from jackettwin.twin import TwinModel
 from jackettwin.twin.export import export_modes
-from jackettwin.twin.many import Batch, observe_many, record_files
+from jackettwin.twin.kept import KeptInFolder
+from jackettwin.twin.many import Batch, observe_many
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.observe_files import record_files
 from jackettwin.twin.together import fuse_batch
 
+module = import_module("jackettwin.twin.observe_files")
+
 SETTINGS = IdentificationSettings(lowest_frequency_hz=0.3, max_order=24, refine=False)
+MODEL = TwinModel("test", identification=SETTINGS)
 WIND = (7.2, 8.4, 12.1, 8.1)
 
 
@@ -48,7 +55,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def batch(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Batch:
     results = tmp_path_factory.mktemp("results")
-    return observe_many(record_files([folder]), SETTINGS, folder=results, workers=1)
+    return observe_many(record_files([folder]), MODEL, keep=KeptInFolder(results), workers=1)
 
 
 @pytest.fixture(scope="module")
@@ -66,22 +73,23 @@ def test_a_fault_of_ours_in_one_record_stops_nothing(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever is raised: alone such a record shows the traceback, in a batch its reason."""
+    whole = module.observe
 
-    def broken(file: Path, *rest, **more):
-        if file.stem == "r1":
+    def broken(record: Record, model: TwinModel):
+        if record.name == "r1":
             raise FloatingPointError("underflow")
-        return examine_file(file, *rest, **more)
+        return whole(record, model)
 
-    monkeypatch.setattr(many, "examine_file", broken)
+    monkeypatch.setattr(module, "observe", broken)
     files = [folder / "r0.parquet", folder / "r1.parquet"]
-    found = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
+    found = observe_many(files, MODEL, keep=KeptInFolder(tmp_path), workers=1)
     assert [s.identification.records[0] for s in found] == ["r0"]
     assert "FloatingPointError: underflow" in found.failed[0].problem
 
 
 def test_processes_give_the_same_as_one(folder: Path, tmp_path: Path, batch: Batch) -> None:
     files = [folder / "r0.parquet", folder / "r9.parquet", folder / "r1.parquet"]
-    again = observe_many(files, SETTINGS, folder=tmp_path, workers=2)
+    again = observe_many(files, MODEL, keep=KeptInFolder(tmp_path), workers=2)
     for one, before in zip(again, batch, strict=False):
         assert one.identification.records == before.identification.records
         a, b = one.identification.modes[0], before.identification.modes[0]
@@ -95,34 +103,47 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
 ) -> None:
     files = record_files([folder])
     started: list[str] = []
-    monkeypatch.setattr(many, "_one", counted(many._one, started))
+    monkeypatch.setattr(module, "observe", counted(module.observe, started))
+    keep = KeptInFolder(tmp_path)
 
-    def interrupt(name: str) -> None:
-        if name == "r1.parquet":
+    def interrupt(what: str) -> None:
+        if "r2.parquet" in what:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        observe_many(files, SETTINGS, folder=tmp_path, workers=1, step=interrupt)
-    again = observe_many(files, SETTINGS, folder=tmp_path, workers=1)
-    assert started == ["r0.parquet", "r1.parquet", "r2.parquet", "r3.parquet", "r9.parquet"]
+        observe_many(files, MODEL, keep=keep, workers=1, progress=Told(interrupt))
+    again = observe_many(files, MODEL, keep=keep, workers=1)
+    assert started == ["r0", "r1", "r2", "r3"]
     # to the last digit and letter
     assert "".join(json_pieces(many_document(again, fuse_batch(again)))) == "".join(json_pieces(document))
     # other settings are another result
-    observe_many(files[:1], replace(SETTINGS, max_order=20), folder=tmp_path, workers=1)
-    assert started[5:] == ["r0.parquet"]
+    others = replace(MODEL, identification=replace(SETTINGS, max_order=20))
+    observe_many(files[:1], others, keep=keep, workers=1)
+    assert started[4:] == ["r0"]
     # a result that is damaged is computed again
     for file in tmp_path.iterdir():
         file.write_text('{"identification": {')
-    observe_many(files[:1], SETTINGS, folder=tmp_path, workers=1)
-    assert started[6:] == ["r0.parquet"]
+    observe_many(files[:1], MODEL, keep=keep, workers=1)
+    assert started[5:] == ["r0"]
 
 
 def counted(function, started: list[str]):
-    def one(work, file: Path, keep):
-        started.append(file.name)
-        return function(work, file, keep)
+    def one(record: Record, model: TwinModel):
+        started.append(record.name)
+        return function(record, model)
 
     return one
+
+
+def test_a_renamed_copy_counts_once_and_is_named(folder: Path, tmp_path: Path, batch: Batch) -> None:
+    """Fused twice, a record would narrow every interval by √2 without a word."""
+    write_record(replace(read_record(folder / "r1.parquet"), name="copy"), tmp_path / "copy.parquet")
+    files = [folder / "r0.parquet", folder / "r1.parquet", tmp_path / "copy.parquet"]
+    once = observe_many(files[:2], MODEL, keep=KeptInFolder(tmp_path), workers=1)
+    twice = observe_many(files, MODEL, keep=KeptInFolder(tmp_path), workers=1)
+    assert twice.results == once.results
+    assert [(f.subject, f.params["as"]) for f in twice.findings] == [("copy.parquet", "r1.parquet")]
+    assert "copy.parquet" in many_document(twice, fuse_batch(twice))["warnings"][0]
 
 
 def test_groups_are_bins_of_wind(document: dict) -> None:
@@ -155,7 +176,7 @@ def test_records_of_other_sensors_stand_for_themselves(folder: Path, tmp_path: P
     channels = tuple(replace(c, name=f"b{i}") for i, c in enumerate(record.channels))
     write_record(replace(record, channels=channels), tmp_path / "other.parquet")
     files = [folder / "r0.parquet", tmp_path / "other.parquet"]
-    batch = observe_many(files, SETTINGS, folder=tmp_path / "results", workers=1)
+    batch = observe_many(files, MODEL, keep=KeptInFolder(tmp_path / "results"), workers=1)
     document = many_document(batch, fuse_batch(batch))
     assert document["modes"] == []
     assert "records share no channel" in document["warnings"][0]

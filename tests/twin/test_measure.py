@@ -10,17 +10,17 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record
-from jackettwin.twin import read_twin
+from jackettwin.twin import TwinModel, read_twin
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import cautions
 
-module = import_module("jackettwin.twin.measure")
+module = import_module("jackettwin.twin.observe_files")
 
 
 def measured(config: TwinConfig) -> Measured:
-    return measure(config, twin_model(config), step=lambda _: None)
+    return measure(config, twin_model(config))
 
 
 @pytest.fixture
@@ -40,14 +40,14 @@ def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_
 
 
 def test_a_fault_of_ours_costs_one_record(config: TwinConfig, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = module.examined
+    whole = module.observe
 
-    def faulty(record: Record, *rest, **more):
+    def faulty(record: Record, model: TwinModel):
         if record.name == config.records[1].stem:
             raise ValueError("shapes disagree")
-        return whole(record, *rest, **more)
+        return whole(record, model)
 
-    monkeypatch.setattr(module, "examined", faulty)
+    monkeypatch.setattr(module, "observe", faulty)
     found = measured(config)
     assert len(found.observations) == 1
     assert "ValueError: shapes disagree" in found.failed[0].problem

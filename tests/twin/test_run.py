@@ -13,6 +13,7 @@ from observations import estimate, observation
 from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
+from jackettwin.progress import Told
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin import TwinResult, TwinState, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.assembled import assembled
@@ -41,7 +42,7 @@ def quick(name: str) -> TwinConfig:
 
 @pytest.fixture(scope="module")
 def pile(steps: list[str]) -> TwinResult:
-    return run_twin(quick("openfast_pile"), step=steps.append)
+    return run_twin(quick("openfast_pile"), progress=Told(steps.append))
 
 
 @pytest.fixture(scope="module")

@@ -41,7 +41,7 @@ def answer(result: TwinResult) -> Answers:
     """Return what a run says to the five questions of its first page."""
     u = recommended(result.updates)
     laws, source = _laws(result.updates)
-    days = sum(seen.record.duration_s for seen in result.observations) / 86400.0
+    days = sum(seen.duration_s for seen in result.observations) / 86400.0
     ground = () if u is None else tuple(_ground(u))
     open_ = [g.name for g in ground if g.verdict in ("weak", "unidentified")]
     speed = result.rotor_speed_hz

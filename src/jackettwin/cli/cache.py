@@ -1,6 +1,6 @@
-"""Where identifications are kept between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
+"""Where observations are kept between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
 
-A file's name is a hash of the record's content, all settings and the code that identifies: what changes makes
+A file's name is a hash of the record's content, all settings and the code that observes: what changes makes
 another name, and nothing has ever to be emptied by hand. The oldest files go when there are too many.
 """
 
@@ -8,21 +8,18 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable
-from contextlib import suppress
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import jackettwin
-from jackettwin.errors import InputError
-from jackettwin.twin.identified import IDENTIFIED, Identified, Keep, not_kept
+from jackettwin.twin.kept import NOT_KEPT, Keep, KeptInFolder
 
 MOST_BYTES = 500_000_000
 """Size of the cache: some thousand records."""
 MOST_RECORDS = 500
 """Records of one batch that are kept: more would push everything else out (``--out FOLDER`` keeps any)."""
-_IDENTIFYING = ("identification", "records", "twin")
-"""What of the package decides on an identification."""
+_OBSERVING = ("identification", "records", "response", "structure", "twin", "updating")
+"""What of the package decides on an observation."""
 
 
 def cache_folder() -> Path:
@@ -32,36 +29,28 @@ def cache_folder() -> Path:
 
 
 def keeping(*, fresh: bool = False) -> Keep:
-    """Return what keeps identifications; with ``fresh`` those that are there are computed again."""
+    """Return what keeps observations; with ``fresh`` those that are there are made again."""
     try:
-        folder = cache_folder() / "identified"
+        folder = cache_folder() / "kept"
         folder.mkdir(parents=True, exist_ok=True)
         _prune(folder)
     except (OSError, RuntimeError):  # no home, no right: everything works without
-        return not_kept
-    return partial(_kept, folder, fresh)
+        return NOT_KEPT
+    return kept_in(folder, fresh=fresh)
 
 
-def _kept(folder: Path, fresh: bool, key: str, compute: Callable[[], Identified]) -> Identified:
-    path = folder / f"{key}-{_code()}.json"
-    if not fresh:
-        with suppress(OSError, InputError):
-            kept = IDENTIFIED.read(path)
-            os.utime(path)
-            return kept
-    made = compute()
-    with suppress(OSError):
-        IDENTIFIED.write(made, path)
-    return made
+def kept_in(folder: Path, *, fresh: bool = False) -> KeptInFolder:
+    """Return what keeps observations in a folder, as this code makes them."""
+    return KeptInFolder(folder, _code(), fresh)
 
 
 @cache
 def _code() -> str:
-    """Return the identity of the code that identifies: size and time of its files."""
+    """Return the identity of the code that observes: size and time of its files."""
     root = Path(jackettwin.__file__).parent
     stamps = sorted(
         (str(file.relative_to(root)), file.stat().st_size, file.stat().st_mtime_ns)
-        for name in _IDENTIFYING
+        for name in _OBSERVING
         for file in (root / name).rglob("*.py")
     )
     return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -59,7 +60,15 @@ def follow_command(
         check_room(out)
     prior = None if prior_file is None else read_followed(prior_file)
     with progress(2 * len(config.records), config.name) as step:
-        followed = follow_twin(config, law=law, each=each, prior=prior, step=step, keep=keeping(fresh=fresh))
+        followed = follow_twin(
+            config,
+            law=law,
+            each=each,
+            prior=prior,
+            workers=os.cpu_count() or 1,
+            progress=step,
+            keep=keeping(fresh=fresh),
+        )
     document = follow_document(followed)
     if out is not None:
         with atomic_folder(out) as temporary:

@@ -12,7 +12,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from jackettwin.cli.cache import MOST_RECORDS, keeping
+from jackettwin.cli.cache import MOST_RECORDS, keeping, kept_in
 from jackettwin.cli.console import messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import check_room, read_mapping, read_yaml, write_json
@@ -25,10 +25,12 @@ from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import examine_file, observation_document
 from jackettwin.twin.export import WRITERS, export_modes
-from jackettwin.twin.identified import not_kept
+from jackettwin.twin.kept import KeptInFolder
 from jackettwin.twin.long_records import LONG, PIECE_S, without_long
-from jackettwin.twin.many import observe_many, record_files
+from jackettwin.twin.many import observe_many
 from jackettwin.twin.many_document import many_document
+from jackettwin.twin.model import TwinModel
+from jackettwin.twin.observe_files import record_files
 from jackettwin.twin.together import fuse_batch
 
 _SHOWN = 5
@@ -118,9 +120,17 @@ def identify_command(
                 _print_one,
             )
             return
-        kept = Path(passing) if out is None or not _folder(out) else out / "records"
-        how["keep"] = keeping(fresh=fresh) if len(files) <= MOST_RECORDS else not_kept
-        _deliver(_many(files, settings, how, kept, workers, report), out, as_json, _print_many)
+        model = TwinModel("identify", identification=settings, picks=picks)
+        keep = _keep(out, len(files), fresh=fresh) or kept_in(Path(passing))
+        _deliver(_many(files, model, how["unsaid"], keep, workers, report), out, as_json, _print_many)
+
+
+def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | None:
+    """Return where the observations of a batch are kept: in its own folder, if it has one."""
+    if out is not None and _folder(out):
+        return kept_in(out / "records", fresh=fresh)
+    keep = keeping(fresh=fresh)
+    return keep if n_records <= MOST_RECORDS and isinstance(keep, KeptInFolder) else None
 
 
 def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
@@ -178,15 +188,15 @@ def _one(
 
 def _many(
     files: Sequence[Path],
-    settings: IdentificationSettings,
-    how: Mapping[str, Any],
-    folder: Path,
+    model: TwinModel,
+    unsaid: Unsaid,
+    keep: KeptInFolder,
     workers: int | None,
     report: Path | None,
 ) -> dict[str, Any]:
     """Return the document; its long lists are read from the folder's results as they are written."""
     with progress(len(files), "identify") as step:
-        batch = observe_many(files, settings, folder=folder, workers=workers, step=step, **how)
+        batch = observe_many(files, model, keep=keep, unsaid=unsaid, workers=workers, progress=step)
     if not len(batch):
         raise InputError(
             f"none of {len(batch.failed)} records could be identified; the first: {batch.failed[0].problem}",

@@ -19,7 +19,7 @@ from jackettwin.records.readers.zones import UNSAID, read_zone
 from jackettwin.structure import assemble, read_structure
 from jackettwin.twin import read_twin
 from jackettwin.twin.draft import Draft, draft_twin
-from jackettwin.twin.many import record_files
+from jackettwin.twin.observe_files import record_files
 
 _MOST_READ = 20
 """Records that are read to be described; of more the rest is only listed."""

@@ -65,8 +65,7 @@ def run_command(
             compare=compare,
             posteriors="all" if all_laws else "likely",
             workers=os.cpu_count() or 1,
-            step=step,
-            within=step.within,
+            progress=step,
             keep=keeping(fresh=fresh),
         )
         step("write the report")

@@ -26,7 +26,7 @@ def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> No
     config = read_twin(twin)
     laws = (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
-        result = run_twin(config, laws=laws, step=step, within=step.within, keep=keeping(fresh=fresh))
+        result = run_twin(config, laws=laws, progress=step, keep=keeping(fresh=fresh))
     if as_json:
         print_json(update_document(result, 0))
     else:

@@ -220,3 +220,13 @@ class Identification:
     """Relaxations, if they were asked for."""
     picks: tuple[Pick, ...] = ()
     """The candidates that were considered; ``identify(…, picks=…)`` considers the same again."""
+
+    @property
+    def without_figures(self) -> Identification:
+        """The same without poles and spectrum, which figures alone need: a few kilobytes."""
+        none, no = np.empty(0), np.empty(0, dtype=np.bool_)
+        whole, n_channels = np.empty(0, dtype=np.int64), len(self.channels)
+        shapes = np.empty((0, n_channels), dtype=np.complex128)
+        poles = Stabilisation(whole, none, none, shapes, no, no, no, whole)
+        spectrum = Spectrum(none, np.empty((n_channels, 0)), np.empty((n_channels, 0)))
+        return replace(self, stabilisation=poles, spectrum=spectrum)

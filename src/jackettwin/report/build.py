@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from jackettwin.identification import Identification
-from jackettwin.records import Record
 from jackettwin.report.numbers import fixed
 from jackettwin.report.page import Block, Section, Table, Text, write_figures, write_page
 from jackettwin.report.section_posterior import what_is_known, whose_damping
@@ -23,7 +22,7 @@ from jackettwin.report.section_updating import (
 )
 from jackettwin.report.summary import headline
 from jackettwin.report.tables_updating import key_table
-from jackettwin.twin import TwinResult
+from jackettwin.twin import Observation, TwinResult
 from jackettwin.version import __version__
 
 _SHOWN_WARNINGS = 3
@@ -91,7 +90,7 @@ def _assumptions(result: TwinResult) -> list[Block]:
 def _provenance(result: TwinResult) -> list[Block]:
     rows = [("jackettwin", __version__), ("twin", result.name), ("structure", result.assembly.structure.name)]
     rows.append(("degrees of freedom", str(result.assembly.n_dof)))
-    rows += [("record", _conditions(seen.record)) for seen in result.observations]
+    rows += [("record", _conditions(seen)) for seen in result.observations]
     settings: dict[tuple[tuple[str, str], ...], list[str]] = {}
     for found in result.identifications:
         settings.setdefault(_settings(found), []).extend(found.records)
@@ -100,7 +99,7 @@ def _provenance(result: TwinResult) -> list[Block]:
     return [Table("Where the numbers come from.", ("what", "value"), tuple(rows), 2)]
 
 
-def _conditions(record: Record) -> str:
+def _conditions(record: Observation) -> str:
     return "; ".join([record.name, *(f"{key} {value}" for key, value in record.conditions.items())])
 
 

@@ -11,7 +11,7 @@ from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
 from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
 from jackettwin.twin.groups import Group
-from jackettwin.twin.many import Failed
+from jackettwin.twin.observe_files import Failed
 from jackettwin.twin.together import Together
 from jackettwin.version import __version__
 

@@ -13,27 +13,23 @@ from jackettwin.twin import TwinResult
 
 def the_record(result: TwinResult) -> list[Block]:
     """Return the quality, the channels and the spectra of the first record."""
-    if result.record is None:
+    if result.shown is None or result.record is None:
         return []
     caption = (
         f"{result.record.name}: every channel. Blue along x (fore-aft), vermillion along y (side-side). "
         "Long channels are drawn as the extremes of each bin."
     )
     blocks: list[Block] = [Plot("time_series", caption, figures_record.time_series(result.record))]
-    if result.identifications:
-        found = result.identifications[0]
-        modes = list(zip(result.names[0], found.modes, strict=True))
-        caption = (
-            "Power spectral density (PSD) of each channel by Welch's method, and singular values of the "
-            "spectral matrix of the channels scaled to unit variance, largest darkest. "
-            "Orange: the first two that the identified modes alone would have under white forces."
-        )
-        fit = modal_fit(result.record, found)
-        blocks.insert(0, tables.quality_table(result.observations[0]))
-        blocks.append(
-            Plot("spectra", caption, figures_record.spectra(found.spectrum, found.channels, modes, fit))
-        )
-    return blocks
+    found = result.shown.identification
+    modes = list(zip(result.names[0], found.modes, strict=True))
+    caption = (
+        "Power spectral density (PSD) of each channel by Welch's method, and singular values of the "
+        "spectral matrix of the channels scaled to unit variance, largest darkest. "
+        "Orange: the first two that the identified modes alone would have under white forces."
+    )
+    fit = modal_fit(result.record, found)
+    spectra = figures_record.spectra(found.spectrum, found.channels, modes, fit)
+    return [tables.quality_table(result.shown), *blocks, Plot("spectra", caption, spectra)]
 
 
 def what_was_identified(result: TwinResult) -> list[Block]:
@@ -43,9 +39,9 @@ def what_was_identified(result: TwinResult) -> list[Block]:
         if i == 0:
             blocks += [*diagrams(found, names), tables.records_table(result)]
         blocks.append(tables.identified_table(found, names, folded=i > 0))
-    if result.identifications:
-        first = result.identifications[0]
-        compared = result.observations[0].comparison
+    if result.shown is not None:
+        first = result.shown.identification
+        compared = result.shown.comparison
         if compared is not None:
             blocks.append(tables.method_table(compared, result.names[0]))
         if first.rejected:

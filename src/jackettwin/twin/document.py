@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,11 @@ from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.held import held_document
+from jackettwin.twin.observation import Observation
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.twin.truth import truth_document
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
-from jackettwin.updating.pairing import Held
 from jackettwin.updating.scatter import leg_scatter
 from jackettwin.updating.update import Uncertainty
 from jackettwin.version import __version__
@@ -31,8 +32,8 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
         "updates": [update_document(result, i) for i in range(len(result.updates))],
         "law_probability": law_probability(result.updates),
         "identification": [
-            _held_document(observation_document(seen, names), seen, held, result.labels)
-            for seen, names, held in zip(result.observations, result.names, result.held, strict=True)
+            _recognised(seen, result.labels, None if i or result.shown is None else result.shown.comparison)
+            for i, seen in enumerate(result.observations)
         ],
         "unpaired_modes": [
             mode_document(e, None) | {"held_against": held_document(e, held, result.labels)}
@@ -46,12 +47,13 @@ def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
     }
 
 
-def _held_document(
-    document: dict[str, Any], seen: Examination, held: tuple[Held, ...], labels: tuple[str, ...]
-) -> dict[str, Any]:
-    """Return a record's document with what each mode was held against in the model."""
-    for plain, mode, against in zip(document["modes"], seen.identification.modes, held, strict=True):
-        plain["held_against"] = held_document(mode, against, labels)
+def _recognised(seen: Observation, labels: tuple[str, ...], compared: Comparison | None) -> dict[str, Any]:
+    """Return a record's document with what each mode is in the model, and was held against."""
+    document = identification_document(seen.identification, seen.quality, seen.conditions, compared)
+    modes = zip(document["modes"], seen.identification.modes, seen.labels, seen.held, strict=True)
+    for plain, mode, label, held in modes:
+        plain["label"] = label or None
+        plain["held_against"] = held_document(mode, held, labels)
     return document
 
 
@@ -286,17 +288,19 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
     ]
 
 
-def observation_document(seen: Examination, labels: tuple[str, ...] | None = None) -> dict[str, Any]:
-    """Return the document of one record of ``jackettwin identify``, with the model's labels if given."""
-    document = identification_document(seen.identification, seen.quality.summary())
-    if labels is not None:
-        for mode, label in zip(document["modes"], labels, strict=True):
-            mode["label"] = label or None
-    methods = {} if seen.comparison is None else {"methods": comparison_document(seen.comparison)}
-    return document | methods | {"conditions": dict(seen.record.conditions)}
+def observation_document(seen: Examination) -> dict[str, Any]:
+    """Return the document of one record of ``jackettwin identify``."""
+    return identification_document(
+        seen.identification, seen.quality.summary(), seen.record.conditions, seen.comparison
+    )
 
 
-def identification_document(found: Identification, quality: dict[str, Any]) -> dict[str, Any]:
+def identification_document(
+    found: Identification,
+    quality: Mapping[str, Any],
+    conditions: Mapping[str, Any],
+    compared: Comparison | None = None,
+) -> dict[str, Any]:
     """Return the modes of one record, what was rejected, the settings used and the record's quality."""
     names = [channel.name for channel in found.channels]
     s = found.settings
@@ -333,9 +337,11 @@ def identification_document(found: Identification, quality: dict[str, Any]) -> d
         ],
         "picks": plain_picks(found.picks),
         "duration_s": found.duration_s,
-        "quality": quality,
+        "quality": dict(quality),
         "warnings": list(found.warnings),
         "notes": list(found.notes),
+        **({} if compared is None else {"methods": comparison_document(compared)}),
+        "conditions": dict(conditions),
     }
 
 

@@ -29,7 +29,7 @@ from jackettwin.records.repair import common_time
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
-from jackettwin.twin.identified import Identified, Keep, identified_key, not_kept
+from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""
@@ -78,7 +78,7 @@ def examine_file(
     picks: tuple[Pick, ...] = (),
     unsaid: Unsaid | None = None,
     compare: bool = False,
-    keep: Keep = not_kept,
+    keep: Keep = NOT_KEPT,
 ) -> Examination:
     """Read and examine one record; ``unsaid`` holds rate and unit for a file that does not say them.
 
@@ -99,7 +99,7 @@ def examine(
     sensors: tuple[Sensor, ...] = (),
     picks: tuple[Pick, ...] = (),
     compare: bool = False,
-    keep: Keep = not_kept,
+    keep: Keep = NOT_KEPT,
 ) -> Examination:
     """Judge, repair, turn to the rotor's axes and identify one record.
 
@@ -111,7 +111,7 @@ def examine(
         Poles to take instead of the automatic selection, for the records they name.
     compare : bool
         Identify by every method as well.
-    keep : callable
+    keep : Keep
         Keeps what was identified for the next time.
 
     Raises
@@ -147,10 +147,9 @@ def examine(
         compared = compare_methods(ready, found, settings) if compare and found.modes else None
         return Identified.of(found, compared)
 
-    kept = keep(
-        identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes), compute
-    )
-    return Examination(ready, quality, kept.found, findings, kept.comparison)
+    key = identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes)
+    made = kept(keep, IDENTIFIED, key, compute)
+    return Examination(ready, quality, made.found, findings, made.comparison)
 
 
 def _out_of_step(found: Identification, findings: Findings) -> Identification:

@@ -8,7 +8,7 @@ how many days there were, since the state holds their sums.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from typing import Literal
@@ -16,18 +16,16 @@ from typing import Literal
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, located
-from jackettwin.records import read_record
-from jackettwin.records.identity import record_id
+from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.advance import advance
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
-from jackettwin.twin.identified import Keep, not_kept
-from jackettwin.twin.many import failure
+from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.observation import Observation
-from jackettwin.twin.observe import examined, observed
+from jackettwin.twin.observe_files import observe_files, sorted_out
 from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
@@ -54,8 +52,9 @@ def follow_twin(
     law: str | None = None,
     each: Each = "day",
     prior: Followed | None = None,
-    step: Callable[[str], None] = lambda _: None,
-    keep: Keep = not_kept,
+    workers: int = 1,
+    progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
 ) -> Followed:
     """Return what is known after each day of a twin's records.
 
@@ -67,9 +66,11 @@ def follow_twin(
         Whether the records of a UTC day count together, or each on its own.
     prior : Followed, optional
         To go on from; records that are in it already are left out, whatever their files are called.
-    step : callable
+    workers : int
+        Processes that observe records.
+    progress : Progress
         Told what is being done: once a record, then once a day.
-    keep : callable
+    keep : Keep
         Keeps what was identified for the next run.
 
     Raises
@@ -80,8 +81,10 @@ def follow_twin(
     if not config.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
     model = twin_model(config)
-    observations, warnings = _observed(config, model, prior, step, keep)
-    followed = follow_observations(config, model, observations, law=law, each=each, prior=prior, step=step)
+    observations, warnings = _observed(config, model, prior, workers, progress, keep)
+    followed = follow_observations(
+        config, model, observations, law=law, each=each, prior=prior, progress=progress
+    )
     return replace(followed, warnings=(*warnings, *followed.warnings))
 
 
@@ -93,7 +96,7 @@ def follow_observations(
     law: str | None = None,
     each: Each = "day",
     prior: Followed | None = None,
-    step: Callable[[str], None] = lambda _: None,
+    progress: Progress = SILENT,
 ) -> Followed:
     """Return what is known after each day, from what records show; see :func:`follow_twin`."""
     ordered = sorted(observations, key=lambda seen: (_start(seen), seen.record_id))
@@ -118,9 +121,9 @@ def follow_observations(
     question = _question(config, model, state, law, prior)
     if each == "record":
         known = () if prior is None else prior.days
-        days = (*known, *(question.after_record(seen, then, step) for seen, then in moments))
+        days = (*known, *(question.after_record(seen, then, progress) for seen, then in moments))
     else:
-        days = question.after_days(state, () if prior is None else prior.days, step)
+        days = question.after_days(state, () if prior is None else prior.days, progress)
     return Followed(
         name=config.name,
         law=question.support.family.name,
@@ -173,34 +176,26 @@ def _observed(
     config: TwinConfig,
     model: TwinModel,
     prior: Followed | None,
-    step: Callable[[str], None],
+    workers: int,
+    progress: Progress,
     keep: Keep,
-) -> tuple[list[Observation], tuple[str, ...]]:
+) -> tuple[tuple[Observation, ...], tuple[str, ...]]:
     """Return what the records show that the prior does not know, and what is worth saying of them."""
-    known = set() if prior is None else {own for day in prior.state.days.values() for own in day.records}
-    observations: list[Observation] = []
-    warnings: list[str] = []
-    new = 0
-    first: Exception | None = None
-    for path in config.records:
-        step(f"identify {path.name}")
-        try:
-            record = read_record(path, config.unsaid)
-            if record_id(record) in known:
-                continue
-            new += 1
-            with located(file=path):
-                observations.append(observed(record, examined(record, model, keep=keep), model))
-        except Exception as error:  # of many records, one that fails must not stop the others
-            if not path.exists():
-                raise
-            first = first or error
-            warnings.append(f"left out: {failure(path, error).problem}")
-    if first is not None and not observations:
-        raise first
-    if not new:
+    known = () if prior is None else [own for day in prior.state.days.values() for own in day.records]
+    results = observe_files(
+        config.records,
+        model,
+        unsaid=config.unsaid,
+        known=known,
+        workers=workers,
+        progress=progress,
+        keep=keep,
+    )
+    observations, failed = sorted_out(config.records, results)
+    if not observations and not failed:
         names = [path.name for path in config.records]
         raise InputError("no new records to follow", file=config.path, field="records", value=names)
+    warnings = [f"left out: {one.problem}" for one in failed]
     for one in observations:
         warnings += [f"{one.name}: {finding}" for finding in one.findings if finding.severity != "info"]
     return observations, tuple(warnings)
@@ -259,9 +254,7 @@ class _Question:
     def units(self) -> dict[str, str]:
         return {p.name: p.unit for p in self.support.parameters}
 
-    def after_days(
-        self, state: TwinState, known: Sequence[Known], step: Callable[[str], None]
-    ) -> tuple[Known, ...]:
+    def after_days(self, state: TwinState, known: Sequence[Known], progress: Progress) -> tuple[Known, ...]:
         """Return what is known after each day: what is out of date is estimated anew, nothing else."""
         before, days = {day.date: day for day in known}, []
         running = replace(state, days={}, totals={}, clearest={})
@@ -273,26 +266,26 @@ class _Question:
             if old is not None and old.evidence == self._identity(running):
                 days.append(old)
                 continue
-            step(f"update after {date_}")
+            progress(f"update after {date_}")
             time = day.time_utc
             if date_ != UNDATED and time is not None:
-                days.append(self._known(running, Known(date_, time, len(day.records), "", {}, {})))
+                days.append(self._known(running, Known(date_, time, len(day.records), "", {}, {}), progress))
         return tuple(days)
 
-    def after_record(self, seen: Observation, state: TwinState, step: Callable[[str], None]) -> Known:
+    def after_record(self, seen: Observation, state: TwinState, progress: Progress) -> Known:
         """Return what is known after one record."""
         if seen.start_utc is None:
             raise ValueError("a record that is followed has a start")
-        step(f"update after {seen.name}")
+        progress(f"update after {seen.name}")
         time = seen.start_utc.astimezone(UTC)
-        return self._known(state, Known(time.isoformat(), time, 1, "", {}, {}))
+        return self._known(state, Known(time.isoformat(), time, 1, "", {}, {}), progress)
 
-    def _known(self, state: TwinState, moment: Known) -> Known:
+    def _known(self, state: TwinState, moment: Known, progress: Progress = SILENT) -> Known:
         """Return the moment with what the records up to then say."""
         evidence = _evidence(self.config, self.model, self.rotor, self.wind, state)
         highest = max(mode for data, _ in evidence.states.values() for mode in data.modes)
         problem = model_problem(self.config, evidence, self.support.reaching(highest))
-        log_theta, status = _draws(self.config, problem)
+        log_theta, status = _draws(self.config, problem, progress)
         names = [p.name for p in problem.parameters]
         low, median, high = np.exp(np.quantile(log_theta, [0.05, 0.5, 0.95], axis=0))
         return replace(
@@ -329,15 +322,15 @@ class _Question:
         return find_drift(problem, np.log(z))
 
 
-def _draws(config: TwinConfig, problem: Problem) -> tuple[FloatArray, str]:
+def _draws(config: TwinConfig, problem: Problem, progress: Progress) -> tuple[FloatArray, str]:
     """Return draws of ln θ and ``"ok"``; those of Laplace's method, and why, if there is no posterior."""
     how = config.update
     posterior, status = posterior_or_status(
-        problem, sampler=how.sampler, particles=how.particles, seed=how.seed
+        problem, sampler=how.sampler, particles=how.particles, seed=how.seed, progress=progress
     )
     if posterior is not None:
         return posterior.log_theta, status
-    found = search(problem, starts=how.starts, seed=how.seed)
+    found = search(problem, starts=how.starts, seed=how.seed, progress=progress)
     return laplace_draws(problem, found.solutions[0].theta, seed=how.seed), status
 
 

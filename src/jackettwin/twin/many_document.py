@@ -35,7 +35,7 @@ def many_document(batch: Batch, together: Together) -> dict[str, Any]:
         "failed": [asdict(one) for one in batch.failed],
         "records_identified": len(batch),
         "duration_s": together.duration_s,
-        "warnings": list(together.warnings),
+        "warnings": [*map(str, batch.findings), *together.warnings],
     }
 
 
@@ -52,8 +52,7 @@ def _modes(fused: FusedIdentification) -> list[dict[str, Any]]:
 
 def _records(batch: Batch) -> Iterator[dict[str, Any]]:
     for one in batch:
-        document = identification_document(one.identification, one.quality)
-        yield {**document, "conditions": one.conditions}
+        yield identification_document(one.identification, one.quality, one.conditions)
 
 
 def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:

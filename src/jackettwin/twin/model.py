@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -78,6 +77,11 @@ class TwinModel:
             }
         return digest(parts)
 
+    @cached_property
+    def numbering(self) -> str:
+        """Identity of the modes that measured ones are recognised as, on every feet."""
+        return digest([self.labels, [[f.frequency_hz, f.shapes] for f in self.feet]])
+
     @property
     def structure(self) -> Assembly:
         """The assembled structure of a model that has one."""
@@ -114,23 +118,21 @@ class TwinModel:
             self.structure, tuple(by_channel[c.name] for c in seen.identification.channels)
         )
 
-    def likest_feet(self, examinations: Sequence[Examination]) -> Feet | None:
-        """Return the feet on which the model is most like what records show; the stiffest of equals.
+    def likest_feet(self, seen: Examination) -> Feet | None:
+        """Return the feet on which the model is most like what a record shows; the stiffest of equals.
 
         Raises
         ------
         InputError
             If a sensor sits where the structure has no place.
         """
-        seeing = [self.sees(seen) for seen in examinations] if self.feet else []
-
-        def alike(feet: Feet) -> float:
-            return sum(
-                likeness(seen.identification.modes, feet.frequency_hz, at @ feet.shapes)
-                for seen, at in zip(examinations, seeing, strict=True)
-            )
-
-        return max(self.feet, key=alike, default=None)
+        if not self.feet:
+            return None
+        at = self.sees(seen)
+        return max(
+            self.feet,
+            key=lambda feet: likeness(seen.identification.modes, feet.frequency_hz, at @ feet.shapes),
+        )
 
 
 def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, ...]:

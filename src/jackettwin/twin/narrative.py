@@ -85,16 +85,10 @@ def cautions(
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]
-        for seen in found.examinations:
-            name = seen.record.name
-            lines += [f"{name}, {f.channel}: {f.text}" for f in seen.quality.findings]
-            lines += [f"{name}: {text}" for text in seen.identification.warnings]
-        lines += [
-            f"{one.name}: {finding}"
-            for one in found.observations
-            for finding in one.findings
-            if finding.code == "sensor_against_model"
-        ]
+        for seen in found.observations:
+            lines += [f"{seen.name}, {f['channel']}: {f['text']}" for f in seen.quality.get("findings", ())]
+            lines += [f"{seen.name}: {text}" for text in seen.identification.warnings]
+            lines += [f"{seen.name}: {f}" for f in seen.findings if f.code == "sensor_against_model"]
         lines += [*_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
@@ -59,6 +59,8 @@ class Observation:
     findings : tuple of Finding
     held : tuple of Held
         For each identified mode, what it was held against in the model; empty without a structure.
+    truth : mapping
+        What the record says is true of its structure (simulated ones do): ``true_modes``, ``true_support``.
     """
 
     record_id: str
@@ -74,6 +76,12 @@ class Observation:
     sensors: tuple[Sensor, ...]
     findings: tuple[Finding, ...] = ()
     held: tuple[Held, ...] = ()
+    truth: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """For each identified mode, which of the model's it is; empty if none."""
+        return tuple("" if known is None else known.label for known in self.recognised)
 
     @property
     def duration_s(self) -> float:

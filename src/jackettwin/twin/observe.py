@@ -5,17 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jackettwin.findings import Finding
-from jackettwin.identification.storage import slim
 from jackettwin.records import Record
 from jackettwin.records.identity import record_id
 from jackettwin.twin.examine import Examination, examine
-from jackettwin.twin.identified import Keep, not_kept
+from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel, placed_sensors
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating.pairing import Held, held_against, pair
 from jackettwin.updating.softer_feet import Feet
 from jackettwin.version import __version__
+
+TRUTH = ("true_modes", "true_support")
+"""What records of a known structure say of it in their metadata."""
 
 
 def observe(record: Record, model: TwinModel) -> Observation:
@@ -30,7 +32,7 @@ def observe(record: Record, model: TwinModel) -> Observation:
 
 
 def examined(
-    record: Record, model: TwinModel, *, compare: bool = False, keep: Keep = not_kept
+    record: Record, model: TwinModel, *, compare: bool = False, keep: Keep = NOT_KEPT
 ) -> Examination:
     """Return a record examined with a model's settings: what figures need, and an observation leaves out.
 
@@ -49,7 +51,7 @@ def examined(
     )
 
 
-def observed(record: Record, seen: Examination, model: TwinModel, feet: Feet | None = None) -> Observation:
+def observed(record: Record, seen: Examination, model: TwinModel) -> Observation:
     """Return what is kept of a record that was examined.
 
     Parameters
@@ -58,8 +60,6 @@ def observed(record: Record, seen: Examination, model: TwinModel, feet: Feet | N
         As it was read: its samples are its identity.
     seen : Examination
         What :func:`examined` made of it.
-    feet : Feet, optional
-        Of the model's, on which the modes are recognised; default: those most like this record.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def observed(record: Record, seen: Examination, model: TwinModel, feet: Feet | N
         If a sensor sits where the structure has no place.
     """
     found = seen.identification
-    known = _known(seen, model, feet or model.likest_feet([seen]))
+    known = _known(seen, model, model.likest_feet(seen))
     said = {str(f) for f in seen.findings}
     others = (Finding("identification", params={"text": t}) for t in found.warnings if t not in said)
     return Observation(
@@ -79,11 +79,12 @@ def observed(record: Record, seen: Examination, model: TwinModel, feet: Feet | N
         start_utc=record.start_utc,
         conditions=dict(seen.record.conditions),
         quality=seen.quality.summary(),
-        identification=slim(found),
+        identification=found.without_figures,
         recognised=known.recognised,
         held=known.held,
         sensors=placed_sensors(model.sensors, seen.record),
         findings=(*(f.coded for f in seen.quality.findings), *seen.findings, *others, *known.findings),
+        truth={key: value for key, value in record.metadata.items() if key in TRUTH},
     )
 
 

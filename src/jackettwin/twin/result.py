@@ -11,6 +11,7 @@ from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
 from jackettwin.twin.examine import Examination
+from jackettwin.twin.observation import Observation
 from jackettwin.updating import Update
 from jackettwin.updating.pairing import Held
 
@@ -118,10 +119,10 @@ class TwinResult:
     ----------
     numbered, labels
         Undamped modes on pinned supports and what to call them.
-    observations : tuple of Examination
-        One a record: its quality, the repaired record, what was identified.
-    names : tuple of tuple of str
-        For each record, the label of each identified mode; empty without a counterpart in the model.
+    observations : tuple of Observation
+        One a record.
+    shown : Examination or None
+        Of the first record, for figures: its quality, the repaired record, poles and spectra.
     measured : tuple of MeasuredMode
         In the order of mode numbers.
     updates : tuple of Update
@@ -132,8 +133,6 @@ class TwinResult:
         Sentences for the report.
     relaxations : tuple of MeasuredRelaxation
         Real poles that the supports were updated to, too, by rate.
-    held : tuple of tuple of Held
-        For each record, what each identified mode was held against in the model.
     rotor_speed_hz : (lowest, highest) or None
         Of the rotor in operation, where the twin says it or its rotor does.
     blades : int
@@ -144,34 +143,39 @@ class TwinResult:
     sensors: tuple[Sensor, ...]
     numbered: UndampedModes
     labels: tuple[str, ...]
-    observations: tuple[Examination, ...]
-    names: tuple[tuple[str, ...], ...]
+    observations: tuple[Observation, ...]
+    shown: Examination | None
     measured: tuple[MeasuredMode, ...]
     updates: tuple[Update, ...]
     excess: tuple[tuple[DampingExcess, ...], ...]
     assumptions: tuple[str, ...]
     warnings: tuple[str, ...]
     relaxations: tuple[MeasuredRelaxation, ...] = ()
-    held: tuple[tuple[Held, ...], ...] = ()
     rotor_speed_hz: tuple[float, float] | None = None
     blades: int = 3
 
     @property
     def record(self) -> Record | None:
         """The first record, repaired."""
-        return self.observations[0].record if self.observations else None
+        return None if self.shown is None else self.shown.record
+
+    @property
+    def names(self) -> tuple[tuple[str, ...], ...]:
+        """For each record, the label of each identified mode; empty without a counterpart in the model."""
+        return tuple(seen.labels for seen in self.observations)
 
     @property
     def identifications(self) -> tuple[Identification, ...]:
-        """What was identified, one a record."""
-        return tuple(seen.identification for seen in self.observations)
+        """What was identified, one a record; only that of the first has poles and spectra."""
+        others = tuple(seen.identification for seen in self.observations[1:])
+        return others if self.shown is None else (self.shown.identification, *others)
 
     @property
     def unpaired(self) -> tuple[tuple[ModalEstimate, Held], ...]:
         """Identified modes the model has no counterpart for, and what they were held against."""
         return tuple(
             (mode, against)
-            for found, held in zip(self.identifications, self.held, strict=False)
-            for mode, against in zip(found.modes, held, strict=True)
+            for seen in self.observations
+            for mode, against in zip(seen.identification.modes, seen.held, strict=False)
             if against.verdict != "paired"
         )

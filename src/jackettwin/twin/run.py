@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
 from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
-from jackettwin.twin.identified import Keep, not_kept
-from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.kept import NOT_KEPT, Keep
+from jackettwin.twin.measure import measure
 from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import Evidence, law_problem
@@ -32,9 +32,8 @@ def run_twin(
     compare: bool = False,
     posteriors: Posteriors = "all",
     workers: int = 1,
-    step: Callable[[str], None] = lambda _: None,
-    within: Callable[[str], None] = lambda _: None,
-    keep: Keep = not_kept,
+    progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
 ) -> TwinResult:
     """Identify the records of a twin (or take its targets) and update its supports under each law.
 
@@ -48,11 +47,9 @@ def run_twin(
         Whether every law's posterior is sampled, or that of the law to recommend: the others are fitted.
     workers : int
         Processes that identify records.
-    step : callable
+    progress : Progress
         Told what is being done, once a step; ``count_steps`` says how many there are.
-    within : callable
-        Told how far a step is, as often as there is something to say.
-    keep : callable
+    keep : Keep
         Keeps what was identified for the next run.
 
     Raises
@@ -61,11 +58,11 @@ def run_twin(
         If records, sensors or targets do not fit the structure.
         Or are out of the supports' reach.
     """
-    step("assemble the structure")
+    progress("assemble the structure")
     model = twin_model(config)
     assembly, numbered, labels = model.structure, model.modes, model.labels
     found = (
-        measure(config, model, compare=compare, workers=workers, step=step, keep=keep)
+        measure(config, model, compare=compare, workers=workers, progress=progress, keep=keep)
         if config.records
         else None
     )
@@ -83,10 +80,10 @@ def run_twin(
     wanted = laws or config.update.laws
     shown, updates = tuple(m.mode for m in measured), []
     for law in relaxing(config, wanted) if relaxations else wanted:
-        step(f"update {law}")
-        updates.append(_update(config, evidence, law, shown, within, sampled=posteriors == "all"))
+        progress(f"update {law}")
+        updates.append(_update(config, evidence, law, shown, progress, sampled=posteriors == "all"))
     if posteriors == "likely":
-        updates = _with_one_posterior(config, updates, within)
+        updates = _with_one_posterior(config, updates, progress)
     speed, blades = rotor_speed_hz(config)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
@@ -95,23 +92,16 @@ def run_twin(
         sensors=() if found is None else found.sensors,
         numbered=numbered,
         labels=labels,
-        observations=() if found is None else found.examinations,
-        names=() if found is None else _names(found),
+        observations=() if found is None else found.observations,
+        shown=None if found is None else found.shown,
         measured=measured,
         updates=tuple(updates),
         excess=tuple(_excess(measured, result) for result in updates),
         assumptions=assumptions(config, measured, relaxations, wind),
         warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
         relaxations=relaxations,
-        held=() if found is None else tuple(one.held for one in found.observations),
         rotor_speed_hz=speed,
         blades=blades,
-    )
-
-
-def _names(found: Measured) -> tuple[tuple[str, ...], ...]:
-    return tuple(
-        tuple("" if known is None else known.label for known in one.recognised) for one in found.observations
     )
 
 
@@ -125,13 +115,10 @@ def _update(
     evidence: Evidence,
     law: str,
     shown: tuple[int, ...],
-    within: Callable[[str], None],
+    progress: Progress,
     *,
     sampled: bool,
 ) -> Update:
-    def progress(what: str) -> None:
-        within(f"{law}: {what}")
-
     how, problem = config.update, law_problem(config, evidence, law)
     try:
         return update(
@@ -151,15 +138,9 @@ def _update(
         raise error.at(file=config.path, field=None if error.field else source) from None
 
 
-def _with_one_posterior(
-    config: TwinConfig, updates: list[Update], within: Callable[[str], None]
-) -> list[Update]:
+def _with_one_posterior(config: TwinConfig, updates: list[Update], progress: Progress) -> list[Update]:
     """Return the updates, the likely one with its posterior."""
     chosen, how = likely(updates), config.update
-
-    def progress(what: str) -> None:
-        within(f"{'' if chosen is None else chosen.law}: {what}")
-
     return [
         with_posterior(u, particles=how.particles, sampler=how.sampler, seed=how.seed, progress=progress)
         if u is chosen

@@ -43,8 +43,8 @@ class TrueParameter:
 def true_modes(result: TwinResult) -> tuple[TrueMode, ...]:
     """Return the true modes of the measured ones, averaged over all records that state them."""
     stated: dict[str, list[dict[str, Any]]] = {}
-    for metadata in _metadata(result):
-        for mode in metadata.get("true_modes") or []:
+    for seen in result.observations:
+        for mode in seen.truth.get("true_modes") or []:
             stated.setdefault(mode["label"], []).append(mode)
     return tuple(_mean(m.label, stated[m.label]) for m in result.measured if m.label in stated)
 
@@ -64,7 +64,7 @@ def true_parameters(result: TwinResult) -> tuple[TrueParameter, ...]:
 
     Only supports given as a short form, ``kelvin-voigt:k=…,c=…``, have parameters to compare.
     """
-    texts = {metadata.get("true_support") for metadata in _metadata(result)} - {None}
+    texts = {seen.truth.get("true_support") for seen in result.observations} - {None}
     if len(texts) != 1:
         return ()
     law, _, arguments = str(texts.pop()).partition(":")
@@ -111,10 +111,6 @@ def truth_document(result: TwinResult) -> dict[str, Any] | None:
             for p in true_parameters(result)
         ],
     }
-
-
-def _metadata(result: TwinResult) -> list[dict[str, Any]]:
-    return [dict(seen.record.metadata) for seen in result.observations]
 
 
 def _numbers(arguments: str) -> dict[str, float]:

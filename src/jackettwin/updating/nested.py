@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.posterior import Posterior, gathered
 from jackettwin.updating.problem import Problem
 
 _DRAWS = 400
 """Equally weighted draws taken from each run."""
+_SAID_EVERY = 100
+"""Evaluations between two words of progress: some tenths of a second."""
 
 
 def sample_nested(
-    problem: Problem, *, live: int = 200, runs: int = 2, remaining: float = 0.02, seed: int = 0
+    problem: Problem,
+    *,
+    live: int = 200,
+    runs: int = 2,
+    remaining: float = 0.02,
+    seed: int = 0,
+    progress: Progress = SILENT,
 ) -> Posterior:
     """Return the posterior of a problem's parameters from independent runs of dynesty (Speagle 2020).
 
@@ -24,6 +35,8 @@ def sample_nested(
         Live points of each run.
     remaining : float
         ln Z that may be left in the live points.
+    progress : Progress
+        Told within the present step how often the likelihood was evaluated.
 
     Raises
     ------
@@ -45,7 +58,12 @@ def sample_nested(
         raise InputError("no standard deviations, no likelihood", field="targets")
     near = problem.anchor(0.5 * (problem.prior.low + problem.prior.high))
 
+    evaluations = count(1)
+
     def log_likelihood(z: FloatArray) -> float:
+        n = next(evaluations)
+        if n % _SAID_EVERY == 0:
+            progress.within(f"nested sampling, {n} evaluations of the likelihood")
         return float(problem.log_likelihood(z[None], near)[0][0])
 
     draws, values, evidences = [], [], []

@@ -8,7 +8,6 @@ posterior. Their draws give the evidence (:mod:`jackettwin.updating.evidence`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +18,7 @@ from scipy.special import logsumexp
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, NumericalError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.convergence import Convergence, convergence
 from jackettwin.updating.evidence import bridged_evidence
 from jackettwin.updating.prior import Prior
@@ -109,7 +109,7 @@ def sample_posterior(
     particles: int = 300,
     islands: int = 4,
     seed: int = 0,
-    progress: Callable[[], None] | None = None,
+    progress: Progress = SILENT,
 ) -> Posterior:
     """Return the posterior of a problem's parameters.
 
@@ -119,8 +119,8 @@ def sample_posterior(
         Its residuals weighted by standard deviations, not relative.
     particles, islands : int
         Particles on each of the independent islands.
-    progress : callable, optional
-        Called after each rung of each island's ladder.
+    progress : Progress
+        Told within the present step after each rung of each island's ladder.
 
     Raises
     ------
@@ -136,7 +136,10 @@ def sample_posterior(
             remedy="give every target frequency and damping ratio its standard deviation",
         )
     *streams, last = np.random.default_rng(seed).spawn(islands + 1)
-    runs = [_island(problem, particles, stream, progress) for stream in streams]
+    runs = []
+    for i, stream in enumerate(streams, start=1):
+        place = f"posterior, {particles} draws on island {i} of {islands}"
+        runs.append(_island(problem, particles, stream, place, progress))
     z = np.array([_by_particle([swarm.z for swarm in kept]) for kept in runs])
     log_l = np.array([_by_particle([swarm.log_l for swarm in kept]) for kept in runs])
     near = problem.anchor(z.mean(axis=(0, 1)))
@@ -188,7 +191,7 @@ def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
 
 
 def _island(
-    problem: Problem, n: int, rng: np.random.Generator, progress: Callable[[], None] | None
+    problem: Problem, n: int, rng: np.random.Generator, place: str, progress: Progress
 ) -> list[_Swarm]:
     """Return the last swarms of one island."""
     prior = problem.prior
@@ -208,8 +211,7 @@ def _island(
             swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
             if move % _KEPT == 0:
                 kept.append(swarm)
-        if progress is not None:
-            progress()
+            progress.within(f"{place}: {beta - step + step * move / _MOVES:.0%}")
     return kept
 
 

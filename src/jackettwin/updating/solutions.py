@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,6 +10,7 @@ from scipy.stats import qmc
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.descent import End, descend, descend_simplex, settle
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.solution_clusters import extent, gather
@@ -117,7 +117,7 @@ def search(
     starts: int = 32,
     seed: int = 0,
     most_evaluations: int = MOST_EVALUATIONS,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = SILENT,
 ) -> Search:
     """Return the distinct solutions, best first.
 
@@ -130,8 +130,8 @@ def search(
         Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
     most_evaluations : int
         Of the model, after which no further starts are added to the first ones.
-    progress : callable, optional
-        Told after each start how far the search is.
+    progress : Progress
+        Told within the present step after each start how far the search is.
 
     Raises
     ------
@@ -155,15 +155,14 @@ def search(
             end = run(problem, point)
             tried, spent = tried + 1, spent + end.evaluations
             new += [(end, 1)] if end.settled else []
-            if progress is not None:
-                progress(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
+            progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
         clusters, compared = gather(problem, new, known=clusters)
         enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
         if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
             break
         n *= 2
     if deflated:
-        clusters = _deflate(problem, clusters, points[:deflated])
+        clusters = _deflate(problem, clusters, points[:deflated], progress)
     if not clusters:
         raise _out_of_reach(problem)
     kept = [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
@@ -204,9 +203,12 @@ def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 
 
-def _deflate(problem: Problem, clusters: list[tuple[End, int]], points: FloatArray) -> list[tuple[End, int]]:
+def _deflate(
+    problem: Problem, clusters: list[tuple[End, int]], points: FloatArray, progress: Progress
+) -> list[tuple[End, int]]:
     """Return the clusters and what further descents find with them deflated."""
-    for point in points:
+    for i, point in enumerate(points, start=1):
+        progress.within(f"descent {i} of {len(points)} beside {len(clusters)} known solutions")
         end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
         if end.settled:
             clusters, _ = gather(problem, [(end, 1)], known=clusters)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
+from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
 from jackettwin.updating.identifiability import Verdict, identifiability
 from jackettwin.updating.laplace import laplace_draws, log_covariance
@@ -124,7 +125,7 @@ def update(
     seed: int = 0,
     most_evaluations: int = MOST_EVALUATIONS,
     sampled: bool = True,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = SILENT,
 ) -> Update:
     """Return every solution of one law, the best one recomputed on the full model, and what is known of it.
 
@@ -141,7 +142,7 @@ def update(
         After which the search adds no further starts.
     sampled : bool
         Whether the posterior is sampled; else there are solutions, and no uncertainty.
-    progress : callable, optional
+    progress : Progress
         Told what is being done, and how far it is.
 
     Raises
@@ -182,15 +183,16 @@ def with_posterior(
     particles: int = 150,
     sampler: Sampler = "smc",
     seed: int = 0,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = SILENT,
 ) -> Update:
     """Return a fitted law with its posterior and what follows; without standard deviations as it is."""
     problem, model, shown = fitted.problem, fitted.model, fitted.shown
     if not problem.weighted:
         return fitted
-    if progress is not None:
-        progress("posterior")
-    posterior, status = posterior_or_status(problem, sampler=sampler, particles=particles, seed=seed)
+    posterior, status = posterior_or_status(
+        problem, sampler=sampler, particles=particles, seed=seed, progress=progress
+    )
+    progress.within("verdicts, profiles and predictions")
     uncertainty = _uncertainty(problem, model, shown, fitted.best, posterior, status, seed)
     theta = _first(problem, np.log(fitted.best.theta)[None])[0]
     draws = _first(problem, _thinned(uncertainty.log_theta))
@@ -244,7 +246,12 @@ def _uncertainty(
 
 
 def posterior_or_status(
-    problem: Problem, *, sampler: Sampler = "smc", particles: int = 150, seed: int = 0
+    problem: Problem,
+    *,
+    sampler: Sampler = "smc",
+    particles: int = 150,
+    seed: int = 0,
+    progress: Progress = SILENT,
 ) -> tuple[Posterior | None, str]:
     """Return the posterior and ``"ok"``, or None and why it did not converge.
 
@@ -254,9 +261,9 @@ def posterior_or_status(
     for n in (particles, 2 * particles):
         try:
             if sampler == "nested":
-                found = sample_nested(problem, live=n, seed=seed)
+                found = sample_nested(problem, live=n, seed=seed, progress=progress)
             else:
-                found = sample_posterior(problem, particles=n, seed=seed)
+                found = sample_posterior(problem, particles=n, seed=seed, progress=progress)
         except NumericalError as error:
             status = str(error)
         if found is not None and found.evidence_known:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from jackettwin.files.codec import decode, encode
 from jackettwin.identification import Identification, ModalEstimate, mac
 from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.many_records.pairs import along_axes, close_pairs
-from jackettwin.identification.storage import from_plain, slim, to_plain
 from jackettwin.records import Channel
 
 SHAPE = np.array([1.0, 0.4, 0.2])
@@ -84,8 +84,8 @@ def test_pairs_are_neighbours_that_overlap() -> None:
 
 def test_the_shape_before_is_kept_in_files(found: Identification) -> None:
     turned = along_axes(found)
-    plain = to_plain(replace(turned, settings=ResolvedSettings(0.2, 5.0, 12.5, 40, (2, 4), 6.4)))
-    back = from_plain(plain)
+    light = replace(turned, settings=ResolvedSettings(0.2, 5.0, 12.5, 40, (2, 4), 6.4)).without_figures
+    back = decode(Identification, encode(light))
     assert_allclose(back.modes[1].mode_shape_unaligned, found.modes[1].mode_shape)
     assert back.modes[2].mode_shape_unaligned is None
-    assert slim(turned).modes == turned.modes
+    assert light.modes == turned.modes

@@ -11,7 +11,6 @@ import pytest
 from jackettwin.identification import FusedIdentification, Identification, ModalEstimate, fuse, mac
 from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.many_records.tracking import PATIENCE, follow
-from jackettwin.identification.storage import slim
 from jackettwin.records import Channel
 
 F = np.array([0.178, 0.186, 0.74, 0.77, 1.3])
@@ -44,7 +43,7 @@ def record(i: int, f: np.ndarray, channels: np.ndarray, rng: np.random.Generator
     modes.sort(key=lambda mode: mode.frequency_hz)
     own = tuple(Channel(f"a{j}") for j in channels)
     bare = Identification((f"r{i}",), own, tuple(modes), (), None, None, SETTINGS, LENGTH_S)
-    return slim(bare)
+    return bare.without_figures
 
 
 def records(truth: Truth, n: int, *, fewest_channels: int = 8) -> list[Identification]:

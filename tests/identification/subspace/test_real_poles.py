@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from scipy import signal
 
 from jackettwin.errors import InputError
+from jackettwin.files.codec import decode, encode
 from jackettwin.identification import Identification, IdentificationSettings, identify, mac
-from jackettwin.identification.storage import from_plain, to_plain
 from jackettwin.identification.subspace.real_poles import real_poles
 from jackettwin.identification.subspace.ssi_cov import OrderPoles
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -76,7 +76,7 @@ def test_the_variance_is_that_of_the_logarithm() -> None:
 
 
 def test_files_keep_them(found: Identification) -> None:
-    (back,) = from_plain(to_plain(found)).real_poles
+    (back,) = decode(Identification, encode(found)).real_poles
     (pole,) = found.real_poles
     assert back.rate_interval_95 == pole.rate_interval_95
     assert_allclose(back.mode_shape, pole.mode_shape)
