@@ -58,7 +58,8 @@ def result() -> TwinResult:
         for t in TARGETS
     )  # fmt: skip
     return TwinResult(
-        name="t", assembly=assembly, sensors=(), numbered=numbered, labels=labels, observations=(), shown=None,
+        name="t", assembly=assembly, sensors=(), numbered=numbered, labels=labels,
+        observations=(), shown=None,
         measured=measured, updates=tuple(updates), excess=((), ()), assumptions=(), warnings=(),
         rotor_speed_hz=(5.0 / 60.0, 7.56 / 60.0),
     )  # fmt: skip
