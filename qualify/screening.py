@@ -15,17 +15,21 @@ from time import process_time
 
 import numpy as np
 from common.cases import Result, cases
-from common.faults import FAULTS
+from common.faults import FAULTS, SENSE
 from common.page import write_page
 from common.peers import PEERS
 from common.planted import RandomSystem, matched, random_system, recognised
 
-from jackettwin.identification import identify
+from jackettwin.errors import InputError
+from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import simulate
-from jackettwin.records import Channel, Record
+from jackettwin.records import Record
+from jackettwin.twin.examine import examine
 
 SEED = 4
-KINDS = [("clean", 0.0), *((name, strength) for name in FAULTS for strength in (1.0, 2.0, 3.0))]
+CLEAN = 7
+"""Of so many records in seventy."""
+KINDS = [("clean", 0.0)] * CLEAN + [(name, strength) for strength in (1.0, 2.0, 3.0) for name in FAULTS]
 Peer = Callable[[Record], list[tuple[float, float, np.ndarray]]]
 
 
@@ -42,35 +46,50 @@ def tower(rng: np.random.Generator) -> RandomSystem:
         return RandomSystem(system, min(drawn.duration_s / scale, 1800.0), rate, drawn.rank)
 
 
-def run(case: int, *, peers: tuple[str, ...] = ()) -> Result:
-    """Return what is said of one record."""
+def planted(case: int) -> tuple[str, float, RandomSystem, Record]:
+    """Return fault, strength, system and record of a case."""
     rng = np.random.default_rng((SEED, case))
     fault, strength = KINDS[case % len(KINDS)]
     drawn = tower(rng)
     record = simulate(drawn.system, rng, duration_s=drawn.duration_s, sample_rate_hz=drawn.sample_rate_hz)
-    record = replace(record, channels=tuple(Channel(f"a{i}") for i in range(len(record.data))))
     if fault != "clean":
         record = FAULTS[fault](record, strength, rng)
+    return fault, strength, drawn, record
+
+
+def run(case: int, *, peers: tuple[str, ...] = ()) -> Result:
+    """Return what is said of one record."""
+    fault, strength, drawn, record = planted(case)
     start = process_time()
     try:
-        found = identify(record)
+        found = examine(record, IdentificationSettings()).identification
+    except InputError as refusal:
+        return {"fault": fault, "strength": strength, "refused": str(refusal)}
     except Exception as error:
         return {"fault": fault, "strength": strength, "stopped": repr(error)}
     seconds = process_time() - start
-    pairs = matched(found, drawn.system)
+    sense = record.metadata.get(SENSE)
+    channels = [record.channel_names.index(c.name) for c in found.channels]
+    pairs = matched(found, drawn.system, channels=channels, sense=sense)
     own = {pair["mode"] for pair in pairs if pair["mode"] is not None}
-    others = [m.status.value for k, m in enumerate(found.modes) if k not in own]
+    others = [
+        {"f": m.frequency_hz, "zeta": m.damping_ratio, "status": m.status.value, "of": m.method}
+        for k, m in enumerate(found.modes)
+        if k not in own
+    ]
     result: Result = {
         "fault": fault,
         "strength": strength,
         "cpu_s": seconds,
         "modes": pairs,
         "others": others,
+        "codes": sorted({reason.code for m in found.modes for reason in m.reasons}),
     }
+    clear = [bool(p["findable"]) for p in pairs]
     for name in peers:
         try:
             said = PEERS[name](record, found.settings)
-            result[name] = recognised(said, drawn.system, [bool(p["findable"]) for p in pairs])
+            result[name] = recognised(said, drawn.system, clear, sense)
         except Exception as error:
             result[name] = {"stopped": repr(error)}
     return result
@@ -80,8 +99,8 @@ def row(name: str, results: list[Result], peers: tuple[str, ...]) -> str:
     """Return a row of the table."""
     modes = [m for r in results for m in r.get("modes", ())]
     said = [m for m in modes if m["status"] == "ok"]
-    false = sum(status == "ok" for r in results for status in r.get("others", ()))
-    flagged = sum(status != "ok" for r in results for status in r.get("others", ()))
+    false = sum(other["status"] == "ok" for r in results for other in r.get("others", ()))
+    flagged = sum(other["status"] != "ok" for r in results for other in r.get("others", ()))
     clear = [m for m in modes if m["findable"]]
     lost = np.mean([m["status"] is None for m in clear]) if clear else 0.0
     right = 100.0 * len(said) / max(len(said) + false, 1)

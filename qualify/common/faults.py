@@ -10,6 +10,8 @@ import numpy as np
 from jackettwin.records import Record
 
 Fault = Callable[[Record, float, np.random.Generator], Record]
+SENSE = "planted_sense"
+"""Key of a record's metadata: the sign of each channel that was planted."""
 
 
 def _time(record: Record) -> np.ndarray:
@@ -109,10 +111,10 @@ def coarse(record: Record, strength: float, rng: np.random.Generator) -> Record:
 
 
 def reversed_sensor(record: Record, strength: float, rng: np.random.Generator) -> Record:
-    """One, two, three channels of wrong sign: no mode is lost, only its shape is wrong."""
-    data = record.data.copy()
-    data[rng.choice(len(data), int(strength), replace=False)] *= -1.0
-    return replace(record, data=data)
+    """One, two, three channels of wrong sign: no mode is lost, only its shape is turned as they are."""
+    sense = np.ones(len(record.data))
+    sense[rng.choice(len(sense), int(strength), replace=False)] = -1.0
+    return replace(record, data=record.data * sense[:, None], metadata={SENSE: sense.tolist()})
 
 
 def gaps(record: Record, strength: float, rng: np.random.Generator) -> Record:
@@ -133,6 +135,67 @@ def half_stronger(record: Record, strength: float, rng: np.random.Generator) -> 
     return replace(record, data=data)
 
 
+def seconds_lost(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """The logger of half the channels loses 5, 17, 40 s somewhere; what follows moves up."""
+    lost = int((5.0, 17.0, 40.0)[int(strength) - 1] * record.sample_rate_hz)
+    n = record.data.shape[1]
+    lost = min(lost, n // 8)
+    at = int(rng.uniform(0.3, 0.7) * n)
+    short = np.delete(record.data, np.s_[at : at + lost], axis=1)
+    return replace(record, data=np.where(_upper(record)[:, None], short, record.data[:, : n - lost]))
+
+
+def two_days(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """One channel, two, half of them of another time of the same structure."""
+    number = (1, 2, len(record.data) // 2)[int(strength) - 1]
+    data = record.data.copy()
+    data[:number] = np.roll(data[:number], int(rng.uniform(0.4, 0.6) * data.shape[1]), axis=1)
+    return replace(record, data=data)
+
+
+def time_reversed(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """One channel, two, half of them stored from the end to the beginning."""
+    number = (1, 2, len(record.data) // 2)[int(strength) - 1]
+    data = record.data.copy()
+    data[:number] = data[:number, ::-1]
+    return replace(record, data=data)
+
+
+def held(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """Every sample of every channel repeated once, twice, three times."""
+    times = int(strength) + 1
+    return replace(record, data=np.repeat(record.data[:, ::times], times, axis=1)[:, : record.data.shape[1]])
+
+
+def short(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """Cut to 40, 20, 10 cycles of the strongest line."""
+    k = np.argmax(np.abs(np.fft.rfft(record.data, axis=1)).sum(axis=0)[5:]) + 5
+    n = int((40.0, 20.0, 10.0)[int(strength) - 1] * record.data.shape[1] / k)
+    return replace(record, data=record.data[:, : max(n, 200)])
+
+
+def offset_steps(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """The zero of every channel steps once, by 1, 3, 10 rms, at one time."""
+    size = (1.0, 3.0, 10.0)[int(strength) - 1] * record.data.std(axis=1, keepdims=True)
+    after = _time(record) > rng.uniform(0.2, 0.8) * record.duration_s
+    return replace(record, data=record.data + size * rng.choice([-1.0, 1.0], size.shape) * after)
+
+
+def gain_grows(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """The gain of one channel grows through the record to 1.5, 2, 4 times what it was."""
+    data = record.data.copy()
+    data[rng.integers(len(data))] *= np.linspace(1.0, (1.5, 2.0, 4.0)[int(strength) - 1], data.shape[1])
+    return replace(record, data=data)
+
+
+def sign_turns(record: Record, strength: float, rng: np.random.Generator) -> Record:
+    """One channel, two, half of them turn their sign somewhere."""
+    number = (1, 2, len(record.data) // 2)[int(strength) - 1]
+    data = record.data.copy()
+    data[:number, int(rng.uniform(0.25, 0.75) * data.shape[1]) :] *= -1.0
+    return replace(record, data=data)
+
+
 FAULTS: dict[str, Fault] = {
     "logger steps": logger_steps,
     "logger late": logger_late,
@@ -146,5 +209,13 @@ FAULTS: dict[str, Fault] = {
     "reversed sensor": reversed_sensor,
     "gaps": gaps,
     "not stationary": half_stronger,
+    "seconds lost": seconds_lost,
+    "two days": two_days,
+    "time reversed": time_reversed,
+    "held": held,
+    "short": short,
+    "offset steps": offset_steps,
+    "gain grows": gain_grows,
+    "sign turns": sign_turns,
 }
 """Name → what it does to a record."""

@@ -59,11 +59,21 @@ def random_system(rng: np.random.Generator) -> RandomSystem:
 
 
 def matched(
-    found: Identification, system: ModalSystem, duration_s: float | None = None
+    found: Identification,
+    system: ModalSystem,
+    duration_s: float | None = None,
+    *,
+    channels: list[int] | None = None,
+    sense: list[float] | None = None,
 ) -> list[dict[str, Any]]:
     """Return for every true mode what stands for it: status, errors, whether its intervals hold.
 
     Each identified mode stands for one true mode at most.
+
+    Parameters
+    ----------
+    channels : of the system that are in the result; default: all
+    sense : sign of every channel of the system that was planted: shapes may be turned as these are
     """
     f, zeta = system.frequency_hz, system.damping_ratio
     peak = findable(system, found.duration_s if duration_s is None else duration_s)
@@ -84,7 +94,12 @@ def matched(
         return out
     own = np.array([m.frequency_hz for m in found.modes])
     own_zeta = np.array([m.damping_ratio for m in found.modes])
-    similar = mac(system.mode_shapes, np.array([m.mode_shape for m in found.modes]))
+    own_shapes = np.array([m.mode_shape for m in found.modes])
+    kept = np.arange(system.mode_shapes.shape[1]) if channels is None else np.array(channels)
+    similar = mac(system.mode_shapes[:, kept], own_shapes)
+    if sense is not None:
+        turned = (system.mode_shapes * np.array(sense))[:, kept]
+        similar = np.maximum(similar, mac(turned, own_shapes))
     width = 3.0 * np.maximum(zeta[:, None], np.minimum(own_zeta, 2.0 * zeta[:, None]))
     apart = np.abs(np.log(own / f[:, None])) / width + 1.0 - similar
     rows, columns = linear_sum_assignment(np.minimum(apart, 2.0))
@@ -142,14 +157,18 @@ def _noise(system: ModalSystem) -> np.ndarray:
 
 
 def recognised(
-    said: list[tuple[float, float, np.ndarray]], system: ModalSystem, clear: list[bool]
+    said: list[tuple[float, float, np.ndarray]],
+    system: ModalSystem,
+    clear: list[bool],
+    sense: list[float] | None = None,
 ) -> dict[str, int]:
     """Return how many reported modes are true, how many are not, and how many findable ones are lost."""
     f, zeta = system.frequency_hz, system.damping_ratio
     taken: set[int] = set()
     if said:
         own = np.array([mode[0] for mode in said])
-        similar = mac(system.mode_shapes, np.array([mode[2] for mode in said]))
+        shapes = system.mode_shapes * (1.0 if sense is None else np.array(sense))
+        similar = mac(shapes, np.array([mode[2] for mode in said]))
         apart = np.abs(np.log(own / f[:, None])) / (3.0 * zeta[:, None]) + 1.0 - similar
         rows, columns = linear_sum_assignment(np.minimum(apart, 2.0))
         taken = {int(k) for k, j in zip(rows, columns, strict=True) if apart[k, j] <= SAME}
