@@ -149,7 +149,10 @@ def two_days(record: Record, strength: float, rng: np.random.Generator) -> Recor
     """One channel, two, half of them of another time of the same structure."""
     number = (1, 2, len(record.data) // 2)[int(strength) - 1]
     data = record.data.copy()
-    data[:number] = np.roll(data[:number], int(rng.uniform(0.4, 0.6) * data.shape[1]), axis=1)
+    lines = np.fft.rfft(data[:number], axis=1)
+    # the same phases for all: what they have in common with each other stays
+    lines *= np.exp(2j * np.pi * rng.uniform(size=lines.shape[1]))
+    data[:number] = np.fft.irfft(lines, data.shape[1], axis=1)
     return replace(record, data=data)
 
 

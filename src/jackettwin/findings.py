@@ -38,6 +38,29 @@ CATALOGUE: dict[str, Kind] = {
         "{channels}: {factor:.3g} times as sensitive {at} {time_s:.0f} s as in the rest, against the others; "
         "scaled, {from_s:.0f} to {to_s:.0f} s declared missing",
     ),
+    "gain_grows": Kind(
+        "warning",
+        "{channels}: {factor:.3g} times as sensitive at the end as at the beginning, against the others; "
+        "scaled",
+    ),
+    "sign_turns": Kind(
+        "warning",
+        "{channels}: moves against its own sense after {from_s:.0f} to {to_s:.0f} s; turned back, declared "
+        "missing between",
+    ),
+    "samples_repeated": Kind(
+        "alarm",
+        "every value of every channel stands {times} times: only one of them is used. If they were written "
+        "twice at one instant, all frequencies are {times} times what is said here",
+    ),
+    "another_time": Kind(
+        "alarm",
+        "{channels}: shows the peaks of the other channels and has nothing in common with them at any delay: "
+        "not of the same minutes",
+    ),
+    "stored_backwards": Kind(
+        "alarm", "{channels}: moves with the other channels only if read from the end to the beginning"
+    ),
     "coarse_quantiser": Kind(
         "warning",
         "read in steps of {steps:.2g} times its rms: what rounding adds is neither small nor white; distrust "

@@ -66,7 +66,7 @@ def test_a_delay_that_jumps_shows_from_then_on(tower: SimpleNamespace) -> None:
     y[0, 6_000:] = y[0, 5_996:-4]
     seen = phases(y, RATE, np.ones(2, complex))
     assert seen is not None
-    delay, explained = trajectories(seen)
+    delay, explained, _ = trajectories(seen)
     half = len(delay) // 2
     # a fifth of the jump: two modes and a minute a window
     np.testing.assert_allclose(delay[:half], 0.0, atol=0.04)

@@ -10,6 +10,9 @@ from scipy.sparse.csgraph import connected_components
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
+REACH_RAD = 0.25
+"""Phase, at the root mean square frequency of the pairs, of the least delay that parts two channels: those of
+a damped structure in wind scatter by up to this."""
 TIE = 1.0
 """Weight of the expectation that channels at one place share a logger: any pair that tells weighs more."""
 ROUNDS = 12
@@ -78,6 +81,18 @@ def per_channel(network: Network, delay_s: FloatArray, weight: FloatArray) -> Fl
         scale = 1.0 / np.maximum(np.abs(rows @ out - target), SOFT * network.reach_s)
         scale = np.asarray(scale / scale.max())
     return out
+
+
+def by_channel(network: Network, of_pairs: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return what each channel does against the main group in every window, (n_windows, n_channels)."""
+    each = np.array([per_channel(network, d, w) for d, w in zip(of_pairs, weight, strict=True)])
+    time = np.arange(len(each))
+    for i in range(network.n):
+        # a channel that was silent, or shook by itself, kept its clock
+        told = weight[:, (network.pairs == i).any(axis=1)].any(axis=1)
+        if told.any():
+            each[:, i] = np.interp(time, time[told], each[told, i])
+    return against_main(network, each)
 
 
 def against_main(network: Network, delay_s: FloatArray) -> FloatArray:

@@ -10,10 +10,11 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.findings import CATALOGUE
 from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.clocks import LateClock, LoggerClocks
 from jackettwin.records.faults import is_constant
 from jackettwin.records.filters import bridge
 from jackettwin.records.findings import Finding
-from jackettwin.records.logger_clocks import LateClock, LoggerClocks, logger_clocks
+from jackettwin.records.logger_clocks import logger_clocks
 from jackettwin.records.time_shift import earlier
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
         record.sample_rate_hz,
         velocity=[record.channels[i].quantity == "velocity" for i in rows],
         places=[record.channels[i].node or record.channels[i].height_m for i in rows],
+        directions=[record.channels[i].direction for i in rows],
     )
     return found.of_rows(rows)
 
@@ -62,6 +64,9 @@ def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> Fl
         out[rows, : jump.start] /= jump.factor[0]
         out[rows, jump.stop :] /= jump.factor[1]
         out[rows, jump.start : jump.stop] = np.nan
+    time = np.linspace(-0.5, 0.5, data.shape[1])
+    for gain in clocks.growing:
+        out[list(gain.rows)] *= np.exp(-gain.rate * time)
     out[:, : clocks.start] = np.nan
     out[:, clocks.stop :] = np.nan
     return out
@@ -83,7 +88,23 @@ def stretch(clocks: LoggerClocks, n_samples: int, sample_rate_hz: float) -> tupl
 def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
     """Yield what is worth saying about the clocks."""
     rate = record.sample_rate_hz
+    for stranger in clocks.strangers:
+        code = "stored_backwards" if stranger.backwards else "another_time"
+        yield _said(code, channels=_names(record, stranger.rows))
+    for growing in clocks.growing:
+        yield _said(
+            "gain_grows", True, channels=_names(record, growing.rows), factor=float(np.exp(growing.rate))
+        )
     for gain in clocks.gains:
+        if min(gain.factor) < 0.0:
+            yield _said(
+                "sign_turns",
+                True,
+                channels=_names(record, gain.rows),
+                from_s=gain.start / rate,
+                to_s=gain.stop / rate,
+            )
+            continue
         at, factor = ("from", gain.factor[1]) if gain.factor[0] == 1.0 else ("until", gain.factor[0])
         yield _said(
             "gain_jump",
@@ -136,7 +157,7 @@ def _late(record: Record, late: LateClock) -> Finding:
 
 
 def _said(code: str, repaired: bool = False, **params: float | str) -> Finding:
-    return Finding(code, CATALOGUE[code].sentence.format(**params), None, repaired)
+    return Finding(code, CATALOGUE[code].sentence.format(**params), None, repaired, params)
 
 
 def _names(record: Record, rows: tuple[int, ...]) -> str:

@@ -199,7 +199,7 @@ def objective(seen: Phases, z: ComplexArray, delay_s: FloatArray, times: float =
     return np.asarray((turn @ z).real)
 
 
-def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray]:
+def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return how much later each pair is in every window than in the first, and how well that is known.
 
     Each window is held against the sum of those before it, brought into step, whatever its sign: a sensor may
@@ -210,10 +210,12 @@ def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray]:
     delay_s : (n_windows, n_pairs)
     explained : (n_windows, n_pairs)
         Share of the weight that moved on by that delay: 1 if it is nothing but a delay.
+    sign : (n_windows, n_pairs)
+        −1 where one of the two is turned against the first window.
     """
     search = seen.search_s
     out = np.zeros((len(seen.coherency), len(seen.pairs)))
-    explained = np.ones_like(out)
+    explained, signs = np.ones_like(out), np.ones_like(out)
     total = np.where(seen.total > 0.0, seen.total, 1.0)
     sum_ = seen.coherency[0].copy()
     for k in range(1, len(out)):
@@ -223,9 +225,9 @@ def trajectories(seen: Phases) -> tuple[FloatArray, FloatArray]:
         j = objective(seen, z, search, 1.0)
         sign = np.where(j.max(axis=0) >= -j.min(axis=0), 1.0, -1.0)
         out[k], value = refined_peak(search, sign * j)
-        explained[k] = value / total
+        explained[k], signs[k] = value / total, sign
         sum_ += sign * seen.coherency[k] * np.exp(2j * np.pi * np.outer(seen.frequency_hz, out[k]))
-    return out, explained
+    return out, explained, signs
 
 
 def gain_trajectories(seen: Phases) -> FloatArray:
@@ -263,9 +265,11 @@ def refined_peak(search_s: FloatArray, values: FloatArray) -> tuple[FloatArray, 
 
 
 def long_delays(
-    y: FloatArray, sample_rate_hz: float, pairs: IntArray, near_s: float
+    y: FloatArray, sample_rate_hz: float, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return delays of the pairs beyond ``near_s``, 0 where there is none, and their weights.
+
+    Delays up to the share ``longest`` of the record are tried.
 
     .. math:: T(\tau) = \sum_s n_s\left|\frac1{n_s}\sum_{k\in s} e^{i\varphi_k + 2\pi i f_k\tau}\right|^2
 
@@ -286,7 +290,7 @@ def long_delays(
     unit = lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
     size = int(2 ** np.ceil(np.log2(FINE_COARSE * (high - low))))
     delay = np.fft.fftfreq(size, 1.0 / size) * n / (size * sample_rate_hz)
-    far = np.abs(delay) < LONGEST_SHARE * n / sample_rate_hz
+    far = np.abs(delay) < longest * n / sample_rate_hz
     near = np.abs(delay) <= near_s
     edges = np.linspace(0, high - low, SUB_BANDS + 1).astype(int)
     for pair, (i, j) in enumerate(pairs):

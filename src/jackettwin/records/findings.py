@@ -40,7 +40,7 @@ class Finding:
     text: str
     channel: str | None = None
     repaired: bool = False
-    params: Mapping[str, float] = field(default_factory=dict)
+    params: Mapping[str, findings.Value] = field(default_factory=dict)
 
     @property
     def coded(self) -> findings.Finding:

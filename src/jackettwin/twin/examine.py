@@ -22,10 +22,10 @@ from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
-from jackettwin.records.findings import COARSE_STEPS
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.repair import common_time
+from jackettwin.records.repeats import without_repeats
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
@@ -39,6 +39,8 @@ MOTION = ("acceleration", "velocity", "displacement")
 """Quantities of which one record may mix several."""
 DEFORMATION = ("inclination", "strain")
 """Quantities identified where no channel measures motion, the first of them that there is."""
+UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
+"""What is found of a record that makes every mode of it doubtful."""
 _NAMED = 5
 """Channels that a finding names; more are dots."""
 
@@ -121,16 +123,18 @@ def examine(
     """
     source = with_conditions(record)
     chosen = _placed(source, sensors) if sensors else moving_channels(source)
+    chosen, repeated = each_sample_once(chosen)
     quality = assess(chosen)
+    doubts = (*repeated, *(f.coded for f in quality.findings if f.fault in UNFIT))
     steps: tuple[Step, ...] = (
         partial(repaired, quality=quality),
         partial(in_rotor_axes, source=source),
         partial(without_rotor_orders, source=source),
         partial(cut_to_common_time, quality=quality),
-        partial(coarsely_read, quality=quality),
     )
     ready, findings = prepared(chosen, steps)
     findings = (
+        *doubts,
         *findings,
         *_unplaced(chosen),
         *(() if sensors else (*_unclear(source), *_set_aside(source, chosen))),
@@ -139,7 +143,7 @@ def examine(
 
     def compute() -> Identified:
         found = _beside_orders(identify(ready, settings, picks=picks), findings)
-        found = _out_of_step(found, findings)
+        found = _doubted(found, doubts)
         found = along_axes(found) if in_axes else found
         warnings = (str(f) for f in findings if f.severity != "info")
         notes = (str(f) for f in findings if f.severity == "info")
@@ -152,12 +156,12 @@ def examine(
     return Examination(ready, quality, made.found, findings, made.comparison)
 
 
-def _out_of_step(found: Identification, findings: Findings) -> Identification:
-    """Doubt every mode of a record whose clocks are not in step, or that is read too coarsely."""
-    reasons = [f for f in findings if f.code in ("clocks_wander", "coarse_quantiser")]
-    if not reasons:
-        return found
-    return replace(found, modes=tuple(m.flagged(ModeStatus.DOUBTFUL, reasons[0]) for m in found.modes))
+def _doubted(found: Identification, reasons: Findings) -> Identification:
+    """Doubt every mode of a record for reasons that concern all of it."""
+    modes = found.modes
+    for reason in reasons[:1]:
+        modes = tuple(m.flagged(ModeStatus.DOUBTFUL, reason) for m in modes)
+    return replace(found, modes=modes)
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
@@ -176,16 +180,13 @@ def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
 
 def cut_to_common_time(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
     """Cut a record to what all loggers have once in step; earlier steps need the source's samples."""
-    return common_time(record, quality), () if quality.clocks.judged else (Finding("clocks_wander"),)
+    return common_time(record, quality), ()
 
 
-def coarsely_read(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
-    """Name the channels whose reading is too coarse for what is identified from them to be trusted."""
-    return record, tuple(
-        Finding("coarse_quantiser", q.name, {"steps": q.quantiser_steps})
-        for q in quality.channels
-        if q.quantiser_steps > COARSE_STEPS and not q.dead
-    )
+def each_sample_once(record: Record) -> tuple[Record, Findings]:
+    """Keep one of the samples that every channel repeats: those between make images of the modes."""
+    once, times = without_repeats(record)
+    return once, (Finding("samples_repeated", params={"times": times}),) if times > 1 else ()
 
 
 def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:

@@ -1,0 +1,73 @@
+"""Channels that were not taken together are named; those that merely measure another direction are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jackettwin.records import Record, assess
+
+UPPER = [0, 1, 4, 5]
+
+
+def alarms(record: Record) -> list[tuple[str, str]]:
+    quality = assess(record)
+    codes = ("another_time", "stored_backwards", "clock_jump", "clocks_wander")
+    return [(f.fault, f.text.split(":")[0]) for f in quality.findings if f.fault in codes]
+
+
+def without_directions(record: Record) -> Record:
+    return replace(record, channels=tuple(replace(c, direction=(0.0, 0.0, 0.0)) for c in record.channels))
+
+
+def test_channels_of_one_time_are_not_spoken_of(tower: SimpleNamespace) -> None:
+    """X and y have nothing in common here: they are known to be crosswise."""
+    for seed in range(10):
+        assert alarms(tower.record(seed)) == []
+
+
+@pytest.mark.parametrize("rows", [[2], [0, 4], UPPER])
+def test_channels_of_another_day_are_named(rows: list[int], tower: SimpleNamespace) -> None:
+    record, other = tower.record(1), tower.record(2)
+    data = record.data.copy()
+    data[rows] = other.data[rows]
+    found = alarms(replace(record, data=data))
+    assert {code for code, _ in found} == {"another_time"}
+    named = {name for _, names in found for name in names.split(", ")}
+    own = {record.channel_names[i] for i in rows}
+    # of two halves nobody knows which is of the other day
+    assert named == own or (len(rows) == 4 and named == set(record.channel_names) - own)
+
+
+@pytest.mark.parametrize("row", [0, 3, 6])
+def test_a_channel_stored_backwards_is_named(row: int, tower: SimpleNamespace) -> None:
+    record = tower.record(3)
+    data = record.data.copy()
+    data[row] = data[row, ::-1]
+    assert alarms(replace(record, data=data)) == [("stored_backwards", record.channel_names[row])]
+
+
+def test_a_channel_of_noise_is_no_stranger(tower: SimpleNamespace) -> None:
+    """It has nothing in common with the others, nor their peaks."""
+    rng = np.random.default_rng(5)
+    record = without_directions(tower.record(4))
+    data = record.data[:4].copy()
+    data[3] = data[3].std() * rng.standard_normal(data.shape[1])
+    assert alarms(replace(record, data=data, channels=record.channels[:4])) == []
+
+
+@pytest.mark.parametrize(("start", "lost_s"), [(3_500, 17.0), (6_000, 40.0), (9_000, 8.0)])
+def test_seconds_that_a_logger_lost(start: int, lost_s: float, tower: SimpleNamespace) -> None:
+    record, lost = tower.record(6), int(20 * lost_s)
+    short = np.delete(record.data, np.s_[start : start + lost], axis=1)
+    data = record.data[:, :-lost].copy()
+    data[UPPER] = short[UPPER]
+    quality = assess(replace(record, data=data))
+    assert not quality.clocks.judged
+    for jump in quality.clocks.jumps:
+        assert jump.start <= start <= jump.stop
+        # modes of 0.18 Hz tell such a delay to within one of their periods, higher ones better
+        assert abs(jump.by_s) == pytest.approx(lost_s, abs=1.4)
