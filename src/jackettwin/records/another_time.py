@@ -85,7 +85,7 @@ def strangers(
         if not len(pairs) or np.max(alike[pairs[:, 0], pairs[:, 1]]) < ALIKE:
             continue
         turned = np.concatenate([y, y[:, ::-1]])
-        backwards = _common(turned, sample_rate_hz, pairs + [0, len(y)])
+        backwards = _common(turned, sample_rate_hz, np.asarray(pairs + [0, len(y)], dtype=np.intp))
         out.append(Strangers(tuple(rows), bool(np.any(backwards > COMMON))))
     return tuple(out)
 

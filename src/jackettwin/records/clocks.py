@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class LoggerClocks:
 
     def of_rows(self, rows: Sequence[int]) -> LoggerClocks:
         """Return the same of channels that are these rows of a larger record."""
-        named = {
+        named: dict[str, Any] = {
             key: tuple(replace(one, rows=tuple(rows[i] for i in one.rows)) for one in getattr(self, key))
             for key in ("late", "jumps", "gains", "growing", "strangers")
         }

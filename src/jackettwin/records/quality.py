@@ -19,7 +19,7 @@ from jackettwin.records.unit_errors import wrong_units
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from jackettwin.records.logger_clocks import LoggerClocks
+    from jackettwin.records.clocks import LoggerClocks
     from jackettwin.records.record import Record
 
 
