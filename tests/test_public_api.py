@@ -1,7 +1,10 @@
 """The names users may rely on; a change here is a change of the public interface."""
 
+import pkgutil
 import subprocess
 import sys
+from importlib import import_module
+from types import ModuleType
 
 import pytest
 
@@ -44,3 +47,15 @@ def test_importing_the_package_imports_no_numpy() -> None:
     """The command line limits BLAS to one thread before NumPy is loaded."""
     code = "import sys, jackettwin; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_doors_give_what_they_promise_and_a_function_rather_than_its_module() -> None:
+    doors = [m for m in pkgutil.iter_modules(jackettwin.__path__, "jackettwin.") if m.ispkg]
+    promised = [(door, name) for m in doors for door in [import_module(m.name)] for name in names_of(door)]
+    assert len(promised) > 100
+    for door, name in promised:
+        assert not isinstance(getattr(door, name), ModuleType), (door, name)
+
+
+def names_of(package: ModuleType) -> list[str]:
+    return list(getattr(package, "__all__", []))

@@ -1,13 +1,15 @@
 """The doors of packages: what a package offers, each name read from its module when it is first used.
 
-A command then loads what it needs and no more. Where a function has the name of its module, the door gives
-the function, whether or not the module was loaded before.
+A command then loads what it needs and no more. The names stand once, in the imports that the package's
+``__init__`` makes for type checkers alone (as scientific Python's ``lazy_loader`` reads them from a stub).
+Where a function has the name of its module, the door gives the function, whether or not the module was
+loaded before.
 """
 
 from __future__ import annotations
 
+import ast
 import sys
-from collections.abc import Mapping
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -17,10 +19,11 @@ class Door(ModuleType):
     """A package whose public names are read from its modules on first use."""
 
     def __getattr__(self, name: str) -> Any:
-        homes: dict[str, str] = self.__dict__.get("_homes", {})
+        homes: dict[str, tuple[str, str]] = self.__dict__.get("_homes", {})
         if name not in homes:
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
-        value = getattr(import_module(f"{self.__name__}.{homes[name]}"), name)
+        home, there = homes[name]
+        value = getattr(import_module(home), there)
         super().__setattr__(name, value)
         return value
 
@@ -33,16 +36,27 @@ class Door(ModuleType):
         return sorted({*super().__dir__(), *self.__dict__.get("_homes", {})})
 
 
-def door(package: str, modules: Mapping[str, str]) -> None:
-    """Make the names of some modules the public names of a package.
+def door(package: str) -> None:
+    """Make the names that a package imports ``if TYPE_CHECKING:`` its public names.
 
     Parameters
     ----------
     package : str
         Its ``__name__``.
-    modules : {module: names}
-        Names apart by spaces.
     """
     module = sys.modules[package]
-    module.__dict__["_homes"] = {name: home for home, names in modules.items() for name in names.split()}
+    homes = _homes(ast.parse(module.__loader__.get_source(package)))  # type: ignore[union-attr]
+    module.__dict__.update(_homes=homes, __all__=sorted(homes))
     module.__class__ = Door
+
+
+def _homes(tree: ast.Module) -> dict[str, tuple[str, str]]:
+    """Return {public name: (module, name there)} of the imports made for type checkers alone."""
+    return {
+        alias.asname or alias.name: (statement.module, alias.name)
+        for block in tree.body
+        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+        for statement in block.body
+        if isinstance(statement, ast.ImportFrom) and statement.module
+        for alias in statement.names
+    }

@@ -5,9 +5,7 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.answers.answer import answer
-    from jackettwin.answers.result import Answers, Span
+    from jackettwin.answers.answer import answer as answer
+    from jackettwin.answers.result import Answers as Answers, Span as Span
 
-__all__ = ["Answers", "Span", "answer"]
-
-door(__name__, {"answer": "answer", "result": "Answers Span"})
+door(__name__)

@@ -5,36 +5,15 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.files.atomic import atomic_folder, atomic_path
-    from jackettwin.files.json import Streamed, json_pieces, write_json
-    from jackettwin.files.room import check_room
-    from jackettwin.files.schema import Schema, validate
-    from jackettwin.files.shipped import find_file, shipped
-    from jackettwin.files.yaml import read_mapping, read_yaml
+    from jackettwin.files.atomic import atomic_folder as atomic_folder, atomic_path as atomic_path
+    from jackettwin.files.json import (
+        Streamed as Streamed,
+        json_pieces as json_pieces,
+        write_json as write_json,
+    )
+    from jackettwin.files.room import check_room as check_room
+    from jackettwin.files.schema import Schema as Schema, validate as validate
+    from jackettwin.files.shipped import find_file as find_file, shipped as shipped
+    from jackettwin.files.yaml import read_mapping as read_mapping, read_yaml as read_yaml
 
-__all__ = [
-    "Schema",
-    "Streamed",
-    "atomic_folder",
-    "atomic_path",
-    "check_room",
-    "find_file",
-    "json_pieces",
-    "read_mapping",
-    "read_yaml",
-    "shipped",
-    "validate",
-    "write_json",
-]
-
-door(
-    __name__,
-    {
-        "atomic": "atomic_folder atomic_path",
-        "json": "Streamed json_pieces write_json",
-        "room": "check_room",
-        "schema": "Schema validate",
-        "shipped": "find_file shipped",
-        "yaml": "read_mapping read_yaml",
-    },
-)
+door(__name__)

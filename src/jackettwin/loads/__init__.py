@@ -5,32 +5,11 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.loads.conditions import Conditions, SeaState
-    from jackettwin.loads.files import read_rotor
-    from jackettwin.loads.morison import morison_points, wave_loads
-    from jackettwin.loads.rotor import linearise
-    from jackettwin.loads.waves import airy_wave
-    from jackettwin.loads.wind import Wind
+    from jackettwin.loads.conditions import Conditions as Conditions, SeaState as SeaState
+    from jackettwin.loads.files import read_rotor as read_rotor
+    from jackettwin.loads.morison import morison_points as morison_points, wave_loads as wave_loads
+    from jackettwin.loads.rotor import linearise as linearise
+    from jackettwin.loads.waves import airy_wave as airy_wave
+    from jackettwin.loads.wind import Wind as Wind
 
-__all__ = [
-    "Conditions",
-    "SeaState",
-    "Wind",
-    "airy_wave",
-    "linearise",
-    "morison_points",
-    "read_rotor",
-    "wave_loads",
-]
-
-door(
-    __name__,
-    {
-        "conditions": "Conditions SeaState",
-        "files": "read_rotor",
-        "morison": "morison_points wave_loads",
-        "rotor": "linearise",
-        "waves": "airy_wave",
-        "wind": "Wind",
-    },
-)
+door(__name__)

@@ -9,21 +9,10 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.records.prepare import decimate, detrend
-    from jackettwin.records.quality import assess
-    from jackettwin.records.readers import read_record, write_record
-    from jackettwin.records.record import Channel, Record
-    from jackettwin.records.repair import repair
+    from jackettwin.records.prepare import decimate as decimate, detrend as detrend
+    from jackettwin.records.quality import assess as assess
+    from jackettwin.records.readers import read_record as read_record, write_record as write_record
+    from jackettwin.records.record import Channel as Channel, Record as Record
+    from jackettwin.records.repair import repair as repair
 
-__all__ = ["Channel", "Record", "assess", "decimate", "detrend", "read_record", "repair", "write_record"]
-
-door(
-    __name__,
-    {
-        "prepare": "decimate detrend",
-        "quality": "assess",
-        "readers": "read_record write_record",
-        "record": "Channel Record",
-        "repair": "repair",
-    },
-)
+door(__name__)

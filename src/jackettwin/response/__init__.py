@@ -5,26 +5,13 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.response.modal import DampedModes, UndampedModes, damped_modes, undamped_modes
-    from jackettwin.response.sensors import Sensor, observation_matrix
-    from jackettwin.response.system import System, build_system
+    from jackettwin.response.modal import (
+        DampedModes as DampedModes,
+        UndampedModes as UndampedModes,
+        damped_modes as damped_modes,
+        undamped_modes as undamped_modes,
+    )
+    from jackettwin.response.sensors import Sensor as Sensor, observation_matrix as observation_matrix
+    from jackettwin.response.system import System as System, build_system as build_system
 
-__all__ = [
-    "DampedModes",
-    "Sensor",
-    "System",
-    "UndampedModes",
-    "build_system",
-    "damped_modes",
-    "observation_matrix",
-    "undamped_modes",
-]
-
-door(
-    __name__,
-    {
-        "modal": "DampedModes UndampedModes damped_modes undamped_modes",
-        "sensors": "Sensor observation_matrix",
-        "system": "System build_system",
-    },
-)
+door(__name__)

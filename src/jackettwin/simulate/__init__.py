@@ -5,19 +5,12 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.simulate.files import read_scenario, shipped_scenarios
-    from jackettwin.simulate.record import Simulation, simulate
-    from jackettwin.simulate.resultant import loads_document
-    from jackettwin.simulate.scenario import Scenario
+    from jackettwin.simulate.files import (
+        read_scenario as read_scenario,
+        shipped_scenarios as shipped_scenarios,
+    )
+    from jackettwin.simulate.record import Simulation as Simulation, simulate as simulate
+    from jackettwin.simulate.resultant import loads_document as loads_document
+    from jackettwin.simulate.scenario import Scenario as Scenario
 
-__all__ = ["Scenario", "Simulation", "loads_document", "read_scenario", "shipped_scenarios", "simulate"]
-
-door(
-    __name__,
-    {
-        "files": "read_scenario shipped_scenarios",
-        "record": "Simulation simulate",
-        "resultant": "loads_document",
-        "scenario": "Scenario",
-    },
-)
+door(__name__)

@@ -5,62 +5,25 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.twin.advance import advance, advance_all
-    from jackettwin.twin.config import TwinConfig
-    from jackettwin.twin.document import observation_document, run_document, update_document
-    from jackettwin.twin.examine import Examination, examine, examine_file
-    from jackettwin.twin.files import read_twin, shipped_twins
-    from jackettwin.twin.judge import JUDGED, Judged, judge
-    from jackettwin.twin.model import TwinModel, twin_model
-    from jackettwin.twin.observation import OBSERVATION, Observation
-    from jackettwin.twin.observe import observe
-    from jackettwin.twin.result import DampingExcess, TwinResult
-    from jackettwin.twin.run import count_steps, run_twin
-    from jackettwin.twin.state import STATE, TwinState, empty_state
+    from jackettwin.twin.advance import advance as advance, advance_all as advance_all
+    from jackettwin.twin.config import TwinConfig as TwinConfig
+    from jackettwin.twin.document import (
+        observation_document as observation_document,
+        run_document as run_document,
+        update_document as update_document,
+    )
+    from jackettwin.twin.examine import (
+        Examination as Examination,
+        examine as examine,
+        examine_file as examine_file,
+    )
+    from jackettwin.twin.files import read_twin as read_twin, shipped_twins as shipped_twins
+    from jackettwin.twin.judge import JUDGED as JUDGED, Judged as Judged, judge as judge
+    from jackettwin.twin.model import TwinModel as TwinModel, twin_model as twin_model
+    from jackettwin.twin.observation import OBSERVATION as OBSERVATION, Observation as Observation
+    from jackettwin.twin.observe import observe as observe
+    from jackettwin.twin.result import DampingExcess as DampingExcess, TwinResult as TwinResult
+    from jackettwin.twin.run import count_steps as count_steps, run_twin as run_twin
+    from jackettwin.twin.state import STATE as STATE, TwinState as TwinState, empty_state as empty_state
 
-__all__ = [
-    "DampingExcess",
-    "JUDGED",
-    "Judged",
-    "Examination",
-    "OBSERVATION",
-    "Observation",
-    "STATE",
-    "TwinConfig",
-    "TwinModel",
-    "TwinResult",
-    "TwinState",
-    "advance",
-    "advance_all",
-    "count_steps",
-    "empty_state",
-    "examine",
-    "examine_file",
-    "judge",
-    "observation_document",
-    "observe",
-    "read_twin",
-    "run_document",
-    "run_twin",
-    "shipped_twins",
-    "twin_model",
-    "update_document",
-]
-
-door(
-    __name__,
-    {
-        "advance": "advance advance_all",
-        "config": "TwinConfig",
-        "document": "observation_document run_document update_document",
-        "examine": "Examination examine examine_file",
-        "files": "read_twin shipped_twins",
-        "judge": "JUDGED Judged judge",
-        "model": "TwinModel twin_model",
-        "observation": "OBSERVATION Observation",
-        "observe": "observe",
-        "result": "DampingExcess TwinResult",
-        "run": "count_steps run_twin",
-        "state": "STATE TwinState empty_state",
-    },
-)
+door(__name__)

@@ -5,45 +5,22 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.updating.band import numbered_modes
-    from jackettwin.updating.build import support_model
-    from jackettwin.updating.families import DEFAULT_LAWS, Parameter, family
-    from jackettwin.updating.joint import joint, single
-    from jackettwin.updating.model import SupportModel
-    from jackettwin.updating.posterior import Posterior
-    from jackettwin.updating.problem import Problem
-    from jackettwin.updating.targets import Residuals, Target
-    from jackettwin.updating.update import Update, law_probability, update
+    from jackettwin.updating.band import numbered_modes as numbered_modes
+    from jackettwin.updating.build import support_model as support_model
+    from jackettwin.updating.families import (
+        DEFAULT_LAWS as DEFAULT_LAWS,
+        Parameter as Parameter,
+        family as family,
+    )
+    from jackettwin.updating.joint import joint as joint, single as single
+    from jackettwin.updating.model import SupportModel as SupportModel
+    from jackettwin.updating.posterior import Posterior as Posterior
+    from jackettwin.updating.problem import Problem as Problem
+    from jackettwin.updating.targets import Residuals as Residuals, Target as Target
+    from jackettwin.updating.update import (
+        Update as Update,
+        law_probability as law_probability,
+        update as update,
+    )
 
-__all__ = [
-    "DEFAULT_LAWS",
-    "Parameter",
-    "Posterior",
-    "Problem",
-    "Residuals",
-    "SupportModel",
-    "Target",
-    "Update",
-    "family",
-    "joint",
-    "law_probability",
-    "numbered_modes",
-    "single",
-    "support_model",
-    "update",
-]
-
-door(
-    __name__,
-    {
-        "band": "numbered_modes",
-        "build": "support_model",
-        "families": "DEFAULT_LAWS Parameter family",
-        "joint": "joint single",
-        "model": "SupportModel",
-        "posterior": "Posterior",
-        "problem": "Problem",
-        "targets": "Residuals Target",
-        "update": "Update law_probability update",
-    },
-)
+door(__name__)

@@ -5,36 +5,21 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.watching.causes import Cause, general_causes, lognormal_sizes, sensor_noise
-    from jackettwin.watching.diagnosis import Diagnosis, Verdict, diagnose
-    from jackettwin.watching.history import History
-    from jackettwin.watching.next_look import expected_information
-    from jackettwin.watching.watch import Change, Look, Watch, start, step
+    from jackettwin.watching.causes import (
+        Cause as Cause,
+        general_causes as general_causes,
+        lognormal_sizes as lognormal_sizes,
+        sensor_noise as sensor_noise,
+    )
+    from jackettwin.watching.diagnosis import Diagnosis as Diagnosis, Verdict as Verdict, diagnose as diagnose
+    from jackettwin.watching.history import History as History
+    from jackettwin.watching.next_look import expected_information as expected_information
+    from jackettwin.watching.watch import (
+        Change as Change,
+        Look as Look,
+        Watch as Watch,
+        start as start,
+        step as step,
+    )
 
-__all__ = [
-    "Cause",
-    "Change",
-    "Diagnosis",
-    "History",
-    "Look",
-    "Verdict",
-    "Watch",
-    "diagnose",
-    "expected_information",
-    "general_causes",
-    "lognormal_sizes",
-    "sensor_noise",
-    "start",
-    "step",
-]
-
-door(
-    __name__,
-    {
-        "causes": "Cause general_causes lognormal_sizes sensor_noise",
-        "diagnosis": "Diagnosis Verdict diagnose",
-        "history": "History",
-        "next_look": "expected_information",
-        "watch": "Change Look Watch start step",
-    },
-)
+door(__name__)
