@@ -24,8 +24,7 @@ COMMANDS = {
     "export": "Write what stands below the interface of STRUCTURE as a SubDyn input file.",
     "stages": "Frequencies of STRUCTURE on pinned feet as its parts are added: jacket, transition piece, "
     "tower.",
-    "check": "Check every member of STRUCTURE at rest under its weight and the forces given, or of a "
-    "scenario.",
+    "check": "Check members and joints of STRUCTURE at rest under weight and forces given, or of a scenario.",
     "simulate": "Simulate SCENARIO, a shipped name or a YAML file, and write its record.",
     "simulate-set": "Simulate every case of SET, a shipped name (dlc64) or a YAML file; finished cases are "
     "kept.",
