@@ -9,11 +9,11 @@ from importlib.resources import as_file, files
 import numpy as np
 import plotly.graph_objects as go
 
-from gallery import figures_theory, schematics
+from gallery import explore, figures_landscape, figures_theory, schematics
+from gallery.figures_elevation import elevation
 from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
-from jackettwin.report import explore, figures_identification, figures_landscape, figures_record
-from jackettwin.report.figures_elevation import elevation
+from jackettwin.report import figures_identification, figures_record
 from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.figures_structure import structure_3d
 from jackettwin.report.numbers import frequency, scientific, words

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.report import explore
+from gallery import explore
 from jackettwin.twin import TwinResult
 from jackettwin.updating import Parameter
 

@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -12,9 +11,7 @@ from jackettwin.report import Plot
 from jackettwin.report.build import report_sections
 from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.figures_record import envelope, time_series
-from jackettwin.report.figures_solutions import solution_map
 from jackettwin.report.figures_structure import structure_3d
-from jackettwin.report.figures_updating import frequency_errors
 from jackettwin.report.style import direction_colour, law_look, mode_look
 from jackettwin.twin import TwinResult
 
@@ -27,7 +24,7 @@ def plots(complete: TwinResult) -> list[Plot]:
 def test_every_axis_has_quantity_and_unit(
     plots: list[Plot], assert_units: Callable[[go.Figure], None]
 ) -> None:
-    assert len(plots) >= 14
+    assert len(plots) >= 7
     for plot in plots:
         assert_units(plot.figure)
 
@@ -108,27 +105,3 @@ def test_envelope_keeps_extremes_and_gaps() -> None:
 def test_chosen_channels_only(record: Record) -> None:
     figure = time_series(record, channels=["acc_mid_y", "acc_top_x"])
     assert [trace.name for trace in figure.data] == ["acc_mid_y", "acc_top_x"]
-
-
-def test_solution_map_puts_solutions_between_their_bounds(targets_only: TwinResult) -> None:
-    update = targets_only.updates[0]
-    best = replace(update.best, theta=np.array([p.low for p in update.problem.parameters]))
-    locked = replace(update.best, locked_damper=True)
-    figure = solution_map([replace(update, search=replace(update.search, solutions=(best, locked)))])
-    markers = [trace for trace in figure.data if trace.mode == "markers"]
-    np.testing.assert_allclose(markers[0].x, 0.0, atol=1e-9)
-    theta, k = update.best.theta, update.problem.parameters[0]
-    # the thesis's k of 2.5e9 between 1e7 and 1e14
-    assert markers[1].x[0] == pytest.approx(100 * np.log(theta[0] / k.low) / np.log(k.high / k.low))
-    assert markers[1].marker.symbol.endswith("-open") and "locked" in markers[1].name
-
-
-@pytest.mark.parametrize("n_laws", [1, 4, 6])
-def test_markers_of_all_laws_stand_inside_the_axis(targets_only: TwinResult, n_laws: int) -> None:
-    figure = frequency_errors(targets_only.measured, targets_only.updates * n_laws)
-    low, high = figure.layout.xaxis.range
-    places = np.array([trace.x for trace in figure.data])
-    assert places.shape[0] == n_laws + 1 and low < places.min() and places.max() < high
-    # about each mode's place, and none on another mode's side
-    np.testing.assert_allclose(places.mean(axis=0), range(places.shape[1]), atol=1e-12)
-    assert np.abs(places - np.arange(places.shape[1])).max() < 0.5

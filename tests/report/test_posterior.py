@@ -6,9 +6,9 @@ from dataclasses import replace
 import plotly.graph_objects as go
 import pytest
 
-from jackettwin.report import Plot
-from jackettwin.report.page import Table
-from jackettwin.report.section_posterior import what_is_known, whose_damping
+from jackettwin.answers import answer
+from jackettwin.report import Plot, tables_answers
+from jackettwin.report.section_appendix import posterior
 from jackettwin.twin import TwinResult
 from jackettwin.updating import Residuals, Target, family, single, support_model, update
 
@@ -34,31 +34,36 @@ def weighed(targets_only: TwinResult) -> TwinResult:
     return replace(targets_only, updates=tuple(updates), excess=((), ()))
 
 
-def test_what_is_known_is_drawn_with_units(
+def test_the_posterior_is_drawn_with_units(
     weighed: TwinResult, assert_units: Callable[[go.Figure], None]
 ) -> None:
-    blocks = what_is_known(weighed) + whose_damping(weighed)
-    plots = {b.name: b.figure for b in blocks if isinstance(b, Plot)}
-    assert set(plots) == {"posterior", "profiles", "law_comparison", "damping_budget"}
+    plots = {b.name: b.figure for b in posterior(weighed) if isinstance(b, Plot)}
+    assert set(plots) == {"posterior", "profiles"}
     for figure in plots.values():
         assert_units(figure)
-    # bars of the sources carry their intervals
-    bars = [trace for trace in plots["damping_budget"].data if trace.type == "bar"]
-    assert all(bar.error_y.array is not None for bar in bars)
-    # no dashpot in the model: the rotor's part is not zero but not known
-    assert [bar.name for bar in bars] == ["structure", "soil"]
-    assert any("rotor, water" in b.caption for b in blocks if b.kind == "plot")
-    assert sum(bar.y[0] for bar in plots["law_comparison"].data) == pytest.approx(100.0)
 
 
-def test_verdicts_and_next_measurements_are_tabled(weighed: TwinResult) -> None:
-    tables = [b for b in what_is_known(weighed) if isinstance(b, Table)]
-    verdicts = [t for t in tables if "what the data tell" in t.caption]
-    assert [len(t.rows) for t in verdicts] == [2, 2]
-    assert all(row[1] in ("identified", "weak", "unidentified") for t in verdicts for row in t.rows)
-    assert any("further measurement" in t.caption for t in tables)
+def test_verdicts_laws_and_next_measurements_are_tabled(weighed: TwinResult) -> None:
+    answers = answer(weighed)
+    ground = tables_answers.ground_table(answers)
+    assert [row[1] for row in ground.rows] and {row[1] for row in ground.rows} <= {
+        "known",
+        "known roughly",
+        "not known",
+    }
+    laws = tables_answers.laws_table(answers)
+    assert sum(float(row[2]) for row in laws.rows) == pytest.approx(100.0, abs=1.0)  # whole per cents
+    assert [row[1] for row in laws.rows].count("recommended") == 1
+    # nothing of a rotor in the model: no column says it is zero
+    assert [c.split("\n")[0] for c in tables_answers.budget_table(answers).columns] == [
+        "mode",
+        "measured",
+        "model",
+        "steel",
+        "ground",
+    ]
 
 
-def test_nothing_is_said_without_standard_deviations(targets_only: TwinResult) -> None:
-    assert what_is_known(targets_only) == []
-    assert [b.name for b in whose_damping(targets_only)] == ["damping_budget"]
+def test_without_standard_deviations_there_is_no_posterior(targets_only: TwinResult) -> None:
+    assert posterior(targets_only) == []
+    assert {row[1] for row in tables_answers.ground_table(answer(targets_only)).rows} == {"–"}

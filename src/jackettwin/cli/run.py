@@ -12,6 +12,7 @@ from jackettwin.answers import answer
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report import build_report
@@ -70,9 +71,11 @@ def run_command(
         )
         step("write the report")
         answers = answer(result)
+        made = provenance(config)
         document = run_document(result, report=str(folder / "report.html")) | answers_document(answers)
+        document["provenance"] = dict(made)
         with atomic_folder(folder) as temporary:
-            build_report(result, temporary)
+            build_report(result, temporary, answers=answers, provenance=made)
             write_json(document, temporary / "result.json")
     if as_json:
         print_json(document)

@@ -3,83 +3,117 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
+from jackettwin.answers import Answers, answer
 from jackettwin.identification import Identification
+from jackettwin.report import section_appendix as appendix
+from jackettwin.report import section_first as first
+from jackettwin.report import tables_answers as tables
 from jackettwin.report.numbers import fixed
 from jackettwin.report.page import Block, Section, Table, Text, write_figures, write_page
-from jackettwin.report.section_posterior import what_is_known, whose_damping
-from jackettwin.report.section_records import the_record, what_was_identified
+from jackettwin.report.section_records import further_records, the_records
 from jackettwin.report.section_structure import the_structure
-from jackettwin.report.section_updating import (
-    against_the_truth,
-    around_the_solution,
-    damped_and_undamped,
-    every_solution,
-    identified_against_updated,
-    the_mode_shapes,
-    unexplained_damping,
-)
-from jackettwin.report.summary import headline
-from jackettwin.report.tables_updating import key_table
+from jackettwin.report.sentences import Said, sentences
+from jackettwin.report.tables_updating import true_parameters_table, truth_table
 from jackettwin.twin import Observation, TwinResult
+from jackettwin.twin.truth import true_modes, true_parameters
 from jackettwin.version import __version__
 
-_SHOWN_WARNINGS = 3
+Rows = tuple[tuple[str, str], ...]
 
 
-def build_report(result: TwinResult, out_dir: Path) -> Path:
+def build_report(
+    result: TwinResult, out_dir: Path, *, answers: Answers | None = None, provenance: Rows = ()
+) -> Path:
     """Write ``report.html`` (self-contained) and ``figures/NAME.html``; return the path of the report.
+
+    Parameters
+    ----------
+    answers : Answers, optional
+        Of this result, if they are there already.
+    provenance : tuple of (what, value)
+        What only the caller knows: when, by which command, from which files.
 
     Raises
     ------
     OSError
         If the directory cannot be written.
     """
-    sections = report_sections(result)
+    sections = report_sections(result, answers or answer(result), provenance)
     write_figures(sections, out_dir / "figures")
     title = f"{result.name}: digital twin of {result.assembly.structure.name}"
-    return write_page(sections, out_dir / "report.html", title=title, subtitle=_subtitle(result))
+    return write_page(sections, out_dir / "report.html", title=title, subtitle=_subtitle(result, provenance))
 
 
-def report_sections(result: TwinResult) -> list[Section]:
-    """Return the report's sections in the order an engineer reads them; empty ones are left out."""
+def report_sections(
+    result: TwinResult, answers: Answers | None = None, provenance: Rows = ()
+) -> list[Section]:
+    """Return the report's sections: verdict, engineer's part, appendix; empty ones are left out."""
+    a = answers or answer(result)
+    said = sentences(a)
     makers: tuple[tuple[str, Callable[[TwinResult], list[Block]]], ...] = (
-        ("Summary", _summary),
-        ("Structure", the_structure),
-        ("Record", the_record),
-        ("Identification", what_was_identified),
-        ("Identified against updated", identified_against_updated),
-        ("Against the known truth", against_the_truth),
-        ("What is known", what_is_known),
-        ("Whose damping", whose_damping),
-        ("Damped and undamped", damped_and_undamped),
-        ("Mode shapes", the_mode_shapes),
-        ("Solutions", every_solution),
-        ("Sensitivity and root locus", around_the_solution),
-        ("Damping no support explains", unexplained_damping),
+        ("Verdict", lambda r: [first.first_page(a, said)]),
+        ("Modes", partial(_modes, a=a, said=said)),
+        ("The ground", partial(_ground, a=a, said=said)),
+        ("Whose damping", partial(_damping, a=a, said=said)),
+        ("What to do next", partial(_next, a=a, said=said)),
+        ("Records", the_records),
         ("Assumptions and warnings", _assumptions),
-        ("Provenance", _provenance),
+    )
+    after: tuple[tuple[str, Callable[[TwinResult], list[Block]]], ...] = (
+        ("Structure", the_structure),
+        ("Every law", appendix.every_law),
+        ("Posterior", appendix.posterior),
+        ("Solutions", appendix.every_solution),
+        ("Identification", further_records),
+        ("Provenance", partial(_provenance, given=provenance)),
     )
     sections = [Section(title, tuple(make(result))) for title, make in makers]
+    sections += [Section(title, tuple(make(result)), appendix=True) for title, make in after]
     return [section for section in sections if section.blocks]
 
 
-def _subtitle(result: TwinResult) -> str:
+def _subtitle(result: TwinResult, provenance: Rows) -> str:
     names = [name for found in result.identifications for name in found.records]
     source = (
         f"record {names[0]}" if len(names) == 1 else f"{len(names)} records" if names else "given targets"
     )
-    return f"{source} · jackettwin {__version__}"
+    when = dict(provenance).get("made", "")
+    return " · ".join(
+        filter(
+            None, (source, when, f"jackettwin {__version__}", "intervals are 90 % where nothing else is said")
+        )
+    )
 
 
-def _summary(result: TwinResult) -> list[Block]:
-    blocks: list[Block] = [Text(headline(result)), key_table(result)]
-    if result.warnings:
-        more = len(result.warnings) - _SHOWN_WARNINGS
-        said = (f"… and {more} more, under Assumptions and warnings.",) if more > 0 else ()
-        blocks.append(Text(result.warnings[:_SHOWN_WARNINGS] + said, "warnings"))
-    return blocks
+def _more(said: Said, title: str) -> list[Block]:
+    texts = next(q.more for q in said.questions if q.title == title)
+    return [Text(texts)] if texts else []
+
+
+def _modes(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+    blocks: list[Block] = [*_more(said, first.MODEL), tables.modes_table(a, result), *first.shapes(result)]
+    known = true_modes(result)
+    return [*blocks, truth_table(result, known)] if known else blocks
+
+
+def _ground(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+    if not a.ground:
+        return []
+    blocks: list[Block] = [*_more(said, first.GROUND), *first.ground_drawing(a)]
+    blocks += [tables.ground_table(a), tables.laws_table(a)]
+    parameters = true_parameters(result)
+    return [*blocks, true_parameters_table(parameters)] if parameters else blocks
+
+
+def _damping(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+    return [*_more(said, first.DAMPING), tables.budget_table(a)] if a.law else []
+
+
+def _next(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
+    return [*_more(said, first.NEXT), *([tables.next_table(a)] if a.next_steps else [])]
 
 
 def _assumptions(result: TwinResult) -> list[Block]:
@@ -87,16 +121,16 @@ def _assumptions(result: TwinResult) -> list[Block]:
     return [*blocks, Text(result.warnings, "warnings")] if result.warnings else blocks
 
 
-def _provenance(result: TwinResult) -> list[Block]:
+def _provenance(result: TwinResult, *, given: Rows) -> list[Block]:
     rows = [("jackettwin", __version__), ("twin", result.name), ("structure", result.assembly.structure.name)]
-    rows.append(("degrees of freedom", str(result.assembly.n_dof)))
+    rows += [("degrees of freedom", str(result.assembly.n_dof)), *given]
     rows += [("record", _conditions(seen)) for seen in result.observations]
     settings: dict[tuple[tuple[str, str], ...], list[str]] = {}
     for found in result.identifications:
         settings.setdefault(_settings(found), []).extend(found.records)
     for chosen, records in settings.items():
         rows += [("identified with, in", ", ".join(records)), *chosen]
-    return [Table("Where the numbers come from.", ("what", "value"), tuple(rows), 2)]
+    return [Table("Where do the numbers come from?", ("what", "value"), tuple(rows), 2)]
 
 
 def _conditions(record: Observation) -> str:

@@ -1,8 +1,8 @@
-"""What the data leave open: posteriors, whose damping it is, which law, profiles."""
+"""What the data leave open: posteriors and profiles."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import plotly.graph_objects as go
@@ -10,18 +10,9 @@ from plotly.subplots import make_subplots
 
 from jackettwin.arrays import FloatArray
 from jackettwin.report import style
-from jackettwin.report.numbers import words
-from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Parameter, Update
-from jackettwin.updating.budget import SOURCES, Budget
 from jackettwin.updating.update import Uncertainty
 
-_SOURCE_LOOKS = {
-    "structure": (style.GREY, ""),
-    "soil": (style.ORANGE, "/"),
-    "rotor": (style.BLUE, "x"),
-    "water": (style.SKY, "."),
-}
 _BINS = 24
 _POINTS = 300
 _PRIOR_DRAWS = 20_000
@@ -140,99 +131,6 @@ def _corner_axes(figure: go.Figure, parameters: Sequence[Parameter], z: FloatArr
 
 def _reach(z: FloatArray) -> tuple[float, float]:
     return float(z.min()) - 0.1, float(z.max()) + 0.1
-
-
-def damping_budget(measured: Sequence[MeasuredMode], budget: Budget) -> go.Figure:
-    """Draw each source's part of each mode's damping with its 90 % interval, and the measured ratio."""
-    figure = go.Figure()
-    names = [words(m.label) for m in measured]
-    interval = budget.damping_ratio_interval_90
-    for s in modelled_sources(budget):
-        source = SOURCES[s]
-        colour, pattern = _SOURCE_LOOKS[source]
-        bars = None
-        if interval is not None:
-            bars = {
-                "type": "data",
-                "symmetric": False,
-                "array": 100.0 * np.maximum(interval[:, s, 1] - budget.damping_ratio[:, s], 0.0),
-                "arrayminus": 100.0 * np.maximum(budget.damping_ratio[:, s] - interval[:, s, 0], 0.0),
-                "thickness": 1.4,
-                "width": 4,
-            }
-        figure.add_bar(
-            x=names,
-            y=100.0 * budget.damping_ratio[:, s],
-            name=source,
-            offsetgroup=source,
-            error_y=bars,
-            marker={
-                "color": colour,
-                "line": {"color": style.INK, "width": 0.8},
-                "pattern": {"shape": pattern},
-            },
-            hovertemplate=f"%{{y:.3f}} %<extra>{source}</extra>",
-        )
-    figure.add_scatter(
-        x=names,
-        y=100.0 * budget.damping_ratio.sum(axis=1),
-        mode="markers",
-        name="sum of the sources",
-        marker={"color": style.INK, "symbol": "diamond-open", "size": 11, "line": {"width": 2}},
-        hovertemplate="%{y:.2f} %<extra>sum</extra>",
-    )
-    figure.add_scatter(
-        x=names,
-        y=[None if m.damping_ratio is None else 100.0 * m.damping_ratio for m in measured],
-        mode="markers",
-        name="measured, all sources",
-        marker={"color": style.INK, "symbol": "line-ew-open", "size": 26, "line": {"width": 2}},
-        hovertemplate="%{y:.2f} %<extra>measured</extra>",
-    )
-    return style.finish(
-        figure,
-        height=420,
-        barmode="group",
-        xaxis={"title": {"text": "mode"}, "type": "category"},
-        yaxis={"title": {"text": style.title("damping ratio", "%")}, "rangemode": "tozero"},
-    )
-
-
-def modelled_sources(budget: Budget) -> list[int]:
-    """Return the positions in ``SOURCES`` of those that damp any mode; the others are not modelled."""
-    n = budget.damping_ratio.shape[1]
-    return [s for s in range(n) if np.nanmax(np.abs(budget.damping_ratio[:, s])) > 0.0]
-
-
-def law_comparison(probability: Mapping[str, float]) -> go.Figure:
-    """Draw the probability of each law, all equally likely before the data."""
-    figure = go.Figure()
-    for law, value in probability.items():
-        figure.add_bar(
-            x=[law],
-            y=[100.0 * value],
-            name=law,
-            marker={"color": style.law_look(law).colour, "line": {"color": style.INK, "width": 0.8}},
-            text=f"{100.0 * value:.0f} %" if value > 0.005 else f"{100.0 * value:.1g} %",
-            textposition="auto",
-            insidetextanchor="middle",
-            insidetextfont={"color": style.INK},
-            showlegend=False,
-            hovertemplate="%{y:.1f} %<extra></extra>",
-        )
-    figure.add_hline(
-        y=100.0 / len(probability),
-        line={"color": style.INK, "width": 1.4, "dash": "dash"},
-        name="before the data",
-        showlegend=True,
-    )
-    return style.finish(
-        figure,
-        height=360,
-        showlegend=True,
-        xaxis={"title": {"text": "law"}, "type": "category"},
-        yaxis={"title": {"text": style.title("probability", "%")}, "range": [0.0, 100.0], "dtick": 25.0},
-    )
 
 
 def profiles(update: Update, known: Uncertainty) -> go.Figure:

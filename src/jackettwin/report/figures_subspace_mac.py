@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.identification import Identification, ModalEstimate, mac
+from jackettwin.identification.mac import mpc
 from jackettwin.identification.many_records.convergence import Step
 from jackettwin.report import style
 from jackettwin.report.numbers import words
@@ -52,7 +53,8 @@ def complexity(found: Identification, names: Sequence[str]) -> go.Figure:
     n = len(found.modes)
     rows = -(-n // _COLUMNS)
     titles = [
-        f"{_label(name, mode)}<br>MPC {mode.mpc:.2f}" for name, mode in zip(names, found.modes, strict=True)
+        f"{_label(name, mode)}<br>MPC {float(mpc((mode.unrefined or mode).mode_shape)):.2f}"
+        for name, mode in zip(names, found.modes, strict=True)
     ]
     figure = make_subplots(
         rows=rows, cols=min(_COLUMNS, n), subplot_titles=titles, vertical_spacing=0.36 / rows

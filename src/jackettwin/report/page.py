@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,12 +49,14 @@ class Plot:
     name: str
     caption: str
     figure: go.Figure
+    big: bool = False
+    """Drawn on request only."""
     kind: Literal["plot"] = "plot"
 
     @property
-    def json(self) -> Markup:
-        """The figure as JSON that may stand inside a script element."""
-        return Markup(self.figure.to_json().replace("</", "<\\/"))
+    def packed(self) -> str:
+        """The figure as JSON, compressed."""
+        return packed(self.figure.to_json())
 
     @property
     def scenes(self) -> int:
@@ -65,7 +69,44 @@ class Plot:
         return int(self.figure.layout.height)
 
 
-Block = Text | Table | Plot
+@dataclass(frozen=True)
+class Drawing:
+    """Drawings that need no script, side by side where there is room; the caption asks what they answer."""
+
+    name: str
+    caption: str
+    drawings: tuple[Markup, ...]
+    kind: Literal["drawing"] = "drawing"
+
+
+@dataclass(frozen=True)
+class FirstPage:
+    """A headline, answers to questions, and the drawings beside them."""
+
+    headline: tuple[str, ...]
+    answers: tuple[tuple[str, tuple[str, ...]], ...]
+    drawings: tuple[Drawing, ...]
+    kind: Literal["first"] = "first"
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """A page of its own, shown in this one on request."""
+
+    name: str
+    caption: str
+    html: str
+    button: str
+    height: int = 640
+    kind: Literal["embedded"] = "embedded"
+
+    @property
+    def packed(self) -> str:
+        """The page, compressed."""
+        return packed(self.html)
+
+
+Block = Text | Table | Plot | Drawing | FirstPage | Embedded
 
 
 @dataclass(frozen=True)
@@ -74,6 +115,7 @@ class Section:
 
     title: str
     blocks: tuple[Block, ...]
+    appendix: bool = False
 
     @property
     def anchor(self) -> str:
@@ -82,8 +124,9 @@ class Section:
 
 
 def write_page(sections: Sequence[Section], path: Path, *, title: str, subtitle: str = "") -> Path:
-    """Write one self-contained HTML file."""
-    return _write("page.html.j2", path, sections=sections, title=title, subtitle=subtitle, plotly=_plotly())
+    """Write one self-contained HTML file; the plotting library only where something is plotted."""
+    library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
+    return _write("page.html.j2", path, sections=sections, title=title, subtitle=subtitle, plotly=library)
 
 
 def write_figures(sections: Sequence[Section], directory: Path) -> None:
@@ -101,8 +144,9 @@ def _plots(sections: Iterable[Section]) -> Iterable[Plot]:
     return (block for section in sections for block in section.blocks if isinstance(block, Plot))
 
 
-def _plotly() -> Markup:
-    return Markup(get_plotlyjs().replace("</script", "<\\/script"))
+def packed(text: str) -> str:
+    """Return a text compressed (gzip, base64), as the page's script unpacks it; always the same."""
+    return b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 
 def _write(template: str, path: Path, **context: object) -> Path:

@@ -4,23 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.report import figures_structure
-from jackettwin.report.numbers import UNKNOWN, fixed
-from jackettwin.report.page import Block, Plot, Table
+from jackettwin.report.numbers import UNKNOWN, fixed, words
+from jackettwin.report.page import Block, Embedded, Table
+from jackettwin.report.view import View, render_view, thickness_quantities
+from jackettwin.report.view_motions import damped_motion
 from jackettwin.twin import TwinResult
+from jackettwin.updating.law_choice import recommended
 
 _STEEL = (210e9, 7850.0)
 """Young's modulus [Pa] and density [kg/m³] of structural steel."""
 
 
 def the_structure(result: TwinResult) -> list[Block]:
-    """Return the picture of the structure and the table of its parts."""
-    figure = figures_structure.structure_3d(result.assembly, result.sensors)
+    """Return the structure and its updated modes to turn, on request, and the table of its parts."""
     caption = (
-        "The structure, members coloured by the quantity chosen above. "
-        "Drag to turn, scroll to zoom; axes are equal."
+        "What does it look like, and how does it move? Turn it, colour it, set its updated modes in motion."
     )
-    return [Plot("structure", caption, figure), structure_table(result)]
+    page = Embedded("structure", caption, render_view(_view(result)), "Show the structure and its modes")
+    return [page, structure_table(result)]
+
+
+def _view(result: TwinResult) -> View:
+    u = recommended(result.updates)
+    motions = (
+        []
+        if u is None
+        else [
+            damped_motion(result.assembly, words(m.label), complex(pole), u.modes.shapes[:, i])
+            for i, (m, pole) in enumerate(zip(result.measured, u.modes.poles, strict=True))
+            if np.isfinite(pole) and np.isfinite(u.modes.shapes[:, i]).all()
+        ]
+    )
+    return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
 
 
 def structure_table(result: TwinResult) -> Table:
@@ -49,7 +64,7 @@ def structure_table(result: TwinResult) -> Table:
         name = "rotor–nacelle assembly" if body.part == "rna" else f"mass at {body.node}"
         rows.append((name, UNKNOWN, fixed(body.mass_kg / 1e3, 1), *[UNKNOWN] * 4))
     columns = ("part", "members", "mass [t]", "diameter [m]", "wall [mm]", "E [GPa]", "density [kg/m³]")
-    caption = "What the structure is made of."
+    caption = "What is the structure made of?"
     if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
         caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
     return Table(caption, columns, tuple(rows))

@@ -292,11 +292,11 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 def _parameter(g: GroundAnswer) -> str:
     name = parameter_words(g.name).capitalize()
-    before = "" if g.before is None else f", before the data {span_words(g.before, g.unit)}"
+    before = "" if g.before is None else f"; before the data {span_words(g.before, g.unit)}"
     verdict = {
         "identified": "known",
         "weak": "known roughly",
-        "unidentified": "not known: the data add nothing",
+        "unidentified": "not known",
         "": "no interval",
     }[g.verdict]
     return f"{name} {span_words(g.value, g.unit)}{before}: {verdict}."

@@ -10,11 +10,11 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
-from jackettwin.report.summary import shown_update
-from jackettwin.twin import DampingExcess, TwinResult
+from jackettwin.twin import TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
 from jackettwin.updating.families import Parameter
+from jackettwin.updating.law_choice import recommended
 
 
 def key_table(result: TwinResult) -> Table:
@@ -29,7 +29,7 @@ def key_table(result: TwinResult) -> Table:
         row += [_mark(percent(m.damping_ratio, m.damping_ratio_std), m.fits_damping)]
         row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
         rows.append(tuple(row))
-    caption = "Measured and updated modes. ± is one standard deviation; in brackets: took no part in the fit."
+    caption = "Does each law meet the modes (best fit)? In brackets: not fitted; ± one standard deviation."
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
@@ -39,7 +39,7 @@ def _mark(text: str, fitted: bool) -> str:
 
 def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
     """Return the true modes that the records state beside the measured and the updated ones."""
-    shown = [shown_update(result)] if result.updates else []
+    shown = [u for u in [recommended(result.updates)] if u is not None]
     columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in shown)]
     columns += ["true\nζ [%]", "measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in shown)]
     place = {m.label: i for i, m in enumerate(result.measured)}
@@ -52,7 +52,9 @@ def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
         row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
         row += [percent(float(u.modes.damping_ratio[i])) for u in shown]
         rows.append(tuple(row))
-    caption = "What is known to be true of these records, the mean over them, beside what was found."
+    caption = (
+        "Is it true? What these records state of their asset, the mean over them, beside what was found."
+    )
     return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
@@ -70,7 +72,12 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
         for p in parameters
     ]
     columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
-    return Table("True parameters of the support, SI units.", columns, tuple(rows), text_columns=2)
+    return Table(
+        "Are the parameters true? Those the records state beside those found, SI units.",
+        columns,
+        tuple(rows),
+        text_columns=2,
+    )
 
 
 def damped_undamped_table(result: TwinResult) -> Table:
@@ -83,7 +90,7 @@ def damped_undamped_table(result: TwinResult) -> Table:
     for i, m in enumerate(result.measured):
         pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
         rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
-    caption = "Damped and undamped frequencies of the full updated model."
+    caption = "Is a damper locked? Damped and undamped frequencies of the full updated model."
     return Table(caption, tuple(columns), tuple(rows))
 
 
@@ -129,12 +136,21 @@ def parameter_table(updates: Sequence[Update]) -> Table:
                 low, high = known.interval_90[i]
                 span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
             text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
-            rows.append((u.law, p.name, p.unit, text, _prior(p), scientific(float(value)), span))
+            rows.append(
+                (
+                    u.law,
+                    p.name,
+                    UNKNOWN if p.unit == "-" else p.unit,
+                    text,
+                    _prior(p),
+                    scientific(float(value)),
+                    span,
+                )
+            )
     columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
     return Table(
-        "What was updated: the best fit, and the 90 % interval of the posterior, whose median may differ. "
-        "Identified: the data alone made the interval, and its ends are a factor of two apart at most. "
-        "c_fore_aft, c_side_side: the rotor's dashpot.",
+        "What are each law's parameters at its best fit? Intervals are the posterior's, whose median is the "
+        "value stated everywhere else. c_fore_aft, c_side_side: the rotor's dashpot.",
         columns,
         tuple(rows),
         4,
@@ -156,7 +172,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
     for i, s in enumerate(u.solutions):
         if s.locked_damper:
             marked.add(i)
-        notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["reported"] * (s is u.best)
+        notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["best fit"] * (s is u.best)
         notes += ["locked damper"] * s.locked_damper
         values = [
             f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
@@ -167,7 +183,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
         rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))
     caption = (
-        f"{u.law}: every distinct solution of the search, cheapest first, and how many starts ended there; "
+        f"{u.law}: are there other solutions? All found, cheapest first, and how many starts ended there; "
         "* on a bound."
     )
     return Table(caption, columns, tuple(rows), 2, frozenset(marked))
@@ -175,36 +191,3 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
 
 def _unit(unit: str) -> str:
     return "" if unit == "-" else f" {unit}"
-
-
-def excess_table(result: TwinResult) -> Table:
-    """Return the damping that the updated supports do not explain."""
-    rows = [
-        (
-            u.law,
-            words(e.label),
-            _verdict(e),
-            percent(e.measured, e.measured_std),
-            percent(e.support),
-            percent(e.rotor),
-            percent(e.excess),
-        )
-        for u, excess in zip(result.updates, result.excess, strict=True)
-        for e in excess
-    ]
-    columns = (
-        "law",
-        "mode",
-        "verdict",
-        "measured ζ [%]",
-        "steel and support [%]",
-        "rotor's dashpot [%]",
-        "excess over steel and support [%]",
-    )
-    return Table("Measured damping beside what steel, support and rotor give.", columns, tuple(rows), 3)
-
-
-def _verdict(e: DampingExcess) -> str:
-    if e.explained:
-        return "support explains it"
-    return "the rotor's dashpot carries it" if e.carried else "not explained"

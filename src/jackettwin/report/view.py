@@ -63,6 +63,13 @@ class View:
 
 def write_view(view: View, path: Path) -> Path:
     """Write one self-contained HTML file."""
+    with atomic_path(path) as temporary:
+        temporary.write_text(render_view(view), encoding="utf-8")
+    return path
+
+
+def render_view(view: View) -> str:
+    """Return a self-contained page."""
     environment = Environment(
         loader=PackageLoader("jackettwin.report"),
         autoescape=True,
@@ -71,7 +78,7 @@ def write_view(view: View, path: Path) -> Path:
         lstrip_blocks=True,
     )
     text = json.dumps(null_for_nan(view_document(view)), separators=(",", ":"), allow_nan=False)
-    page = environment.get_template("view.html.j2").render(
+    return environment.get_template("view.html.j2").render(
         title=view.assembly.structure.name,
         facts=view.facts,
         data=Markup(text.replace("</", "<\\/")),
@@ -80,9 +87,6 @@ def write_view(view: View, path: Path) -> Path:
         has_sensors=bool(view.sensors),
         others=sorted({one["kind"] for one in _others(view.assembly)}),
     )
-    with atomic_path(path) as temporary:
-        temporary.write_text(page, encoding="utf-8")
-    return path
 
 
 def view_document(view: View) -> dict[str, Any]:

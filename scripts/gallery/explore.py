@@ -1,14 +1,12 @@
-"""What the report evaluates around a solution: sensitivities, cost surface, root locus, undamped shapes."""
+"""What is evaluated around a solution: sensitivities, cost surface, root locus."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from gallery.figures_landscape import Curve, Locus
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.report.figures_landscape import Curve, Locus
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.mode_tracking import track_modes
-from jackettwin.updating import Problem, SupportModel, Update, numbered_modes
+from jackettwin.updating import Problem, SupportModel, Update
 from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 
 _STRIDE, _REFINEMENTS = 0.06, 3
@@ -69,14 +67,3 @@ def _strides(poles: ComplexArray) -> FloatArray:
     extent = np.nanmax(np.abs(poles - poles[0]), axis=0)
     steps = np.abs(np.diff(poles, axis=0)) / np.where(extent > 0.0, extent, 1.0)
     return np.asarray(np.nan_to_num(steps).max(axis=1))
-
-
-def undamped_shapes(update: Update) -> FloatArray:
-    """Return the undamped shapes (assembly.n_dof, n_modes) of the updated full model; NaN if not followed."""
-    model, modes = update.model, update.shown
-    reference = numbered_modes(model.assembly, max(modes) + 2)
-    undamped = undamped_modes(model.system(update.best.theta), max(modes) + 12)
-    found = track_modes(model.assembly.mass, reference.omega, reference.shapes, undamped.shapes)[
-        [m - 1 for m in modes]
-    ]
-    return np.asarray(np.where(found >= 0, undamped.shapes[:, found], np.nan))

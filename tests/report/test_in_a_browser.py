@@ -1,0 +1,80 @@
+"""The report as Chromium lays it out: nothing wider than the page, nothing in the way of the verdict."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+from jackettwin.report import build_report
+from jackettwin.twin import TwinResult
+
+CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
+MEASURE = """<script>setTimeout(() => { const r = e => e.getBoundingClientRect();
+const wide = [...document.querySelectorAll("p, li, figcaption, caption, svg, h1, h2, td")].filter(
+  e => r(e).width > 0 && !e.closest(".plot, .scroll, .wide") && r(e).right > innerWidth + 1);
+const boxes = [...document.querySelectorAll("svg text")].map(e => [r(e), r(e.ownerSVGElement)]);
+const cut = [...document.querySelectorAll(".wide")].filter(e => e.scrollWidth > e.clientWidth + 1);
+document.title = JSON.stringify({page: document.documentElement.scrollWidth, window: innerWidth,
+  wide: wide.length, tables: cut.map(e => e.innerText.slice(0, 60)),
+  outside: boxes.filter(([a, b]) => a.left < b.left - 1 || a.right > b.right + 1).length,
+  appendix: r(document.getElementById("appendix")).top / 900, ms: performance.timing.domInteractive
+  - performance.timing.fetchStart});
+}, 200);</script>"""
+
+pytestmark = pytest.mark.skipif(not CHROMIUM, reason="Chromium is not installed: pages are not laid out")
+
+
+@pytest.fixture(scope="module")
+def page(complete: TwinResult, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = build_report(complete, tmp_path_factory.mktemp("browser"))
+    path.write_text(
+        path.read_text(encoding="utf-8").replace("</body>", f"{MEASURE}</body>"), encoding="utf-8"
+    )
+    return path
+
+
+def laid_out(page: Path, width: int) -> dict:
+    """Return what the page measured of itself; a window narrower than 500 px is an iframe's."""
+    frame = page.with_name(f"at_{width}.html")
+    frame.write_text(f'<iframe src="{page.name}" style="width:{width}px;height:900px;border:0"></iframe>')
+    done = subprocess.run(
+        [
+            CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files",
+            f"--window-size={width},900", "--virtual-time-budget=1500", "--dump-dom",
+            str(page if width >= 500 else _measured_inside(frame)),
+        ],
+        capture_output=True, text=True, timeout=60, check=True,
+    )  # fmt: skip
+    found = re.search(r"<title>(\{.*?\})</title>", done.stdout)
+    assert found, done.stderr[-500:]
+    return json.loads(unescape(found.group(1)))
+
+
+def _measured_inside(frame: Path) -> Path:
+    """Let a frame take its page's title: headless windows are never narrower than 500 px."""
+    script = (
+        "<script>setInterval(() => {"
+        "document.title = document.querySelector('iframe').contentDocument.title; }, 50)</script>"
+    )
+    frame.write_text(f"<html><head><title>-</title></head><body>{frame.read_text()}{script}</body></html>")
+    return frame
+
+
+@pytest.mark.parametrize("width", [1400, 1024, 400])
+def test_nothing_is_cut_off(page: Path, width: int) -> None:
+    found = laid_out(page, width)
+    assert found["page"] <= found["window"]
+    assert found["wide"] == found["outside"] == 0
+    assert found["tables"] == []
+
+
+def test_the_appendix_begins_within_twelve_screens_and_the_page_is_there_at_once(page: Path) -> None:
+    found = laid_out(page, 1400)
+    assert 1.0 < found["appendix"] <= 12.0
+    assert found["ms"] < 3000.0  # parsed and laid out; figures follow when they come into view
