@@ -130,7 +130,12 @@ def write_page(sections: Sequence[Section], path: Path, *, title: str, subtitle:
 
 
 def write_figures(sections: Sequence[Section], directory: Path) -> None:
-    """Write every figure as a page of its own, beside one shared ``plotly.min.js``."""
+    """Write every figure as a file of its own: pages beside one shared ``plotly.min.js``, drawings as SVG."""
+    for drawing in _drawings(sections):
+        for i, svg in enumerate(drawing.drawings, start=1):
+            name = drawing.name if len(drawing.drawings) == 1 else f"{drawing.name}_{i}"
+            with atomic_path(directory / f"{name}.svg") as temporary:
+                temporary.write_text(svg, encoding="utf-8")
     plots = list(_plots(sections))
     if not plots:
         return
@@ -138,6 +143,15 @@ def write_figures(sections: Sequence[Section], directory: Path) -> None:
         temporary.write_text(get_plotlyjs(), encoding="utf-8")
     for plot in plots:
         _write("figure.html.j2", directory / f"{plot.name}.html", plot=plot, title=plot.name)
+
+
+def _drawings(sections: Iterable[Section]) -> Iterable[Drawing]:
+    for section in sections:
+        for block in section.blocks:
+            if isinstance(block, Drawing):
+                yield block
+            elif isinstance(block, FirstPage):
+                yield from block.drawings
 
 
 def _plots(sections: Iterable[Section]) -> Iterable[Plot]:
