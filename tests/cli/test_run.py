@@ -64,7 +64,7 @@ def test_a_second_run_replaces_its_own_files_and_keeps_others(outcome: tuple[Pat
 def test_an_interruption_exits_130_and_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(result: object, folder: Path) -> None:
+    def interrupted(result: object, folder: Path, **_: object) -> None:
         (folder / "report.html").write_text("half a rep")
         raise KeyboardInterrupt
 

@@ -68,7 +68,8 @@ class Canvas:
     def markup(self) -> Markup:
         """The drawing, as wide as there is room."""
         return Markup(
-            f'<svg xmlns="http://www.w3.org/2000/svg" font-family="sans-serif" font-size="13" viewBox="0 0 {self.width:g} {self.height:g}" role="img" '
+            '<svg xmlns="http://www.w3.org/2000/svg" font-family="sans-serif" font-size="13" '
+            f'viewBox="0 0 {self.width:g} {self.height:g}" role="img" '
             f'aria-label="{escape(self.title)}" style="max-width:{self.width:g}px">'
             f"{''.join(self._parts)}</svg>"
         )
