@@ -40,7 +40,12 @@ TEN_MINUTES = 12_000
 """Samples of ten minutes at 20 Hz."""
 CHEAP = 1200
 """Samples of a record that is observed in a fifth of a CPU second: faults, not modes, are looked at."""
-CHEAP_TWIN = "structure: jacket15\nidentification: {max_order: 12}\n"
+CHEAP_TWIN = """structure: jacket15
+identification: {max_order: 12}
+sensors:
+  - {channel: acc_top_x, height_m: 120.0, direction: [1, 0, 0]}
+  - {channel: acc_top_y, height_m: 120.0, direction: [0, 1, 0]}
+"""
 Figures = dict[str, Any]
 Sent = tuple[str, bytes, str]
 

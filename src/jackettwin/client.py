@@ -76,6 +76,16 @@ class Client:
                 "POST", f"/assets/{asset}/records", files={"file": (path.name, stream)}, data=data
             )
 
+    def send_conditions(
+        self, asset: str, table: Path | str, *, zone: str = "UTC", end_stamped: bool = False
+    ) -> dict[str, Any]:
+        """Send a CSV of ten-minute statistics; return how many are new, and how many records they concern."""
+        path = Path(table)
+        data = {"zone": zone, "end_stamped": str(end_stamped).lower()}
+        with path.open("rb") as stream:
+            files = {"file": (path.name, stream)}
+            return self._asked("POST", f"/assets/{asset}/conditions.csv", files=files, data=data)
+
     def records(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
         """Yield the records of a turbine, latest first; ``status``, ``from``, ``to`` choose."""
         return self._pages(f"/assets/{asset}/records", **query)

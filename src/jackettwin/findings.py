@@ -216,6 +216,14 @@ CATALOGUE: dict[str, Kind] = {
         "points the other way than the twin says: turned, the shapes it moves in would be {after:.0%} like "
         "the model's instead of {before:.0%}. Kept; turn its direction.",
     ),
+    "sensor_uncalibrated": Kind(
+        "warning", "has a history of calibrations, but none that holds then: taken as it was logged"
+    ),
+    "operation_unknown": Kind(
+        "warning",
+        "the state of operation is unknown, since {missing} is: send these conditions, and the record is "
+        "observed again",
+    ),
     "identification": Kind("warning", "{text}"),
     "no_mode_of_the_model": Kind("warning", "none of its {modes} identified modes is one of the model"),
     # twin: an observation on its way into the state

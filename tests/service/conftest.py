@@ -72,7 +72,7 @@ class Here:
         """Nothing to stop."""
 
 
-def quick(model: Any, waveform: Path, conditions: dict[str, Any]) -> tuple[Any, ...]:
+def quick(model: Any, waveform: Path, conditions: dict[str, Any], picks: Any = ()) -> tuple[Any, ...]:
     """Stand in for the identification: two modes whose frequencies depend on the samples alone."""
     record = read_waveform(waveform)
     a, b = (0.18 + 1e-4 * float(np.sum(record.data)) % 1e-3, 0.55)

@@ -188,7 +188,7 @@ def test_a_twin_that_cannot_be_read_is_no_version(client: TestClient) -> None:
 def test_conditions_are_joined_to_records_by_time(client: TestClient, service: Service) -> None:
     times = [hour(1).isoformat(), hour(2).isoformat()]
     body = {"time_utc": times, "values": {"mean_wind_speed_m_s": [9.0, 12.0], "state": ["parked", "idling"]}}
-    assert client.post("/api/v1/assets/wtg/conditions", json=body).json() == {"count": 4}
+    assert client.post("/api/v1/assets/wtg/conditions", json=body).json() == {"count": 4, "observed_again": 0}
     upload(client, 2)
     turn(service)
     from jackettwin.store import reading, results

@@ -14,7 +14,7 @@ from jackettwin.cli.store_options import opened, store_options
 
 @click.group("asset")
 def asset_command() -> None:
-    """Turbines of a living twin: add, list, show, adopt."""
+    """Turbines of a living twin: add, list, show, adopt, conditions."""
 
 
 @asset_command.command("add")
@@ -110,6 +110,48 @@ def adopt(name: str, version: int, as_json: bool, store: Path, database: str | N
         print_json({"asset": name, "adopted_version": version})
     else:
         output.print(f"{name}: version {version} is adopted")
+
+
+@asset_command.command("conditions")
+@click.argument("name")
+@click.argument(
+    "tables", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True, dir_okay=False)
+)
+@click.option("--clock", default="UTC", show_default=True, help="Zone of times that do not say theirs.")
+@click.option(
+    "--column", "columns", multiple=True, metavar="THEIRS=OURS", help="Take a column under another name."
+)
+@click.option("--end-stamped", is_flag=True, help="Rows bear the end of their ten minutes, not the start.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def conditions(
+    name: str,
+    tables: tuple[Path, ...],
+    clock: str,
+    columns: tuple[str, ...],
+    end_stamped: bool,
+    as_json: bool,
+    store: Path,
+    database: str | None,
+) -> None:
+    """Take conditions of the turbine NAME from TABLES: CSV of ten-minute statistics, as SCADA exports them.
+
+    Records that they belong to are observed again with them, by a server.
+    """
+    engine = opened(store, database)
+    from jackettwin.service import add_conditions
+
+    renamed = dict(column.rsplit("=", 1) for column in columns if "=" in column)
+    rows = []
+    for path in tables:
+        values, again = add_conditions(
+            engine, store, name, path, zone=clock, names=renamed, end_stamped=end_stamped
+        )
+        rows.append({"file": path.name, "count": values, "observed_again": again})
+        if not as_json:
+            output.print(f"{path.name}: {values} new or changed, {again} records are observed again")
+    if as_json:
+        print_json({"asset": name, "files": rows})
 
 
 def _row(asset: dict[str, Any]) -> tuple[Any, ...]:

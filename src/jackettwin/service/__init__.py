@@ -2,7 +2,7 @@
 
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.demonstration import demonstrate
-from jackettwin.service.desk import add_twin, rebuild, take_here
+from jackettwin.service.desk import add_conditions, add_twin, rebuild, take_here
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import record_files, watch_folders
 from jackettwin.service.server import running, serve
@@ -12,6 +12,7 @@ __all__ = [
     "Accepted",
     "Service",
     "ServiceSettings",
+    "add_conditions",
     "add_twin",
     "demonstrate",
     "open_service",

@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import Engine, select
 
-from jackettwin.service import consequences
+from jackettwin.service import conditions, consequences
 from jackettwin.service.bundles import bundle
 from jackettwin.service.catalogue import add_version
 from jackettwin.service.context import Desk
@@ -59,6 +59,21 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
         return read_file(str(file), whose, str(store), settings.samples_limit)
 
     return take_file(database, Desk(settings, database).now, parse, asset, path, path.name)
+
+
+def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how: Any) -> tuple[int, int]:
+    """Keep the conditions of a table; return how many are new, and how many records are observed again.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset, or the table cannot be read.
+    """
+    with reading(database) as connection:
+        assets.found_version(connection, asset)
+    values = conditions.read_table(table, **how)
+    with writing(database) as connection:
+        return conditions.add(connection, Desk(ServiceSettings(store), database), asset, values)
 
 
 def rebuild(

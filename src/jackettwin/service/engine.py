@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
 from jackettwin.store import read_waveform
 from jackettwin.twin import TwinModel, TwinState, advance, observe, read_twin, twin_model
@@ -58,9 +59,14 @@ def channels(folder: Path) -> dict[str, Channel]:
 
 
 def observed(
-    model: TwinModel, waveform: Path, conditions: Mapping[str, Any]
+    model: TwinModel, waveform: Path, conditions: Mapping[str, Any], picks: Sequence[Mapping[str, Any]] = ()
 ) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...]]:
-    """Return the observation of a stored record as a document, its modes and its findings as rows."""
+    """Return the observation of a stored record as a document, its modes and its findings as rows.
+
+    ``picks`` are poles that a person chose instead of the automatic selection.
+    """
+    if picks:
+        model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
     record = read_waveform(waveform)
     record = replace(record, conditions={**conditions, **record.conditions})
     seen = observe(record, model)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from datetime import datetime
-from typing import Any, Generic, Literal, TypeVar
+from datetime import UTC, datetime
+from typing import Annotated, Any, Generic, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 T = TypeVar("T")
+_FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(9000, 1, 1, tzinfo=UTC)
+"""Times that a database can keep and a zone can shift."""
 
 
 class Page(BaseModel, Generic[T]):
@@ -233,14 +235,15 @@ class JobOut(BaseModel):
 class ConditionsIn(BaseModel):
     """Conditions of the site through time: names with units, as in records."""
 
-    time_utc: list[datetime] = Field(max_length=100_000)
+    time_utc: list[Annotated[AwareDatetime, Field(ge=_FIRST, le=_LAST)]] = Field(max_length=100_000)
     values: dict[str, list[float | str | None]] = Field(max_length=50)
 
 
-class Count(BaseModel):
-    """How many there were."""
+class Taken(BaseModel):
+    """How many conditions are new or changed, and how many records are observed again with them."""
 
     count: int
+    observed_again: int
 
 
 class TwinOut(BaseModel):

@@ -116,6 +116,17 @@ def read_file(path: str, asset: str, store: str, samples_limit: int) -> Parsed:
     return Parsed(number, place, size, about(record))
 
 
+def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
+    """Read a table of conditions; an error of its input comes back, without our path."""
+    from jackettwin.service.conditions import read_table
+
+    try:
+        return read_table(Path(path), zone=zone, end_stamped=end_stamped)
+    except InputError as error:
+        error.file = None
+        return error
+
+
 @dataclass(frozen=True)
 class Question:
     """The days of a turbine, of which it is asked what they say of the supports."""
@@ -140,7 +151,8 @@ def observe_stored(task: Task) -> Outcome:
 
     try:
         model = load_model(Path(task.twin_folder))
-        return Outcome(*observed(model, Path(task.waveform), task.conditions))
+        poles = (task.picks or {}).get("poles", ())
+        return Outcome(*observed(model, Path(task.waveform), task.conditions, poles))
     except InputError as error:
         return Outcome(None, problem=problem_of(error))
     except JackettwinError as error:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from sqlalchemy import Connection
 
-from jackettwin.service import engine
+from jackettwin.errors import InputError
+from jackettwin.service import conditions, engine
 from jackettwin.service.consequences import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
 from jackettwin.service.problems import ApiError
 from jackettwin.service.routes.common import known_asset
-from jackettwin.service.schemas import PicksIn
-from jackettwin.store import assets, people, reading, records, work
+from jackettwin.service.schemas import PicksIn, Taken
+from jackettwin.service.tasks import read_conditions
+from jackettwin.store import assets, people, reading, records, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -61,8 +64,28 @@ def pick(
     number = 0
     for version in assets.all_versions(connection, record.asset):
         number = queue(connection, version, record.record_id, service.now(), priority=20)
-        work.try_again(connection, number)
+        work.renew(connection, number)
     return number
+
+
+def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool) -> Taken:
+    """Read a table of conditions in a worker and keep it."""
+    path = spooled(
+        service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
+    )
+    try:
+        asked = partial(read_conditions, zone=zone, end_stamped=end_stamped)
+        values = service.compute.submit(asked, str(path), priority=100).result(
+            timeout=service.settings.parse_limit_s
+        )
+    finally:
+        discard(path)
+    if isinstance(values, InputError):
+        raise values
+    with writing(service.database) as connection:
+        count, again = conditions.add(connection, service, asset, values)
+    service.wake()
+    return Taken(count=count, observed_again=again)
 
 
 def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> dict[str, Any]:

@@ -106,9 +106,15 @@ def list_records(
     return found, write_cursor(found[-1].start_utc.isoformat(), found[-1].record_id) if more else None
 
 
-def all_with_samples(connection: Connection, asset: str) -> list[StoredRecord]:
+def all_with_samples(
+    connection: Connection, asset: str, since: datetime | None = None, until: datetime | None = None
+) -> list[StoredRecord]:
     """Return the records of an asset whose samples are kept and that count, oldest first."""
-    where = (records.c.asset == asset, records.c.waveform.is_not(None), records.c.status != "set_aside")
+    where = [records.c.asset == asset, records.c.waveform.is_not(None), records.c.status != "set_aside"]
+    if since is not None:
+        where.append(records.c.start_utc >= since)
+    if until is not None:
+        where.append(records.c.start_utc < until)
     rows = connection.execute(
         select(records).where(*where).order_by(records.c.start_utc, records.c.record_id)
     )

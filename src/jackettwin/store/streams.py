@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 from sqlalchemy import Connection, ScalarSelect, delete, func, insert, select, update
@@ -18,6 +18,8 @@ WINDOW = timedelta(minutes=10)
 """Streams become records of ten minutes on UTC boundaries, the field's habit."""
 KEPT = timedelta(days=2)
 """How late a packet may come and still be put into its record."""
+INTERVAL = timedelta(minutes=10)
+"""What a row of conditions holds for, unless the next one comes sooner: the field's statistics."""
 LONGEST = timedelta(hours=1)
 """The longest packet that is taken."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -130,37 +132,65 @@ def forget_packets(connection: Connection, asset: str, before: datetime) -> None
 
 def put_conditions(
     connection: Connection, asset: str, name: str, values: Mapping[datetime, float | str | None]
-) -> None:
-    """Keep a condition of the site through time, in place of what was known at the same times."""
-    for time, value in values.items():
-        key = (conditions.c.asset == asset, conditions.c.name == name, conditions.c.time_utc == time)
-        row: dict[str, Any] = {"value": None, "text": None}
-        row["text" if isinstance(value, str) else "value"] = value
-        if connection.execute(update(conditions).where(*key).values(**row)).rowcount == 0:
-            connection.execute(insert(conditions).values(asset=asset, name=name, time_utc=time, **row))
+) -> set[datetime]:
+    """Keep a condition of the site through time; return the times at which it is new or another."""
+    if not values:
+        return set()
+    same = (conditions.c.asset == asset, conditions.c.name == name)
+    between = conditions.c.time_utc.between(min(values), max(values))
+    rows = connection.execute(select(conditions).where(*same, between))
+    known = {row.time_utc: row.value if row.text is None else row.text for row in rows}
+    changed = {time: v for time, v in values.items() if time not in known or known[time] != v}
+    gone = [time for time in changed if time in known]
+    for i in range(0, len(gone), 500):
+        part = conditions.c.time_utc.in_(gone[i : i + 500])
+        connection.execute(delete(conditions).where(*same, part))
+    key = {"asset": asset, "name": name}
+    new = [
+        {**key, "time_utc": time, "value": None if isinstance(v, str) else v, "text": _text(v)}
+        for time, v in changed.items()
+    ]
+    if new:
+        connection.execute(insert(conditions), new)
+    return set(changed)
+
+
+def _text(value: float | str | None) -> str | None:
+    return value[:64] if isinstance(value, str) else None
 
 
 def conditions_between(
     connection: Connection, asset: str, start: datetime, end: datetime
 ) -> dict[str, float | str]:
-    """Return each condition over an interval: the mean of numbers, the one that a text keeps throughout.
+    """Return each condition over a record: the mean of numbers, the one that a text keeps throughout.
 
-    A condition that is not known in the interval, or a text that changes in it, is left out.
+    A row holds for the interval to the next one, ten minutes at most; it counts if the record has at least
+    half of it, or it has half of the record. A condition that is not known, or a text that changes, is left
+    out.
     """
-    where = (conditions.c.asset == asset, conditions.c.time_utc >= start, conditions.c.time_utc < end)
-    seen: dict[str, list[float | str]] = {}
+    near = conditions.c.time_utc.between(start - INTERVAL, end)
+    where = (conditions.c.asset == asset, near)
+    seen: dict[str, list[tuple[datetime, float | str]]] = {}
     for row in connection.execute(select(conditions).where(*where).order_by(conditions.c.time_utc)):
         value = row.text if row.text is not None else row.value
         if value is not None:
-            seen.setdefault(row.name, []).append(value)
+            seen.setdefault(row.name, []).append((row.time_utc, value))
     known: dict[str, float | str] = {}
-    for name, values in seen.items():
+    for name, rows in seen.items():
+        values = _during(rows, start, end)
         numbers = [v for v in values if isinstance(v, float)]
-        if len(numbers) == len(values):
+        if values and len(numbers) == len(values):
             known[name] = float(np.mean(numbers))
         elif len(set(values)) == 1:
             known[name] = values[0]
     return known
+
+
+def _during(rows: list[tuple[datetime, float | str]], start: datetime, end: datetime) -> list[float | str]:
+    steps = [b - a for (a, _), (b, _) in pairwise(rows)]
+    interval = min([*steps, INTERVAL])
+    enough = 0.5 * min(interval, end - start)
+    return [v for t, v in rows if min(t + interval, end) - max(t, start) >= enough]
 
 
 def _reached(packet: Packet) -> Iterator[datetime]:

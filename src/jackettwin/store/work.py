@@ -143,6 +143,13 @@ def try_again(connection: Connection, job_id: int) -> bool:
     return done.rowcount == 1
 
 
+def renew(connection: Connection, job_id: int) -> bool:
+    """Queue work anew since what it is of has changed: a result that is on its way is not accepted."""
+    open_again = {"state": "queued", "tries": 0, "owner": None, "reason": None, "ended_utc": None}
+    mine = (work.c.id == job_id, work.c.state.not_in(("queued", "cancelled")))
+    return connection.execute(update(work).where(*mine).values(**open_again)).rowcount == 1
+
+
 def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
     """Cancel work that is queued or leased; a result that comes later is not accepted."""
     open_states = work.c.state.in_(("queued", "leased"))

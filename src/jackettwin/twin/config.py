@@ -13,6 +13,8 @@ from jackettwin.identification.picks import Pick
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Rayleigh, Structure
+from jackettwin.twin.calibration import Calibrations
+from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Target
 from jackettwin.updating.solutions import MOST_EVALUATIONS
@@ -142,5 +144,9 @@ class TwinConfig:
     update: UpdateSettings
     unsaid: Unsaid = Unsaid()
     """What holds for records whose files do not say it."""
+    calibrations: Calibrations = ()
+    """What held of the sensors for a while."""
+    operation: OperationRule = OperationRule()
+    """Which state of operation a record was in, and whether it may update the supports."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""

@@ -15,7 +15,6 @@ from jackettwin.loads.conditions import SeaState
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.mode_words import read_mode_label
-from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.files import depth_of
 from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure
@@ -127,7 +126,9 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         shared=tuple(dict.fromkeys(schema.support.shared)),
         scatter=dict(schema.support.scatter),
         heads=schema.support.stiffness,
-        sensors=tuple(Sensor(s.channel, s.direction, s.node, s.height_m) for s in schema.sensors),
+        sensors=tuple(sensor.build() for sensor in schema.sensors),
+        calibrations=tuple(c for sensor in schema.sensors for c in sensor.history()),
+        operation=schema.operation.build(),
         records=tuple(path.parent / record for record in schema.records),
         unsaid=_unsaid(schema),
         targets=targets,

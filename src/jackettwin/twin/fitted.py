@@ -134,6 +134,31 @@ def _refuse_misnumbered(
         )
 
 
+def updating(config: TwinConfig, state: TwinState) -> TwinState:
+    """Return what is known from the records that may update the supports; the others are tracked only.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    rule = config.operation
+    if rule.updates is None:
+        return state
+    seen = sorted({name.partition(", ")[0] for day in state.days.values() for name in day.operations})
+    used = state.of_operations(rule.may_update)
+    if seen and ALL not in used.totals:
+        raise InputError(
+            "no record is in a state of operation that may update the supports",
+            file=config.path,
+            field="operation.updates",
+            value=list(rule.updates),
+            allowed=", ".join(seen),
+            remedy="add a state, send the conditions, or bring records of such a state",
+        )
+    return used
+
+
 def recorded_modes(
     config: TwinConfig,
     state: TwinState,

@@ -20,7 +20,7 @@ from jackettwin.errors import InputError
 from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.advance import advance
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.fitted import recorded_modes, residuals
+from jackettwin.twin.fitted import recorded_modes, residuals, updating
 from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Followed, Known, since_first
 from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel, twin_model
@@ -115,15 +115,16 @@ def follow_observations(
         state, found = advance(state, observation)
         findings += [str(finding) for finding in found]
         if each == "record" and state is not before:
-            moments.append((observation, state))
-    if ALL not in state.totals:
+            moments.append((observation, updating(config, state)))
+    used = updating(config, state)
+    if ALL not in used.totals:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
-    question = _question(config, model, state, law, prior)
+    question = _question(config, model, used, law, prior)
     if each == "record":
         known = () if prior is None else prior.days
         days = (*known, *(question.after_record(seen, then, progress) for seen, then in moments))
     else:
-        days = question.after_days(state, () if prior is None else prior.days, progress)
+        days = question.after_days(used, () if prior is None else prior.days, progress)
     return Followed(
         name=config.name,
         law=question.support.family.name,
@@ -131,7 +132,7 @@ def follow_observations(
         wind_m_s=question.wind,
         units=question.units,
         days=days,
-        drift=question.drift(state, days),
+        drift=question.drift(used, days),
         state=state,
         warnings=tuple(findings),
     )
@@ -164,6 +165,7 @@ def estimate(
     InputError
         If the twin's settings ask for what a state cannot answer.
     """
+    state = updating(config, state)
     days = [day.time_utc for day in state.days.values() if day.time_utc is not None]
     if not days or not state.totals[ALL].modes:
         return None

@@ -15,8 +15,10 @@ from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
+from jackettwin.twin.calibration import Calibrations, sensors_at
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.examine import Examination
+from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.stored import digest
 from jackettwin.updating import numbered_modes
 from jackettwin.updating.pairing import likeness
@@ -47,6 +49,10 @@ class TwinModel:
         Whether the state keeps winds apart, because a rotor's damping is to be told from the ground's.
     with_shapes : bool
         Whether the state keeps the clearest shapes, because they are fitted.
+    calibrations : tuple of Calibration
+        What held of the sensors for a while, instead of ``sensors``.
+    operation : OperationRule
+        Which state of operation a record was in, and whether it may update the supports.
     """
 
     name: str
@@ -59,6 +65,8 @@ class TwinModel:
     picks: tuple[Pick, ...] = ()
     by_wind: bool = False
     with_shapes: bool = False
+    calibrations: Calibrations = ()
+    operation: OperationRule = OperationRule()
 
     @cached_property
     def model_hash(self) -> str:
@@ -68,6 +76,10 @@ class TwinModel:
             "by_wind": self.by_wind,
             "with_shapes": self.with_shapes,
         }
+        if self.calibrations:
+            parts["calibrations"] = self.calibrations
+        if self.operation.states:
+            parts["operation"] = self.operation.states
         if self.assembly is not None:
             for name in ("mass", "stiffness"):
                 matrix = getattr(self.assembly, name).tocsc()
@@ -105,6 +117,10 @@ class TwinModel:
         """Return the model with other poles chosen by hand."""
         return replace(self, picks=picks)
 
+    def placed(self, record: Record) -> tuple[Sensor, ...]:
+        """Return the sensors behind a record's channels, where they sat at its start."""
+        return placed_sensors(sensors_at(self.sensors, self.calibrations, record.start_utc), record)
+
     def sees(self, seen: Examination) -> sp.csr_array:
         """Return what the identified channels of a record see of every motion, (n_channels, n_dof).
 
@@ -113,7 +129,7 @@ class TwinModel:
         InputError
             If a sensor sits where the structure has no place.
         """
-        by_channel = {s.channel: s for s in placed_sensors(self.sensors, seen.record)}
+        by_channel = {s.channel: s for s in self.placed(seen.record)}
         return observation_matrix(
             self.structure, tuple(by_channel[c.name] for c in seen.identification.channels)
         )
@@ -162,4 +178,6 @@ def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinMode
         picks=config.picks,
         by_wind="c_side_side" in config.update.dashpots,
         with_shapes=config.update.mac_std is not None,
+        calibrations=config.calibrations,
+        operation=config.operation,
     )

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from jackettwin.findings import Finding
 from jackettwin.records import Record
 from jackettwin.records.identity import record_id
+from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
 from jackettwin.twin.examine import Examination, examine
 from jackettwin.twin.kept import NOT_KEPT, Keep
-from jackettwin.twin.model import TwinModel, placed_sensors
+from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
+from jackettwin.twin.operation import UNKNOWN
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating.pairing import Held, held_against, pair
 from jackettwin.updating.softer_feet import Feet
@@ -42,9 +44,9 @@ def examined(
         If a channel carries nothing, or the record cannot be identified.
     """
     return examine(
-        record,
+        calibrated(record, model.calibrations),
         model.identification,
-        sensors=model.sensors,
+        sensors=sensors_at(model.sensors, model.calibrations, record.start_utc),
         picks=model.picks,
         compare=compare,
         keep=keep,
@@ -77,15 +79,30 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         code_version=__version__,
         name=record.name,
         start_utc=record.start_utc,
-        conditions=dict(seen.record.conditions),
+        conditions=model.operation.with_state(seen.record.conditions),
         quality=seen.quality.summary(),
         identification=found.without_figures,
         recognised=known.recognised,
         held=known.held,
-        sensors=placed_sensors(model.sensors, seen.record),
-        findings=(*(f.coded for f in seen.quality.findings), *seen.findings, *others, *known.findings),
+        sensors=model.placed(seen.record),
+        findings=(
+            *(f.coded for f in seen.quality.findings),
+            *seen.findings,
+            *others,
+            *known.findings,
+            *uncalibrated(model.calibrations, record.start_utc),
+            *_unsaid(model, seen.record),
+        ),
         truth={key: value for key, value in record.metadata.items() if key in TRUTH},
     )
+
+
+def _unsaid(model: TwinModel, record: Record) -> tuple[Finding, ...]:
+    """Say which conditions are missing, if the state of operation is unknown for the want of them."""
+    missing = model.operation.missing(record.conditions)
+    if not missing or model.operation.with_state(record.conditions)["state"] != UNKNOWN:
+        return ()
+    return (Finding("operation_unknown", params={"missing": ", ".join(missing)}),)
 
 
 @dataclass(frozen=True)

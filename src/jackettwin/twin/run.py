@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.fitted import recorded_modes, residuals, target_modes
+from jackettwin.twin.fitted import recorded_modes, residuals, target_modes, updating
 from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.measure import measure
 from jackettwin.twin.model import twin_model
@@ -66,11 +66,11 @@ def run_twin(
         if config.records
         else None
     )
-    state = None if found is None else found.state
+    state = None if found is None else updating(config, found.state)
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
-        if found is None
-        else recorded_modes(config, found.state, labels, found.clearest)
+        if found is None or state is None
+        else recorded_modes(config, state, labels, found.clearest)
     )
     relaxations = measured_relaxations(config, state)
     wind = mean_wind(config, state)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import AwareDatetime, BeforeValidator, Field
 
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
+from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import RnaSchema
+from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation
+from jackettwin.twin.operation import UNKNOWN, OperationRule
 from jackettwin.updating import DEFAULT_LAWS, Target
 from jackettwin.updating.solutions import MOST_EVALUATIONS
 
@@ -83,6 +88,57 @@ class SupportSchema(Schema):
     scatter: dict[str, Annotated[float, Field(gt=0.0, le=3.0)]] = {}
 
 
+class CalibrationSchema(Schema):
+    """What held of a sensor for a while: what to multiply its samples by, and where it sat if elsewhere."""
+
+    from_utc: AwareDatetime | None = None
+    to_utc: AwareDatetime | None = None
+    gain: Positive = 1.0
+    sign: Literal[1, -1] = 1
+    node: str | None = None
+    height_m: float | None = None
+    direction: Vector | None = None
+
+    def build(self, sensor: Sensor) -> Calibration:
+        """Return it, of a sensor that sits there otherwise."""
+        moved = self.node is not None or self.height_m is not None
+        node, height = (self.node, self.height_m) if moved else (sensor.node, sensor.height_m)
+        then = Sensor(sensor.channel, self.direction or sensor.direction, node, height)
+        return Calibration(then, self.gain * self.sign, self.from_utc, self.to_utc)
+
+
+def _since(calibration: Calibration) -> datetime:
+    return calibration.from_utc or datetime.min.replace(tzinfo=UTC)
+
+
+class OperationSchema(Schema):
+    """``operation``: states of operation by their conditions, and those that may update the supports."""
+
+    states: dict[str, dict[str, tuple[float | None, float | None] | list[str]]] = {}
+    updates: list[str] | None = None
+
+    def build(self) -> OperationRule:
+        """Return the rule.
+
+        Raises
+        ------
+        InputError
+            If a state that may update is none of those there are.
+        """
+        known = [*self.states, UNKNOWN]
+        for name in self.updates or []:
+            if self.states and name not in known:
+                raise InputError(
+                    "no such state of operation",
+                    field="operation.updates",
+                    value=name,
+                    allowed=", ".join(known),
+                    remedy=did_you_mean(name, known),
+                )
+        states = {name: {k: tuple(v) for k, v in wanted.items()} for name, wanted in self.states.items()}
+        return OperationRule(states, None if self.updates is None else tuple(self.updates))
+
+
 class SensorSchema(Schema):
     """A sensor: where a channel of the record sits in the structure."""
 
@@ -90,6 +146,30 @@ class SensorSchema(Schema):
     node: str | None = None
     height_m: float | None = None
     direction: Vector
+    calibrations: list[CalibrationSchema] = []
+
+    def build(self) -> Sensor:
+        """Return where it sits."""
+        return Sensor(self.channel, self.direction, self.node, self.height_m)
+
+    def history(self) -> Calibrations:
+        """Return what held of it from when to when.
+
+        Raises
+        ------
+        InputError
+            If two calibrations hold at the same time.
+        """
+        found = sorted((c.build(self.build()) for c in self.calibrations), key=_since)
+        for before, after in pairwise(found):
+            if before.to_utc is None or _since(after) < before.to_utc:
+                raise InputError(
+                    "two calibrations hold at the same time",
+                    field=f"sensors.{self.channel}.calibrations",
+                    value=str(after.from_utc),
+                    remedy="end the earlier one (to_utc) where the later one begins (from_utc)",
+                )
+        return tuple(found)
 
 
 class LoggerSchema(Schema):
@@ -253,3 +333,4 @@ class TwinSchema(Schema):
     rotor_speed_rpm: tuple[Positive, Positive] | None = None
     identification: dict[str, Any] = {}
     update: UpdateSchema = UpdateSchema()
+    operation: OperationSchema = OperationSchema()

@@ -7,7 +7,7 @@ same state, bit for bit, in whatever order they arrived and however the work was
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from operator import add, neg
@@ -243,6 +243,15 @@ class TwinState:
             totals=add_totals(add_totals(self.totals, changed), gone),
             clearest=clearer(self.clearest, day.clearest),
         )
+
+    def of_operations(self, chosen: Callable[[str], bool]) -> TwinState:
+        """Return what is known from the records of some states of operation alone."""
+        days = {
+            date: replace(day, operations={name: o for name, o in day.operations.items() if chosen(name)})
+            for date, day in self.days.items()
+        }
+        kept = {date: day for date, day in days.items() if day.operations}
+        return replace(self, days=kept).until(max(kept, default=UNDATED))
 
     def without_day(self, date: str) -> TwinState:
         """Return the state without the records of one day.

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, File, Form, Path, UploadFile
 
-from jackettwin.service import auth, catalogue
+from jackettwin.service import auth, catalogue, conditions, uploads
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Transaction, Writes, known_asset
-from jackettwin.service.schemas import AssetOut, ConditionsIn, Count, NewAsset, NewVersion, Page, VersionOut
-from jackettwin.store import assets, people, streams
+from jackettwin.service.routes.common import (
+    Asker,
+    AssetName,
+    Parts,
+    Reads,
+    Transaction,
+    Writes,
+    known_asset,
+    waits,
+)
+from jackettwin.service.schemas import AssetOut, ConditionsIn, NewAsset, NewVersion, Page, Taken, VersionOut
+from jackettwin.store import assets, people
 
 router = APIRouter(tags=["assets"], route_class=Transaction)
 
@@ -80,13 +89,32 @@ def adopt(
 @router.post(
     "/assets/{asset}/conditions", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
 )
-def add_conditions(asset: AssetName, body: ConditionsIn, connection: Writes) -> Count:
-    """Add conditions of the site through time; records that begin later are joined with them."""
+def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connection: Writes) -> Taken:
+    """Add conditions of the site through time; records that they belong to are observed again with them."""
     known_asset(connection, asset)
     for name, values in body.values.items():
         if len(values) != len(body.time_utc):
             raise ApiError(422, "times and values differ in number", field=f"values.{name}"[:200])
-        if any(time.tzinfo is None for time in body.time_utc):
-            raise ApiError(422, "a time has no zone", field="time_utc", remedy="write ...Z")
-        streams.put_conditions(connection, asset, name[:64], dict(zip(body.time_utc, values, strict=True)))
-    return Count(count=len(body.time_utc) * len(body.values))
+    given = {n[:64]: dict(zip(body.time_utc, v, strict=True)) for n, v in body.values.items()}
+    count, again = conditions.add(connection, parts, asset, given)
+    return Taken(count=count, observed_again=again)
+
+
+@router.post(
+    "/assets/{asset}/conditions.csv",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 413, 422, 503),
+)
+@waits
+def add_table(
+    asset: AssetName,
+    parts: Parts,
+    file: Annotated[
+        UploadFile, File(description="Ten-minute statistics: a line of names, a column of times.")
+    ],
+    zone: Annotated[str, Form(max_length=64, description="Of clocks that do not say theirs.")] = "UTC",
+    end_stamped: Annotated[bool, Form(description="Whether a row bears the end of its interval.")] = False,
+) -> Taken:
+    """Add a table of conditions as a SCADA system exports it."""
+    uploads.refuse_unknown(parts, asset)
+    return uploads.take_conditions(parts, asset, file.file, zone, end_stamped)

@@ -1,0 +1,147 @@
+"""Conditions of the site from tables of statistics: read, kept, and records they belong to observed again."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pyarrow as pa
+from pyarrow import csv
+from sqlalchemy import Connection
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.zones import in_utc, read_zone
+from jackettwin.store import assets, records, streams, work
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
+
+Value = float | str | None
+_TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "zeit", "pctimestamp")
+"""What the column of times may be called, once its name is written in small letters and underscores."""
+_STAMPS = ["%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M", csv.ISO8601]
+_MOST_ROWS = 2_000_000
+"""Forty years of ten-minute statistics."""
+
+
+def read_table(
+    path: Path, *, zone: str = "UTC", names: Mapping[str, str] | None = None, end_stamped: bool = False
+) -> dict[str, dict[datetime, Value]]:
+    """Return the conditions of a CSV file, {name: {start of the interval: value}}.
+
+    Parameters
+    ----------
+    zone : str
+        Of clocks that do not say theirs.
+    names : {column: name}, optional
+        Of columns to take under another name; the others keep theirs in small letters and underscores.
+    end_stamped : bool
+        Whether a row bears the end of its ten minutes.
+
+    Raises
+    ------
+    InputError
+        If it is no table, or no column is one of times.
+    """
+    table = _read(path)
+    given = names or {}
+    called = {column: given.get(column, plain_name(column)) for column in table.column_names}
+    times = next((column for column in called if called[column] in _TIMES), None)
+    kind = None if times is None else table.schema.field(times).type
+    if times is None or not (pa.types.is_timestamp(kind) or pa.types.is_date(kind)):
+        raise InputError(
+            "no column of times",
+            file=path,
+            field="time",
+            value=", ".join(table.column_names)[:200],
+            allowed="2025-03-01T12:00:00Z, 2025-03-01 12:00 or 01.03.2025 12:00 under " + ", ".join(_TIMES),
+            remedy="name the column time_utc",
+        )
+    clock, back = read_zone(zone), timedelta(minutes=10 if end_stamped else 0)
+    starts = [None if t is None else _utc(t, clock) - back for t in table[times].to_pylist()]
+    return {
+        name: {t: _value(v) for t, v in zip(starts, table[column].to_pylist(), strict=True) if t is not None}
+        for column, name in called.items()
+        if column != times
+    }
+
+
+def plain_name(column: str) -> str:
+    """Return a column's name in small letters and underscores.
+
+    >>> plain_name("Wind Speed (m/s)")
+    'wind_speed_m_s'
+    """
+    return re.sub(r"[^a-z0-9]+", "_", column.strip().lower()).strip("_")[:64]
+
+
+def add(
+    connection: Connection, place: Place, asset: str, values: Mapping[str, Mapping[datetime, Value]]
+) -> tuple[int, int]:
+    """Keep conditions; return how many are new or changed, and how many records are observed again with them.
+
+    Only what changed matters: the same table again observes nothing again.
+    """
+    changed: set[datetime] = set()
+    count = 0
+    for name, given in values.items():
+        new = streams.put_conditions(connection, asset, name, given)
+        changed |= new
+        count += len(new)
+    if not changed:
+        return 0, 0
+    return count, _observe_again(connection, place, asset, changed)
+
+
+def _observe_again(connection: Connection, place: Place, asset: str, changed: set[datetime]) -> int:
+    """Queue the records that overlap the interval of a changed condition."""
+    since, until = min(changed) - timedelta(days=1), max(changed) + streams.INTERVAL
+    adopted, again = assets.found_version(connection, asset).version, 0
+    spans = sorted(changed)
+    for record in records.all_with_samples(connection, asset, since, until):
+        end = record.start_utc + timedelta(seconds=record.duration_s)
+        if any(t < end and t + streams.INTERVAL > record.start_utc for t in spans):
+            jobs = [job for job in work.jobs_of(connection, asset, record.record_id)]
+            again += bool([work.renew(connection, job.id) for job in jobs if job.version >= adopted])
+    return again
+
+
+def _read(path: Path) -> Any:
+    """Return a table of a delimited file, its delimiter and decimal sign as its first lines show them."""
+    try:
+        head = path.read_bytes()[:65536].decode("utf-8-sig", errors="replace")
+        first = head.partition("\n")[0]
+        delimiter = max(";\t,", key=first.count)
+        comma = delimiter != "," and re.search(r"\d,\d", head) is not None
+        table = csv.read_csv(
+            path,
+            parse_options=csv.ParseOptions(delimiter=delimiter),
+            convert_options=csv.ConvertOptions(
+                decimal_point="," if comma else ".", timestamp_parsers=_STAMPS
+            ),
+        )
+    except (pa.ArrowInvalid, pa.ArrowException, OSError) as error:
+        raise InputError(
+            "not a table of conditions",
+            file=path,
+            value=str(error)[:120],
+            allowed="CSV: a line of names, then one line for each interval",
+            remedy="export it with a header, one delimiter and one decimal sign",
+        ) from None
+    if table.num_rows > _MOST_ROWS:
+        raise InputError("too many rows", file=path, value=table.num_rows, allowed=f"up to {_MOST_ROWS}")
+    return table
+
+
+def _utc(time: Any, clock: Any) -> datetime:
+    whole = time if isinstance(time, datetime) else datetime(time.year, time.month, time.day)
+    return in_utc(whole, clock) if whole.tzinfo is None else whole.astimezone(UTC)
+
+
+def _value(value: Any) -> Value:
+    if value is None or isinstance(value, str):
+        return value
+    return str(value) if isinstance(value, bool) else float(value)

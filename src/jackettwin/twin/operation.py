@@ -1,0 +1,59 @@
+"""Which state of operation a turbine was in, and whether its records may update the supports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+UNKNOWN = "unknown"
+"""The state of operation of a record whose conditions are none of the rule's."""
+Limits = tuple[float | None, float | None]
+Condition = Limits | tuple[str | float | None, ...]
+"""What a condition must be: between two numbers, either of which may be open, or one of some words."""
+
+
+@dataclass(frozen=True)
+class OperationRule:
+    """States of operation by their conditions, and those whose records may update the supports.
+
+    Attributes
+    ----------
+    states : {state: {condition: what it must be}}
+        The first state all of whose conditions hold is the record's; none leaves it to what the record says.
+    updates : tuple of str or None
+        Of the states; the records of all others are tracked only. None lets all update.
+    """
+
+    states: Mapping[str, Mapping[str, Condition]] = field(default_factory=dict)
+    updates: tuple[str, ...] | None = None
+
+    def with_state(self, conditions: Mapping[str, Any]) -> dict[str, Any]:
+        """Return conditions with the state of operation that they are."""
+        if not self.states:
+            return dict(conditions)
+        fitting = (name for name, wanted in self.states.items() if _all_hold(wanted, conditions))
+        return {**conditions, "state": next(fitting, UNKNOWN)}
+
+    def missing(self, conditions: Mapping[str, Any]) -> tuple[str, ...]:
+        """Return the conditions that the rule asks for and a record does not say."""
+        asked = dict.fromkeys(name for wanted in self.states.values() for name in wanted)
+        return tuple(name for name in asked if conditions.get(name) is None)
+
+    def may_update(self, operation: str) -> bool:
+        """Tell whether the records of a state of operation may update; behind a comma stands the wind."""
+        return self.updates is None or operation.partition(", ")[0] in self.updates
+
+
+def _all_hold(wanted: Mapping[str, Condition], conditions: Mapping[str, Any]) -> bool:
+    return all(_holds(condition, conditions.get(name)) for name, condition in wanted.items())
+
+
+def _holds(condition: Condition, value: Any) -> bool:
+    if isinstance(value, bool) or value is None:
+        return False
+    if isinstance(value, int | float):
+        low, high = (limit if isinstance(limit, int | float) else None for limit in (*condition, None)[:2])
+        numbers = not any(isinstance(limit, str) for limit in condition)
+        return numbers and (low is None or value >= low) and (high is None or value <= high)
+    return str(value) in condition

@@ -1,0 +1,84 @@
+"""Tables of ten-minute statistics: read as SCADA writes them, joined by time, late ones observed again."""
+
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from tests.service.conftest import NOON, hour, turn, upload
+
+from jackettwin.errors import InputError
+from jackettwin.service.conditions import read_table
+from jackettwin.service.context import Service
+from jackettwin.store import results, streams, writing
+
+T0 = datetime(2025, 3, 1, 12, tzinfo=UTC)
+ENGLISH = "Timestamp,Wind Speed (m/s),state\n2025-03-01T12:00:00Z,8.5,parked\n2025-03-01T12:10:00Z,,idling\n"
+GERMAN = "Zeit;Wind Speed (m/s);state\n01.03.2025 13:00;8,5;parked\n01.03.2025 13:10;;idling\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        (ENGLISH, {}),
+        (GERMAN, {"zone": "Europe/Berlin"}),
+        ("\ufeff" + ENGLISH.replace(",", "\t"), {}),
+        (GERMAN.replace("13:10", "13:20").replace("13:00", "13:10"), {"zone": "+01:00", "end_stamped": True}),
+    ],
+)
+def test_the_forms_that_scada_writes(tmp_path: Path, text: str, how: dict) -> None:
+    path = tmp_path / "scada.csv"
+    path.write_text(text, encoding="utf-8")
+    table = read_table(path, **how)
+    assert table["wind_speed_m_s"] == {T0: 8.5, T0 + timedelta(minutes=10): None}
+    assert table["state"] == {T0: "parked", T0 + timedelta(minutes=10): "idling"}
+
+
+@pytest.mark.parametrize(
+    "text", ["", "a,b\n1,2\n", "time,b\nlunch,2\n", "\x00\xff", "time,b\n2025-03-01\n1,2,3\n"]
+)
+def test_what_is_no_table_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "scada.csv"
+    path.write_text(text, encoding="latin-1")
+    with pytest.raises(InputError):
+        read_table(path)
+
+
+def test_rows_count_that_overlap_by_half(service: Service) -> None:
+    minutes = {T0 + timedelta(minutes=m): v for m, v in ((0, 4.0), (10, 8.0), (20, 100.0))}
+    with writing(service.database) as connection:
+        streams.put_conditions(connection, "wtg", "wind", minutes)
+
+        def wind(first: float, last: float) -> object:
+            start, end = T0 + timedelta(minutes=first), T0 + timedelta(minutes=last)
+            return streams.conditions_between(connection, "wtg", start, end).get("wind")
+
+        assert wind(0, 10) == 4.0
+        assert wind(3, 13) == 4.0  # seven minutes of the first row
+        assert wind(0, 20) == 6.0
+        assert wind(12, 14) == 8.0  # a short record within one row
+        assert wind(40, 50) is None
+
+
+def test_late_conditions_observe_their_records_again_once(client: TestClient, service: Service) -> None:
+    for k in (0, 1, 2):
+        upload(client, k)
+    turn(service, 6)
+    sent = [
+        client.post("/api/v1/assets/wtg/conditions.csv", files={"file": ("scada.csv", ENGLISH)}).json()
+        for _ in range(2)
+    ]
+    assert sent == [{"count": 4, "observed_again": 1}, {"count": 0, "observed_again": 0}]
+    turn(service, 6)
+    with writing(service.database) as connection:
+        model_hash = client.get("/api/v1/assets/wtg").json()["model_hash"]
+        seen = list(results.observations_between(connection, "wtg", model_hash, hour(0), hour(9)))
+    assert ['"parked"' in one.document for one in seen] == [True, False, False]
+    assert client.get("/api/v1/assets/wtg/twin").json()["records"] == 3
+
+
+def test_a_table_that_cannot_be_read_says_why(client: TestClient) -> None:
+    answer = client.post("/api/v1/assets/wtg/conditions.csv", files={"file": ("x.csv", "a;b\n1;2\n")})
+    assert (answer.status_code, answer.json()["field"]) == (422, "time")
+    assert "/" not in answer.json().get("value", "")
+    assert NOON == T0
