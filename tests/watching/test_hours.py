@@ -29,7 +29,7 @@ def test_a_value_apart_is_set_aside_and_a_step_is_not(rng: np.random.Generator) 
     tail = rng.standard_normal((NEIGHBOURS, 1))
     today = rng.standard_normal((8, 1))
     today[3] = 9.0
-    apart, _ = outliers(today, np.ones((8, 1)), tail)
+    apart, *_ = outliers(today, np.ones((8, 1)), tail)
     assert np.flatnonzero(apart[:, 0]).tolist() == [3]
-    shifted, _ = outliers(today + 50.0, np.ones((8, 1)), tail)
+    shifted, *_ = outliers(today + 50.0, np.ones((8, 1)), tail)
     assert np.array_equal(shifted, apart)

@@ -16,7 +16,8 @@ def series(rng: np.random.Generator) -> tuple[Hours, Memory, np.ndarray]:
     noise = rng.uniform(1e-6, 1e-5, (N, M))
     none = np.zeros((N, M))
     memory = Memory(
-        np.array([1.1, 0.9, 1.3]), np.array([1e-3, 2e-3, 1.5e-3]), np.array([4e-4, 3e-4, 5e-4]), 1.5, 0.3,
+        np.array([1.1, 0.9, 1.3]), np.array([1e-3, 2e-3, 1.5e-3]), np.array([1.5, 8.0, 60.0]),
+        np.array([0.8, 0.05, 0.15]),
         np.array([[1.0, 0.6, 0.1], [0.6, 1.0, -0.2], [0.1, -0.2, 1.0]]),
     )  # fmt: skip
     return Hours(days, rows, values, noise, none, none), memory, np.full((M, P), 0.02)
@@ -30,7 +31,7 @@ def covariance(hours: Hours, memory: Memory, prior: np.ndarray) -> tuple[np.ndar
         for b, (j, r) in enumerate(at):
             gap = abs(hours.days[i] - hours.days[j])
             out[a, b] = sum(
-                c[q, r] * np.exp(-gap * a) for c, a in zip(memory.slow, memory.rates, strict=True)
+                c[q, r] * np.exp(-gap * a) for c, a in zip(memory.slow, 1.0 / memory.days, strict=True)
             )
             if q == r:
                 out[a, b] += hours.rows[i] @ (prior[q] ** 2 * hours.rows[j])

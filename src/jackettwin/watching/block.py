@@ -10,7 +10,7 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, logarithms, std_power
-from jackettwin.watching.hours import NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
+from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
 
@@ -21,6 +21,8 @@ _LEAST_STD, _MOST_STD = 0.3, 5.0
 _BROAD = {"frequency": 0.03, "damping": 0.5}
 """Prior standard deviation of a change once it is certain that there is one."""
 _MAD = 1.4826
+_NEGLIGIBLE = -20.0
+"""Ln of the weight below which a model is not asked."""
 _FEWEST = 30
 """Values of a quantity in the baseline from which it is watched."""
 
@@ -38,6 +40,7 @@ class Block:
     usual_std : (m,) relative standard deviation where none is stated
     spread : (m,) standard deviation over the baseline, by which priors of coefficients are scaled
     memories, beliefs, banks, log_weights : models, and what each knows
+    log_prior : of the models, at the end of the baseline
     louder : (m,) factors on the noise, above 1 while a sensor is known to fail
     tail : (NEIGHBOURS, m) last values less what conditions explain
     steadiness : (m,) of the scatter from day to day
@@ -55,6 +58,7 @@ class Block:
     beliefs: tuple[Belief, ...]
     banks: tuple[Bank, ...]
     log_weights: FloatArray
+    log_prior: FloatArray
     louder: FloatArray
     tail: FloatArray
     steadiness: FloatArray
@@ -105,11 +109,11 @@ def begin(
     x = np.nan_to_num(rows)
     usual, rest = _usual_std(baseline.days, x, y, relative, design)
     variance = _variance(relative, usual)
-    apart, tail = _set_apart(baseline, rest, variance)
+    apart, doubt, tail = _set_apart(baseline, rest, variance)
     y[apart] = np.nan
-    hours = by_hour(baseline.days, baseline.states, x, y, variance, WINDOW_DAYS)
-    many = np.floor(baseline.days)
-    beside = np.stack([apart[many == d].sum(axis=0) for d in np.unique(many)])
+    hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt, WINDOW_DAYS)
+    day = np.floor(baseline.days)
+    beside = np.stack([_told(apart[day == d], rest[day == d]) for d in np.unique(day)])
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
     learnt = learn(hours, np.outer(spread, design.priors))
     m, p = len(kept), rows.shape[1]
@@ -124,6 +128,7 @@ def begin(
         beliefs=learnt.beliefs,
         banks=tuple(empty_bank(m, belief.mean.size) for belief in learnt.beliefs),
         log_weights=learnt.log_weights,
+        log_prior=learnt.log_weights,
         louder=np.ones(m),
         tail=tail,
         steadiness=_steady(hours, learnt.memories[0], beside),
@@ -190,12 +195,14 @@ def _set_apart(baseline: History, rest: FloatArray, variance: FloatArray) -> tup
     m = rest.shape[1]
     scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
                       for r, v in zip(rest.T, variance.T, strict=True)])  # fmt: skip
-    apart, tail = np.zeros(rest.shape, dtype=np.bool_), np.full((NEIGHBOURS, m), np.nan)
+    apart, doubt = np.zeros(rest.shape, dtype=np.bool_), np.ones(rest.shape)
+    tail = np.full((NEIGHBOURS, m), np.nan)
     day = np.floor(baseline.days)
     for d in np.unique(day):
         today = day == d
-        apart[today], tail = outliers(rest[today], variance[today] * np.maximum(scale, 1.0) ** 2, tail)
-    return apart, tail
+        wide = variance[today] * np.maximum(scale, 1.0) ** 2
+        apart[today], doubt[today], tail = outliers(rest[today], wide, tail)
+    return apart, doubt, tail
 
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
@@ -206,11 +213,18 @@ def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, F
     variance = _variance(relative, block.usual_std)
     variance = variance * block.louder**2
     memory = block.memories[0]
-    moving = variance * memory.scale**2 + memory.short_std**2
-    apart, tail = outliers(y - x @ block.reference.T, moving, block.tail)
+    moving = variance * memory.scale**2 + memory.std**2
+    apart, doubt, tail = outliers(y - x @ block.reference.T, moving, block.tail)
+    told = _told(apart, y)
     y[apart] = np.nan
-    hours = by_hour(history.days, history.states, x, y, variance, WINDOW_DAYS)
-    return hours, apart.sum(axis=0), replace(block, tail=tail)
+    hours = by_hour(history.days, history.states, x, y, variance * doubt, WINDOW_DAYS)
+    return hours, told, replace(block, tail=tail)
+
+
+def _told(apart: npt.NDArray[np.bool_], values: FloatArray) -> FloatArray:
+    """Return how many values a day's others tell to be apart, (m,)."""
+    enough = np.isfinite(values).sum(axis=0) >= ENOUGH
+    return np.where(enough, apart.sum(axis=0), 0).astype(np.float64)
 
 
 def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tuple[Block, Spoken]:
@@ -245,23 +259,36 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
     total = weight.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
-        std = np.sqrt(1.0 / total + memory.short_std**2 + memory.long_std**2)
+        std = np.sqrt(1.0 / total + memory.std**2)
     z = done.innovation / np.sqrt(done.spread)
-    # an hour's mean tells of the noise, too, by its share of what was not foreseen
+    # hours' means tell of the noise, too, by its share of what was not foreseen, but for what all of a day
+    # share: a step is no scatter
     share = np.nan_to_num(noise / done.spread)
-    chi2 = hours.chi2.sum(axis=0) / memory.scale**2 + np.sum(share * np.nan_to_num(z) ** 2, axis=0)
-    freedom = hours.freedom.sum(axis=0) + share.sum(axis=0)
+    pull, nu = share / np.nan_to_num(done.spread, nan=1.0), np.nan_to_num(done.innovation)
+    shared = np.sum(pull * nu, axis=0) / np.maximum(pull.sum(axis=0), 1e-300)
+    chi2 = hours.chi2.sum(axis=0) / memory.scale**2 + np.sum(pull * (nu - shared) ** 2, axis=0)
+    total_share = np.maximum(share.sum(axis=0), 1e-300)
+    freedom = hours.freedom.sum(axis=0) + total_share - np.sum(share**2, axis=0) / total_share
     return Spoken(mean, std, *_with_outliers(chi2, freedom, apart), z)
+
+
+def reconsidered(block: Block, share: float) -> Block:
+    """Return the block with a share of the models' weights as they were at the end of the baseline.
+
+    What is unexplained need not go on as it did: a model that was out of favour may be right again (fixed
+    share, Herbster & Warmuth 1998).
+    """
+    weights = np.logaddexp(block.log_weights + np.log1p(-share), block.log_prior + np.log(share))
+    return replace(block, log_weights=weights)
 
 
 def log_evidence(block: Block) -> FloatArray:
     """Return ln of the Bayes factors of begins and directions over all models, (n_begins, n_directions)."""
-    each = [
-        weight + log_bayes_factors(block.directions, bank.info, bank.score)
-        for weight, bank in zip(block.log_weights, block.banks, strict=True)
-        if weight > -20.0
-    ]
-    return np.asarray(np.logaddexp.reduce(np.stack(each), axis=0))
+    live = [(w, bank) for w, bank in zip(block.log_weights, block.banks, strict=True) if w > _NEGLIGIBLE]
+    info = np.concatenate([bank.info for _, bank in live])
+    score = np.concatenate([bank.score for _, bank in live])
+    each = log_bayes_factors(block.directions, info, score).reshape(len(live), len(info) // len(live), -1)
+    return np.asarray(np.logaddexp.reduce(each + np.array([w for w, _ in live])[:, None, None], axis=0))
 
 
 def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
@@ -301,11 +328,9 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
         fit = bank.score[begun] @ delta
         weights.append(0.5 * (fit + np.linalg.slogdet(covariance)[1] + np.log(prior).sum()))
     log_weights = block.log_weights + np.array(weights)
-    n = block.beliefs[0].mean.size
     return replace(
-        block,
+        cleared(block),
         beliefs=tuple(beliefs),
-        banks=tuple(empty_bank(m, n) for _ in block.banks),
         log_weights=log_weights - np.logaddexp.reduce(log_weights),
         tail=np.full(block.tail.shape, np.nan),
     )
@@ -313,5 +338,5 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
 
 def cleared(block: Block) -> Block:
     """Return the block without begins."""
-    m, n = len(block.kept), block.beliefs[0].mean.size
-    return replace(block, banks=tuple(empty_bank(m, n) for _ in block.banks))
+    banks = tuple(empty_bank(len(block.kept), belief.mean.size) for belief in block.beliefs)
+    return replace(block, banks=banks)

@@ -35,7 +35,7 @@ def shares(
             if name != "level"
         }
         memory = block.memories[0]
-        slow = float(memory.short_std[q] ** 2 + memory.long_std[q] ** 2) / total
+        slow = float(memory.std[q] ** 2) / total
         share["slow, unexplained"] = min(slow, max(0.0, 1.0 - sum(share.values())))
         share["noise"] = max(0.0, 1.0 - sum(share.values()))
         out.append(share)
@@ -45,5 +45,5 @@ def shares(
 def unexplained_std(block: Block) -> FloatArray:
     """Return the standard deviation of the slow processes, averaged over models, (m,)."""
     weight = np.exp(block.log_weights)
-    each = np.array([memory.short_std**2 + memory.long_std**2 for memory in block.memories])
+    each = np.array([memory.std**2 for memory in block.memories])
     return np.asarray(np.sqrt(weight @ each))

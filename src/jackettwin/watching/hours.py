@@ -15,10 +15,13 @@ from jackettwin.arrays import BoolArray, FloatArray, IntArray
 OUTLIER = 4.5
 """Standard deviations from its neighbours beyond which a value is set aside: one in 150,000 of a normal
 noise."""
+DOUBTED = 2.2
+"""Standard deviations beyond which a value is doubted: one in 36 of a normal noise."""
 NEIGHBOURS = 9
 """Values around whose median one is judged."""
-_ENOUGH = 5
-"""Values of a day that suffice to judge each other."""
+ENOUGH = 3
+"""Values of a day that suffice to judge each other. Fewer are judged by days before, as which a step looks apart
+as well: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +44,21 @@ class Hours:
     chi2: FloatArray
     freedom: FloatArray
 
+    def of(self, chosen: list[int]) -> Hours:
+        """Return the hours in which any of some quantities was seen."""
+        seen = np.isfinite(self.values[:, chosen]).any(axis=1)
+        rest = (a[np.ix_(seen, chosen)] for a in (self.values, self.noise, self.chi2, self.freedom))
+        return Hours(self.days[seen], self.rows[seen], *rest)
 
-def outliers(rest: FloatArray, variance: FloatArray, tail: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Return which values of a day lie apart from their neighbours, and the neighbours of tomorrow's.
+
+def outliers(
+    rest: FloatArray, variance: FloatArray, tail: FloatArray
+) -> tuple[BoolArray, FloatArray, FloatArray]:
+    """Return which values of a day lie apart from their neighbours, doubts, and tomorrow's neighbours.
 
     A step of all neighbours alike leaves the choice as it is, so that setting aside cannot hide a change.
+    What lies far out but not apart is doubted: the factor on its variance keeps what it weighs as it would
+    be at ``DOUBTED`` (Huber 1964).
 
     Parameters
     ----------
@@ -53,20 +66,30 @@ def outliers(rest: FloatArray, variance: FloatArray, tail: FloatArray) -> tuple[
     variance : (n, m) of their noise and of what moves within a day
     tail : (NEIGHBOURS, m) the last values before
     """
-    apart = np.zeros(rest.shape, dtype=np.bool_)
+    apart, doubt = np.zeros(rest.shape, dtype=np.bool_), np.ones(rest.shape)
     after = tail.copy()
     for q in range(rest.shape[1]):
         seen = np.flatnonzero(np.isfinite(rest[:, q]))
         today = rest[seen, q]
-        if seen.size:
-            before = tail[np.isfinite(tail[:, q]), q]
-            few = seen.size < _ENOUGH
-            around = np.concatenate([before[-(NEIGHBOURS - seen.size) :], today]) if few else today
-            if around.size >= _ENOUGH:
-                distance = np.abs(today - np.median(around))
-                apart[seen, q] = distance > OUTLIER * np.sqrt(variance[seen, q])
-            after[:, q] = np.concatenate([tail[:, q], today])[-NEIGHBOURS:]
-    return apart, after
+        if not seen.size:
+            continue
+        before = tail[np.isfinite(tail[:, q]), q]
+        few = seen.size < ENOUGH
+        around = np.concatenate([before[-(NEIGHBOURS - seen.size) :], today]) if few else today
+        if around.size >= ENOUGH:
+            middle = _running_median(around)[-seen.size :]
+            distance = np.abs(today - middle) / np.sqrt(variance[seen, q])
+            apart[seen, q] = distance > OUTLIER
+            doubt[seen, q] = np.maximum(distance / DOUBTED, 1.0) ** 2
+        after[:, q] = np.concatenate([tail[:, q], today])[-NEIGHBOURS:]
+    return apart, doubt, after
+
+
+def _running_median(x: FloatArray) -> FloatArray:
+    """Return the median of the values nearest in the row to each: a storm's drift sets none of them apart."""
+    width = min(NEIGHBOURS, x.size)
+    medians = np.median(np.lib.stride_tricks.sliding_window_view(x, width), axis=1)
+    return np.asarray(medians[np.clip(np.arange(x.size) - width // 2, 0, medians.size - 1)])
 
 
 def by_hour(

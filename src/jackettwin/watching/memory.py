@@ -1,49 +1,63 @@
 """What no condition explains: noise and slow processes, learnt from the baseline with their uncertainty.
 
-No single set of variances and time constants is believed. Several models, weighted by how well they predicted
-the baseline and whatever came after, predict together; a plugged-in estimate would be too sure of itself.
+The unexplained is a sum of Ornstein-Uhlenbeck processes. Their time constants and shares are one of a family
+of spectra, from a single process of hours to 1/f from hours to a season; no one of them is believed. Several,
+weighted by how well they predicted the baseline and whatever came after, predict together: a plugged-in
+estimate would be too sure of itself.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import minimize
+from scipy.stats import chi2
 
-from jackettwin.arrays import FloatArray
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.kernels import filter_rows
 
-SHORT_DAYS = (0.3, 1.0, 3.0, 8.0)
-"""Time constants of the short process that are tried [days]."""
-LONG_DAYS = (8.0, 60.0)
-"""Time constants of the two parts of the long process [days]: weeks, and a season, of which a baseline of
-a year
-holds few independent values."""
-LONG_SHARES = (0.5, 0.15, 0.85)
-"""Shares of the slower part in the variance of the long process that are tried; each quantity alone is
-fitted with
-the first."""
-_LONG_PRIOR = (0.4, 0.8)
-"""Median of the long process's standard deviation over the short one's, and its spread in ln."""
-_SCALE_STD, _SHORT_STD = 0.5, 1.5
-"""Prior spread in ln of the factor on stated standard deviations, and of the short process."""
+FloatArray = npt.NDArray[np.float64]
+Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
+"""Time constants [days] and shares of the variance."""
+
+SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Time constants of a single short process."""
+LONG_DAYS = (12.0, 90.0)
+"""Those of the two parts of a long process beside it: weeks, and a season, of which a baseline of a year holds
+few independent values."""
+LONG_SHARES = (0.02, 0.003, 0.06, 0.2)
+"""Shares of the long process in the variance; the first is tried with every short one."""
+OCTAVES = (0.1, 0.4, 1.6, 6.4, 25.6, 100.0)
+"""Time constants of a power law's processes."""
+SLOPES = (-0.35, 0.0, 0.35)
+"""Powers of the time constant by which shares grow: 0 is 1/f over these times."""
+_SCALE_STD, _SLOW_STD = 0.5, 1.5
+"""Prior spread in ln of the factor on stated standard deviations, and of the slow processes' size."""
 _LEAST = 1e-3
 """The least standard deviation of a process, in those of the quantity."""
-LONG_FACTORS = (0.6, 1.0, 1.8, 3.0)
-"""Other standard deviations of the long process that are tried beside the most likely one."""
 AGREEMENT = (1.0, 0.7)
 """Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
-MOST_MODELS = 4
-GUARDS = ((1.8, 0.5, 0.05),)
-"""Factor on the long process, share of its slower part, and weight of models that the future may want
-although the
-baseline does not: a year cannot show what a season does only now and then."""
-_FEW_STEPS = 90
+MOST_SPECTRA, MOST_TRIED = 4, 10
+_HANDICAP = 1.5
+"""In ln of the likelihood: models should differ in what they expect."""
+LARGER = (1.0, 1.2, 1.45, 1.8)
+"""Factors on the slow processes' standard deviations that a baseline may have missed."""
+LEAST_LARGER = (0.1, 0.04, 0.015)
+"""Weights that they have at least: the next year need not be like the last."""
+_LEAST_FREEDOM = 4.0
+_APART = 0.3
+_LIKELY = 7.0
+"""Spectra whose likelihood falls short of the best one's by more than so much in ln are not followed up."""
+GUARD = (3.0, 0.05)
+"""Factor on the long processes' variance, and weight, of a model that the future may want although the baseline
+does not: a year cannot show what a season does only now and then."""
+_SEASON = 10.0
+"""Time constants from which a process is long [days]."""
+_FIRST_STEPS, _MORE_STEPS = 40, 16
 
 
 @dataclass(frozen=True)
@@ -53,33 +67,30 @@ class Memory:
     Attributes
     ----------
     scale : (m,) factors on stated standard deviations
-    short_std, long_std : (m,) standard deviations of the short and the long process
-    short_days : time constant of the short one
-    slower : share of the slower part in the variance of the long one
+    std : (m,) standard deviations of all slow processes together
+    days, shares : (k,) time constants of the processes, and their shares of the variance
     correlation : (m, m) of each process between quantities
     """
 
     scale: FloatArray
-    short_std: FloatArray
-    long_std: FloatArray
-    short_days: float
-    slower: float
+    std: FloatArray
+    days: FloatArray
+    shares: FloatArray
     correlation: FloatArray
 
     @property
-    def rates(self) -> FloatArray:
-        """Inverse time constants [1/day], (3,)."""
-        return 1.0 / np.array([self.short_days, *LONG_DAYS])
-
-    @property
     def slow(self) -> FloatArray:
-        """Covariances of the short process and of both parts of the long one, (3, m, m)."""
-        parts = (
-            self.short_std,
-            self.long_std * np.sqrt(1.0 - self.slower),
-            self.long_std * np.sqrt(self.slower),
+        """Covariances of the processes, (k, m, m)."""
+        return np.asarray(self.shares[:, None, None] * np.outer(self.std, self.std) * self.correlation)
+
+    def of(self, chosen: list[int]) -> Memory:
+        """Return the model of some of the quantities."""
+        return replace(
+            self,
+            scale=self.scale[chosen],
+            std=self.std[chosen],
+            correlation=self.correlation[np.ix_(chosen, chosen)],
         )
-        return np.stack([np.outer(std, std) * self.correlation for std in parts])
 
 
 @dataclass(frozen=True)
@@ -146,6 +157,11 @@ class Filtered:
 
 def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day: float) -> Filtered:
     """Return belief and bank after some hours; ``last_day`` is when the belief was reached."""
+    m = hours.values.shape[1]
+    if bank.response.shape[1:] != (m, belief.mean.size) or memory.slow.shape != (len(memory.days), m, m):
+        raise ValueError("bank, belief and memory are not of one model")  # compiled code does not look
+    if belief.mean.size != m * (hours.rows.shape[1] + len(memory.days)):
+        raise ValueError("belief and rows are not of one model")
     mean, cov = belief.mean.copy(), belief.cov.copy()
     grown = Bank(bank.response.copy(), bank.info.copy(), bank.score.copy())
     innovation, spread = np.empty(hours.values.shape), np.empty(hours.values.shape)
@@ -154,7 +170,7 @@ def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day:
         mean, cov, grown.response, grown.info, grown.score,
         np.ascontiguousarray(hours.rows), np.ascontiguousarray(hours.values),
         np.ascontiguousarray(hours.noise * memory.scale**2), np.diff(hours.days, prepend=before),
-        memory.rates, memory.slow, innovation, spread,
+        1.0 / memory.days, memory.slow, innovation, spread,
     )  # fmt: skip
     return Filtered(Belief(mean, cov), grown, innovation, spread, likelihood + _scatter(memory, hours))
 
@@ -167,11 +183,11 @@ def _scatter(memory: Memory, hours: Hours) -> float:
 
 @dataclass(frozen=True)
 class Learnt:
-    """Models and what each knows at the end of the baseline.
+    """Models, the likeliest first, and what each knows at the end of the baseline.
 
     Attributes
     ----------
-    log_weights : (n_models,) ln of posterior probabilities
+    log_weights : (n_models,)
     """
 
     memories: tuple[Memory, ...]
@@ -179,122 +195,172 @@ class Learnt:
     log_weights: FloatArray
 
 
-def learn(hours: Hours, coefficient_std: FloatArray) -> Learnt:
-    """Return the models that a baseline leaves, the most likely first.
+def _beside(short: float, share: float) -> Spectrum:
+    """Return a short process with some of a long one."""
+    return (short, *LONG_DAYS), (1.0 - share, share / 2.0, share / 2.0)
 
-    Each quantity alone gives its variances for each time constant of the short process; correlations come
-    from what is left at common times; then all quantities together weigh the models.
+
+def _power_law(slope: float) -> Spectrum:
+    weight = np.array(OCTAVES) ** slope
+    return OCTAVES, tuple(weight / weight.sum())
+
+
+def learn(hours: Hours, coefficient_std: FloatArray, told: tuple[Spectrum, ...] = ()) -> Learnt:
+    """Return the models that a baseline makes likely.
+
+    Each quantity alone finds its scale and size under every spectrum; the spectrum is one for all. Then all
+    quantities together weigh the models.
 
     Parameters
     ----------
     coefficient_std : (m, p) prior standard deviations
+    told : the spectra that it can be, if that is known
     """
     m = coefficient_std.shape[0]
-    extent = np.nanstd(hours.values, axis=0)
-    alone = [[_alone(hours, q, coefficient_std[q], days, extent[q]) for days in SHORT_DAYS] for q in range(m)]
-    total = np.array([[found[1] for found in row] for row in alone]).sum(axis=0)
-    likely = np.flatnonzero(total > total.max() - 6.0)
-    likely = likely[np.argsort(-total[likely])][:2]
-    candidates, kinds = [], []
-    for k in likely:
-        parts = np.array([alone[q][k][0] for q in range(m)])
-        long_std = _alike(parts[:, 2])
-        base = Memory(parts[:, 0], parts[:, 1], long_std, SHORT_DAYS[k], LONG_SHARES[0], np.eye(m))
-        correlation = _correlation(hours, base, coefficient_std)
-        for agreement in AGREEMENT if m > 1 else (1.0,):
-            shrunk = agreement * correlation + (1.0 - agreement) * np.eye(m)
-            for kind in product(LONG_SHARES, LONG_FACTORS):
-                kinds.append(kind)
-                candidates.append(
-                    replace(base, slower=kind[0], long_std=kind[1] * base.long_std, correlation=shrunk)
-                )
-    return _weighed(candidates, kinds, hours, coefficient_std)
+    single = [hours.of([q]) for q in range(m)]
+    fits: dict[Spectrum, list[_Fit]] = {}
+
+    def fit(spectra: list[Spectrum]) -> None:
+        for spectrum in spectra:
+            before = next(reversed(fits.values()), [None] * m)
+            fits[spectrum] = [
+                _alone(own, coefficient_std[q : q + 1], spectrum, before[q]) for q, own in enumerate(single)
+            ]
+
+    def scores() -> dict[Spectrum, float]:
+        return {spectrum: sum(one.score for one in found) for spectrum, found in fits.items()}
+
+    fit([*told] or [*(_beside(short, LONG_SHARES[0]) for short in SHORT_DAYS), *map(_power_law, SLOPES)])
+    total = scores()
+    likely = [] if told else [days[0] for days, _ in total if total[days, _] > max(total.values()) - _LIKELY]
+    fit([_beside(short, share) for short in SHORT_DAYS if short in likely for share in LONG_SHARES[1:]])
+    total = scores()
+    bases = [
+        Memory(
+            np.array([one.scale for one in fits[spectrum]]), np.array([one.std for one in fits[spectrum]]),
+            np.array(spectrum[0]), np.array(spectrum[1]), np.eye(m),
+        )
+        for spectrum in sorted(total, key=lambda one: -total[one])
+        if total[spectrum] > max(total.values()) - _LIKELY
+    ]  # fmt: skip
+    return _weighed(bases[:MOST_TRIED], hours, coefficient_std, doubted=not told)
 
 
-def _alike(std: FloatArray) -> FloatArray:
-    """Return standard deviations of the long process drawn half way to their geometric mean.
+def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, *, doubted: bool) -> Learnt:
+    """Return models with the quantities' correlation, weighed by all quantities together.
 
-    A baseline of a year knows each to about a factor 1.5; quantities of one kind are of like size, and the
-    mean of several is known better (shrinkage, Efron & Morris 1975).
+    Parameters
+    ----------
+    doubted : whether the future may want what the baseline does not
     """
-    return np.asarray(np.sqrt(std * np.exp(np.mean(np.log(std)))))
+    m = coefficient_std.shape[0]
+    correlation = _correlation(hours, bases[0], coefficient_std)
+    scored: list[tuple[float, Memory]] = []
+    for base in bases:
+        each = [
+            replace(base, correlation=share * correlation + (1.0 - share) * np.eye(m))
+            for share in (AGREEMENT if m > 1 else (1.0,))
+        ]
+        found = [_end(memory, coefficient_std, hours).log_likelihood for memory in each]
+        scored.append((float(np.logaddexp.reduce(found)), each[int(np.argmax(found))]))
+    kept = _different(scored)
+    first = kept[0][1]
+    freedom = np.median([_freedom(hours, q, first, coefficient_std[q]) for q in range(m)]) - m + 1.0
+    larger = _larger(max(float(freedom), _LEAST_FREEDOM), LEAST_LARGER if doubted else (0.0, 0.0, 0.0))
+    guard = GUARD[1] if doubted else 1e-12
+    memories = [memory for _, memory in kept]
+    memories += [_guarded(first)] + [replace(first, std=g * first.std) for g in LARGER[1:]]
+    weights = np.exp([score - kept[0][0] for score, _ in kept])
+    weights = weights / weights.sum() * (1.0 - guard) * larger[0]
+    beliefs = tuple(_end(memory, coefficient_std, hours).belief for memory in memories)
+    return Learnt(tuple(memories), beliefs, np.log([*weights, guard * larger[0], *larger[1:]]))
 
 
-def _weighed(
-    candidates: list[Memory], kinds: list[tuple[float, float]], hours: Hours, coefficient_std: FloatArray
-) -> Learnt:
-    after, score = [], []
-    for memory in candidates:
-        prior = prior_belief(memory, coefficient_std)
-        end = filtered(memory, prior, empty_bank(len(coefficient_std), prior.mean.size), hours, -np.inf)
-        after.append(end.belief)
-        score.append(end.log_likelihood + _log_prior(memory))
-    order, weights = _distinct(kinds, np.array(score))
-    best = candidates[order[0]]
-    guards = [replace(best, long_std=factor * best.long_std, slower=share) for factor, share, _ in GUARDS]
-    for guard in guards:
-        prior = prior_belief(guard, coefficient_std)
-        bank = empty_bank(len(coefficient_std), prior.mean.size)
-        after.append(filtered(guard, prior, bank, hours, -np.inf).belief)
-    floor = np.array([weight for *_, weight in GUARDS])
-    return Learnt(
-        (*(candidates[i] for i in order), *guards),
-        (*(after[i] for i in order), *after[-len(guards) :]),
-        np.concatenate([weights + np.log1p(-floor.sum()), np.log(floor)]),
-    )
+def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
+    """Return the likeliest models, each further one of the same time constants at a handicap."""
+    left, kept = list(scored), []
+    while left and len(kept) < MOST_SPECTRA:
+        times = [one.days[0] for _, one in kept]
+        best = max(left, key=lambda one: one[0] - _HANDICAP * times.count(one[1].days[0]))
+        left = [one for one in left if one is not best]
+        kept.append(best)
+    return sorted(kept, key=lambda one: -one[0])
 
 
-def _distinct(kinds: list[tuple[float, float]], score: FloatArray) -> tuple[list[int], FloatArray]:
-    """Return the models to keep, the likeliest first, and ln of their weights.
+def _larger(freedom: float, least: tuple[float, ...]) -> FloatArray:
+    """Return the probabilities that slow processes are by so much larger than estimated, of ``LARGER``.
 
-    Models that differ in the long process differ in what they expect of the future, however alike they fit
-    the baseline: of each kind of it the best stands for all. Each share of the slower part keeps at least
-    one.
+    An excursion of processes whose covariance is known by ν independent values is one of Student's t with ν
+    degrees of freedom: the estimated covariance times ν/χ²_ν, one factor for all quantities.
     """
-    members = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in dict.fromkeys(kinds)}
-    mass = {kind: float(np.logaddexp.reduce(score[chosen])) for kind, chosen in members.items()}
-    ranked = sorted(members, key=lambda kind: -mass[kind])
-    kept = [next(kind for kind in ranked if kind[0] == share) for share in LONG_SHARES]
-    kept += [kind for kind in ranked if kind not in kept][: MOST_MODELS - len(kept)]
-    kept.sort(key=lambda kind: -mass[kind])
-    weights = np.array([mass[kind] for kind in kept])
-    best = [max(members[kind], key=lambda i: score[i]) for kind in kept]
-    return best, weights - np.logaddexp.reduce(weights)
+    between = np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1]))
+    above = np.append(chi2.cdf(freedom / between**2, freedom), 0.0)
+    share = np.concatenate([[1.0 - above[0]], above[:-1] - above[1:]])
+    share = np.maximum(share, [0.0, *least])
+    return np.asarray(np.maximum(share / share.sum(), 1e-12))
 
 
-def _log_prior(memory: Memory) -> float:
-    """Return ln of the prior of the long process given the short one: one draw for all quantities."""
-    off = np.log(memory.long_std / (_LONG_PRIOR[0] * memory.short_std)) / _LONG_PRIOR[1]
-    return float(-0.5 * np.mean(off**2))
+def _freedom(hours: Hours, q: int, memory: Memory, coefficient_std: FloatArray) -> float:
+    """Return how many independent values of the slow processes of a quantity the baseline holds.
+
+    ln of a standard deviation that is known by ν values has the variance 1/(2ν).
+    """
+    own, of = hours.of([q]), memory.of([q])
+    at = [
+        _end(replace(of, std=of.std * np.exp(x)), coefficient_std[None], own).log_likelihood
+        for x in (-_APART, 0.0, _APART)
+    ]
+    return float(0.5 * (2.0 * at[1] - at[0] - at[2]) / _APART**2)
 
 
-def _alone(
-    hours: Hours, q: int, coefficient_std: FloatArray, short_days: float, spread: float
-) -> tuple[FloatArray, float]:
-    """Return (scale, short, long standard deviations) of one quantity, and its log posterior."""
-    seen = np.isfinite(hours.values[:, q])
-    own = Hours(hours.days[seen], hours.rows[seen], *(
-        a[seen, q : q + 1] for a in (hours.values, hours.noise, hours.chi2, hours.freedom)
-    ))  # fmt: skip
+def _guarded(memory: Memory) -> Memory:
+    """Return a model whose long processes are larger."""
+    days, shares = memory.days, memory.shares.copy()
+    shares[days > _SEASON] *= GUARD[0]
+    return replace(memory, std=memory.std * np.sqrt(shares.sum()), shares=shares / shares.sum())
+
+
+def _end(memory: Memory, coefficient_std: FloatArray, hours: Hours) -> Filtered:
+    """Return what a model knows after the baseline."""
+    prior = prior_belief(memory, coefficient_std)
+    return filtered(memory, prior, empty_bank(len(coefficient_std), prior.mean.size), hours, -np.inf)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Scale and size of one quantity under a spectrum, and its log posterior."""
+
+    scale: float
+    std: float
+    score: float
+
+
+def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _Fit | None) -> _Fit:
+    """Return the most likely scale and size of one quantity; ``near`` is where to start from."""
+    spread = float(np.std(own.values))
     typical = float(np.sqrt(np.median(own.noise)))
-    start = np.log([1.0, max(0.3 * spread, 0.1 * typical), 0.1 * max(spread, 0.3 * typical)])
+    usual = np.log([1.0, max(0.3 * spread, 0.1 * typical)])
+    at = usual if near is None else np.log([near.scale, near.std])
+    low, high = np.log([_LEAST * spread, 10.0 * spread])
+    days, shares = map(np.array, spectrum)
 
     def loss(x: FloatArray) -> float:
-        y = np.clip(x, [-3.0, np.log(_LEAST * spread), np.log(_LEAST * spread)], np.log(10.0 * spread + 10.0))
-        scale, short, long = np.exp(y)
-        stds = [np.array([v]) for v in (scale, short, long)]
-        memory = Memory(stds[0], stds[1], stds[2], short_days, LONG_SHARES[0], np.eye(1))
-        prior = prior_belief(memory, coefficient_std[None])
-        end = filtered(memory, prior, empty_bank(1, prior.mean.size), own, -np.inf)
-        penalty = (y[0] / _SCALE_STD) ** 2 + ((y[1] - start[1]) / _SHORT_STD) ** 2
-        return float(0.5 * penalty + np.sum((x - y) ** 2) - end.log_likelihood - _log_prior(memory))
+        y = np.clip(x, [-3.0, low], [3.0, high])
+        memory = Memory(np.exp(y[:1]), np.exp(y[1:]), days, shares, np.eye(1))
+        penalty = ((y - usual) / [_SCALE_STD, _SLOW_STD]) ** 2
+        outside = np.sum((x - y) ** 2)
+        return float(0.5 * penalty.sum() + outside - _end(memory, coefficient_std, own).log_likelihood)
 
-    simplex = start + np.vstack([np.zeros(3), 0.5 * np.eye(3)])
+    steps = np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.3]])
     found = minimize(
-        loss, start, method="Nelder-Mead",
-        options={"maxfev": _FEW_STEPS, "initial_simplex": simplex, "xatol": 0.03, "fatol": 0.05},
+        loss, at, method="Nelder-Mead",
+        options={
+            "maxfev": _FIRST_STEPS if near is None else _MORE_STEPS, "initial_simplex": at + steps,
+            "xatol": 0.03, "fatol": 0.05,
+        },
     )  # fmt: skip
-    return np.exp(found.x), -float(found.fun)
+    scale, std = np.exp(np.clip(found.x, [-3.0, low], [3.0, high]))
+    return _Fit(float(scale), float(std), -float(found.fun))
 
 
 def _correlation(hours: Hours, memory: Memory, coefficient_std: FloatArray) -> FloatArray:
@@ -303,27 +369,15 @@ def _correlation(hours: Hours, memory: Memory, coefficient_std: FloatArray) -> F
     result = np.eye(m)
     for i in range(m):
         for j in range(i):
-            chosen = [j, i]
-            own = Hours(hours.days, hours.rows, *(
-                a[:, chosen] for a in (hours.values, hours.noise, hours.chi2, hours.freedom)
-            ))  # fmt: skip
-            pair = replace(
-                memory, scale=memory.scale[chosen], short_std=memory.short_std[chosen],
-                long_std=memory.long_std[chosen],
-            )  # fmt: skip
-            result[i, j] = result[j, i] = _correlation_of_two(own, pair, coefficient_std[chosen])
+            own, pair = hours.of([j, i]), memory.of([j, i])
+            likelihood = np.array([
+                _end(replace(pair, correlation=np.array([[1.0, rho], [rho, 1.0]])), coefficient_std[[j, i]],
+                     own).log_likelihood
+                for rho in CORRELATIONS
+            ])  # fmt: skip
+            weight = np.exp(likelihood - likelihood.max())
+            result[i, j] = result[j, i] = float(weight @ CORRELATIONS / weight.sum())
     return _positive(result)
-
-
-def _correlation_of_two(hours: Hours, pair: Memory, coefficient_std: FloatArray) -> float:
-    """Return the posterior's mean of the correlation between two quantities under a flat prior."""
-    likelihood = np.empty(CORRELATIONS.size)
-    for k, rho in enumerate(CORRELATIONS):
-        memory = replace(pair, correlation=np.array([[1.0, rho], [rho, 1.0]]))
-        prior = prior_belief(memory, coefficient_std)
-        likelihood[k] = filtered(memory, prior, empty_bank(2, prior.mean.size), hours, -np.inf).log_likelihood
-    weight = np.exp(likelihood - likelihood.max())
-    return float(weight @ CORRELATIONS / weight.sum())
 
 
 def _positive(correlation: FloatArray) -> FloatArray:

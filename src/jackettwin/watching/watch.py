@@ -28,6 +28,7 @@ from jackettwin.watching.block import (
     hours_of,
     log_evidence,
     log_scatter,
+    reconsidered,
     taken,
     thinned,
     watched,
@@ -42,6 +43,8 @@ MOST_BEGINS = 32
 """Begins that are kept; the day's cost grows with them."""
 _RECENT = 10
 """The last begins, which are never merged."""
+RECONSIDERED_DAYS, STEADY_DAYS = 10.0, 90.0
+"""How often the models' weights are reconsidered, and for how long what is unexplained stays as it is."""
 FEWEST_DAYS = 10
 """Days with records that a baseline needs."""
 _LOOSE = 1.0
@@ -79,6 +82,7 @@ class Watch:
     begins : of changes that are bet on
     last_day : of the last records
     accounted : day up to which begins are staked
+    considered : day on which the models' weights were reconsidered
     arl_years : mean time between false alarms that is promised, at least
     """
 
@@ -89,6 +93,7 @@ class Watch:
     begins: Begins
     last_day: float
     accounted: float
+    considered: float
     arl_years: float
 
     @property
@@ -225,6 +230,7 @@ def start(
         _no_begins(total),
         last,
         float(np.floor(last)),
+        last,
         arl_years,
     )
 
@@ -259,7 +265,7 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
     worth = _worth(after)
     log_r = float(np.logaddexp.reduce((after.begins.log_stake[:, None] + worth).ravel()))
     change = _change(after, worth, log_r) if log_r >= after.log_threshold else None
-    after = _without(after, change) if change is not None else _merged(after, worth)
+    after = _without(after, change) if change is not None else _reconsidered(_merged(after, worth))
     rest, std = (np.concatenate([getattr(s, name) for s in spoken]) for name in ("rest", "rest_std"))
     return after, Look(float(day.days[-1]), rest, std, log_r, change, tuple(spoken))
 
@@ -306,6 +312,22 @@ def _merged(watch: Watch, worth: FloatArray) -> Watch:
     return replace(watch, begins=kept, blocks=tuple(thinned(block, keep) for block in watch.blocks))
 
 
+def _reconsidered(watch: Watch) -> Watch:
+    """Return the watch with its models' weights reconsidered now and then; what begins are worth stays."""
+    elapsed = watch.last_day - watch.considered
+    if elapsed < RECONSIDERED_DAYS:
+        return watch
+    share = -np.expm1(-elapsed / STEADY_DAYS)
+    after = replace(
+        watch,
+        blocks=tuple(reconsidered(block, float(share)) for block in watch.blocks),
+        considered=watch.last_day,
+    )
+    before, now = (np.logaddexp.reduce(_worth(one), axis=1) for one in (watch, after))
+    begins = replace(watch.begins, log_stake=watch.begins.log_stake + before - now)
+    return replace(after, begins=begins)
+
+
 def _change(watch: Watch, worth: FloatArray, log_r: float) -> Change:
     begins = watch.begins
     posterior = np.exp(begins.log_stake[:, None] + worth - log_r)
@@ -327,7 +349,7 @@ def _change(watch: Watch, worth: FloatArray, log_r: float) -> Change:
     return Change(
         watch.last_day, kind, direction,
         float(0.5 * (begins.since[mid] + begins.days[mid])),
-        (float(begins.since[low]), float(begins.days[high])),
+        (float(begins.since[low]), min(float(begins.days[high]) + 1.0, watch.last_day)),
         members, size, std, info, score, begins.log_stake, begins.log_scatter, log_r,
         (size / np.where(std > 0.0, std, np.inf)) ** 2,
     )  # fmt: skip

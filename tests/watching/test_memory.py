@@ -1,0 +1,57 @@
+"""Memory learnt from series whose memory is known, and what a year cannot know."""
+
+import numpy as np
+import pytest
+
+from jackettwin.watching.hours import Hours
+from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, learn
+
+
+def series(rng: np.random.Generator, days: tuple[float, ...]) -> Hours:
+    """Return a year of two quantities, alike by 0.6, that move as a sum of processes of equal size."""
+    n, root = 700, np.linalg.cholesky(np.array([[1.0, 0.6], [0.6, 1.0]]))
+    t = np.sort(rng.uniform(0.0, 365.0, n))
+    y = 0.7 * rng.standard_normal((n, 2))
+    for time in days:
+        x = root @ rng.standard_normal(2)
+        for i in range(n):
+            keep = np.exp(-(t[i] - t[i - 1]) / time) if i else 0.0
+            x = keep * x + np.sqrt(1.0 - keep**2) * (root @ rng.standard_normal(2))
+            y[i] += x / np.sqrt(len(days))
+    none = np.zeros((n, 2))
+    return Hours(t, np.ones((n, 1)), y, np.full((n, 2), 0.5), none, none)
+
+
+def slow_share(learnt: Learnt) -> float:
+    """Return the share of the variance that lasts longer than ten days, by all models."""
+    weight = np.exp(learnt.log_weights)
+    return float(weight @ [memory.shares[memory.days > 10.0].sum() for memory in learnt.memories])
+
+
+def test_one_time_constant_is_found(rng: np.random.Generator) -> None:
+    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    best = learnt.memories[0]
+    assert best.days[0] in (1.0, 2.0, 4.0) and best.shares[0] > 0.8
+    # two hundred independent values know a standard deviation to 5 %, the noise beside it to less
+    assert best.std == pytest.approx(1.0, rel=0.25)
+    assert best.scale == pytest.approx(0.7 / np.sqrt(0.5), rel=0.1)
+    assert best.correlation[0, 1] == pytest.approx(0.6, abs=0.25)
+
+
+def test_memory_of_a_season_is_expected_where_there_is_some(rng: np.random.Generator) -> None:
+    flicker, short = (learn(series(rng, days), np.full((2, 1), 5.0)) for days in (OCTAVES, (1.0,)))
+    assert slow_share(flicker) > 0.25 > 2.0 * slow_share(short)
+
+
+def test_weights_add_up_and_nothing_is_believed_alone(rng: np.random.Generator) -> None:
+    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    assert np.exp(learnt.log_weights).sum() == pytest.approx(1.0)
+    assert sum(weight > np.log(0.01) for weight in learnt.log_weights) >= 4
+
+
+def test_few_values_leave_room_for_larger_processes() -> None:
+    """Shares of ν/χ² for factors on a standard deviation: drawn at random, ν = 9."""
+    drawn = np.sqrt(9.0 / np.random.default_rng(0).chisquare(9.0, 400_000))
+    edges = [0.0, *np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1])), np.inf]
+    expected = np.histogram(drawn, edges)[0] / drawn.size
+    np.testing.assert_allclose(_larger(9.0, (0.0, 0.0, 0.0)), expected, atol=2e-3)  # of the draws
