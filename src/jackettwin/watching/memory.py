@@ -53,8 +53,8 @@ _APART = 0.3
 _LIKELY = 7.0
 """Spectra whose likelihood falls short of the best one's by more than so much in ln are not followed up."""
 GUARD = (3.0, 0.05)
-"""Factor on the long processes' variance, and weight, of a model that the future may want although the baseline
-does not: a year cannot show what a season does only now and then."""
+"""Factor on the variance of the long processes, and weight, of a model that the future may want although the
+baseline does not: a year cannot show what a season does only now and then."""
 _SEASON = 10.0
 """Time constants from which a process is long [days]."""
 _FIRST_STEPS, _MORE_STEPS = 40, 16
