@@ -24,7 +24,7 @@ from common.seasons import FREQUENCY_HZ, Kind, Seasons, ramp, seasons, step
 from scipy.stats import poisson
 
 from jackettwin import watching
-from jackettwin.watching import Change, History, Look, Watch, diagnose, general_causes
+from jackettwin.watching import History, Look, Watch, diagnose, general_causes
 from jackettwin.watching.block import begin, empty_bank
 from jackettwin.watching.design import design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Directions
@@ -197,10 +197,10 @@ def changes(pieces: dict[str, Any]) -> list[str]:
         early = sum(one["delay"] is not None and one["delay"] < 0.0 for one in all_of)
         found = [one for one in all_of if one["delay"] is not None and one["delay"] >= 0.0]
         d = np.array([one["delay"] for one in found])
-        named, dated = (sum(one[key] for one in found) for key in ("named", "dated"))
+        named, dated = (f"{sum(one[key] for one in found)} of {d.size}" for key in ("named", "dated"))
         lines.append(
             f"| {planted.name} | {d.size} of {len(all_of) - early} | {np.median(d):.0f} | "
-            f"{np.quantile(d, 0.9):.0f} | {d.max():.0f} | {named} of {d.size} | {dated} of {d.size} | {early} |"
+            f"{np.quantile(d, 0.9):.0f} | {d.max():.0f} | {named} | {dated} | {early} |"
         )
     return [*lines, ""]
 
@@ -209,7 +209,7 @@ def changes(pieces: dict[str, Any]) -> list[str]:
 
 
 def informed(seed: int) -> dict[str, Any]:
-    """Return the delays of the same statistic for scour, told which covariances there are and what changes."""
+    """Return the delays of the same statistic for scour, told the list of covariances and what changes."""
     s, begun = planted_turbine(PLANTED[0], seed)
     h = history(s)
     baseline = h.between(0.0, BASELINE)
@@ -246,7 +246,8 @@ def _falling_pair(sizes: tuple[float, ...]) -> Directions:
     weights = np.log(np.concatenate([np.ones(number), np.full(number, 1e-9)]) / number)
     return Directions(
         "frequency", ("pair", "any"), np.ones((2, 4), dtype=bool), np.array([[1.0, 1.0, 0.0, 0.0]]),
-        np.array([0.0, -np.inf]), np.array([*(-x for x in sizes), *sizes]), np.full(2 * number, 1e-6), weights,
+        np.array([0.0, -np.inf]), np.array([*(-x for x in sizes), *sizes]), np.full(2 * number, 1e-6),
+        weights,
     )  # fmt: skip
 
 
@@ -300,8 +301,8 @@ def charts(pieces: dict[str, Any]) -> list[str]:
         "## What people run today",
         "",
         "Daily medians, same conditions and their squares, limits for one alarm in ten years if residuals",
-        f"were independent and normal; {len(found)} quiet turbines, and scour after the limits were raised, with",
-        "hindsight, to what keeps one alarm in ten years on these turbines.",
+        f"were independent and normal; {len(found)} quiet turbines, and scour after the limits were raised,",
+        "with hindsight, to what keeps one alarm in ten years on these turbines.",
         "",
         "| chart | turbines with false alarms | limit raised by | scour found in a year | median delay [d] |",
         "|---|---|---|---|---|",
@@ -314,10 +315,10 @@ def charts(pieces: dict[str, Any]) -> list[str]:
             next((day for day, far in zip(*one[name][3:], strict=True) if far >= limit), np.inf)
             for one in found
         ])  # fmt: skip
-        median = np.median(d)
+        median = "over 365" if np.isinf(np.median(d)) else f"{np.median(d):.0f}"
         lines.append(
             f"| {name} | {sum(alarms)} of {len(found)} in {sum(years):.0f} years | {limit:.2f} | "
-            f"{np.isfinite(d).sum()} of {len(found)} | {'over 365' if np.isinf(median) else f'{median:.0f}'} |"
+            f"{np.isfinite(d).sum()} of {len(found)} | {median} |"
         )
     return [*lines, ""]
 
@@ -413,7 +414,8 @@ def main() -> None:
         f"`python qualify/watching.py {kinds} {number}`: four modes in two close pairs, about 3,400",
         "ten-minute records a year in clusters while the rotor is parked; tide, a temperature that the steel",
         "follows hours later, wind and waves, 0.1 % that no condition explains, stated standard deviations",
-        "wrong by 15 %, 0.4 % outliers (`qualify/common/seasons.py`, which shares no code with the detector).",
+        "wrong by 15 %, 0.4 % outliers (`qualify/common/seasons.py`, which shares no code with the",
+        "detector).",
         "",
     ]
     parts = [*changes(pieces), *information(pieces), *charts(pieces), *speed()]

@@ -190,8 +190,10 @@ def _variance(relative: FloatArray, usual: FloatArray) -> FloatArray:
     return np.asarray(np.clip(filled, _LEAST_STD * usual, _MOST_STD * usual) ** 2)
 
 
-def _set_apart(baseline: History, rest: FloatArray, variance: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Return the outliers of a baseline, day by day, and the last values."""
+def _set_apart(
+    baseline: History, rest: FloatArray, variance: FloatArray
+) -> tuple[BoolArray, FloatArray, FloatArray]:
+    """Return the outliers of a baseline, day by day, doubts of the others, and the last values."""
     m = rest.shape[1]
     scale = np.array([_robust(r[np.isfinite(r)] / np.sqrt(v[np.isfinite(r)]))
                       for r, v in zip(rest.T, variance.T, strict=True)])  # fmt: skip
@@ -221,7 +223,7 @@ def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, F
     return hours, told, replace(block, tail=tail)
 
 
-def _told(apart: npt.NDArray[np.bool_], values: FloatArray) -> FloatArray:
+def _told(apart: BoolArray, values: FloatArray) -> FloatArray:
     """Return how many values a day's others tell to be apart, (m,)."""
     enough = np.isfinite(values).sum(axis=0) >= ENOUGH
     return np.where(enough, apart.sum(axis=0), 0).astype(np.float64)

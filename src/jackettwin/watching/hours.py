@@ -20,8 +20,8 @@ DOUBTED = 2.2
 NEIGHBOURS = 9
 """Values around whose median one is judged."""
 ENOUGH = 3
-"""Values of a day that suffice to judge each other. Fewer are judged by days before, as which a step looks apart
-as well: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
+"""Values of a day that suffice to judge each other. Fewer are judged by days before, which a step
+is far from, too: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Hours:
     def of(self, chosen: list[int]) -> Hours:
         """Return the hours in which any of some quantities was seen."""
         seen = np.isfinite(self.values[:, chosen]).any(axis=1)
-        rest = (a[np.ix_(seen, chosen)] for a in (self.values, self.noise, self.chi2, self.freedom))
+        rest = (a[seen][:, chosen] for a in (self.values, self.noise, self.chi2, self.freedom))
         return Hours(self.days[seen], self.rows[seen], *rest)
 
 

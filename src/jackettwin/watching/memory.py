@@ -25,8 +25,8 @@ Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
 SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 """Time constants of a single short process."""
 LONG_DAYS = (12.0, 90.0)
-"""Those of the two parts of a long process beside it: weeks, and a season, of which a baseline of a year holds
-few independent values."""
+"""Those of the two parts of a long process beside it: weeks, and a season, of which a baseline of a year
+holds few independent values."""
 LONG_SHARES = (0.02, 0.003, 0.06, 0.2)
 """Shares of the long process in the variance; the first is tried with every short one."""
 OCTAVES = (0.1, 0.4, 1.6, 6.4, 25.6, 100.0)
@@ -278,7 +278,8 @@ def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, *, 
 
 def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
     """Return the likeliest models, each further one of the same time constants at a handicap."""
-    left, kept = list(scored), []
+    left = list(scored)
+    kept: list[tuple[float, Memory]] = []
     while left and len(kept) < MOST_SPECTRA:
         times = [one.days[0] for _, one in kept]
         best = max(left, key=lambda one: one[0] - _HANDICAP * times.count(one[1].days[0]))
