@@ -20,8 +20,8 @@ DOUBTED = 2.2
 NEIGHBOURS = 9
 """Values around whose median one is judged."""
 ENOUGH = 3
-"""Values of a day that suffice to judge each other. Fewer are judged by days before, which a step
-is far from, too: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
+"""Values of a day that suffice to judge each other. Fewer are judged by days before, from which a step lies
+far as well: what is set aside then is no sign of scatter, and is in five values the neighbourhood itself."""
 
 
 @dataclass(frozen=True)
