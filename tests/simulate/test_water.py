@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.loads.given_kinematics import PRESSURE, REQUIRED
 from jackettwin.loads.morison import point_forces
+from jackettwin.loads.waves import airy_wave
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.model import build_model
 from jackettwin.simulate.motion import simulate_motion
+from jackettwin.simulate.resultant import resultants
 from jackettwin.simulate.water import (
     relative_drag,
     relative_drag_beyond,
@@ -91,5 +94,38 @@ def test_a_given_elevation_drives_the_asset(tmp_path: Path, scenario_file) -> No
     np.testing.assert_allclose(found, eta[:-11], atol=0.02)
     with pytest.raises(InputError, match="hs_m: does not belong"):
         read_scenario(scenario_file(waves={**waves, "hs_m": 2.0}, water={}, time=time))
-    with pytest.raises(InputError, match="file belongs to waves of type elevation"):
+    with pytest.raises(InputError, match="file belongs to waves of type elevation or kinematics"):
         read_scenario(scenario_file(waves={"type": "elevation"}, water={}, time=time))
+
+
+def test_given_kinematics_load_as_the_wave_they_were_taken_from(tmp_path: Path, scenario_file) -> None:
+    """An Airy wave's own motion over the water column, from a file: the same loads, within the grid's 1 %."""
+    H, T, depth = 4.0, 10.0, 72.0
+    wave = airy_wave(height=H, period=T, depth=depth, stretching="vertical")
+    t, z = np.arange(0.0, 20.01, 0.1), np.linspace(-depth, 3.0, 101)
+    points = np.stack([np.zeros_like(z), np.zeros_like(z), z], axis=1)
+    u, du = wave.motion(points, t)
+    eta, p = wave.elevation(points, t), 1025.0 * wave.pressure(points, t)
+    columns = [*np.broadcast_arrays(t[:, None], z), eta, u[..., 0], u[..., 2], du[..., 0], du[..., 2], p]
+    header = ",".join((*REQUIRED, PRESSURE))
+    rows = np.stack([c.ravel() for c in columns], axis=1)
+    np.savetxt(tmp_path / "motion.csv", rows, delimiter=",", header=header, comments="")
+    given = {"type": "kinematics", "file": str(tmp_path / "motion.csv"), "celerity_m_s": wave_speed(wave)}
+    airy = {"type": "airy", "height_m": H, "period_s": T, "stretching": "vertical"}
+    time = {"duration_s": 20.0, "step_s": 0.05}
+    spread = []
+    for waves in (given, airy):
+        scenario = read_scenario(scenario_file(waves=waves, water={"ends": {"pressure": 1}}, time=time))
+        spread.append(resultants(scenario)["water"])
+    # 40 samples a period here against 256 there: extremes differ by their place between samples
+    for k in (0, 4):
+        assert np.ptp(spread[0][:, k]) == pytest.approx(np.ptp(spread[1][:, k]), rel=0.01)
+    with pytest.raises(InputError, match="celerity_m_s: does not belong"):
+        read_scenario(scenario_file(waves={**airy, "celerity_m_s": 3.0}, water={}, time=time))
+    with pytest.raises(InputError, match="does not cover"):
+        long = read_scenario(scenario_file(waves=given, water={}, time={"duration_s": 60.0, "step_s": 0.05}))
+        resultants(long)
+
+
+def wave_speed(wave) -> float:
+    return float(wave.omega[0] / wave.k[0])

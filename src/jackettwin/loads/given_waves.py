@@ -76,6 +76,25 @@ def read_elevation(path: Path) -> Elevation:
     return Elevation(t, eta)
 
 
+def require_cover(elevation: Elevation, duration: float) -> None:
+    """Refuse an elevation that does not last for ``duration`` [s].
+
+    Raises
+    ------
+    InputError
+        If it is shorter by more than a second, or starts late.
+    """
+    t = elevation.time_s
+    if t[0] > 1e-6 or t[-1] < duration * (1.0 - 1e-3) - 1.0:
+        raise InputError(
+            "the elevation does not cover the simulation",
+            field="waves.file",
+            value=[float(t[0]), float(t[-1])],
+            allowed=f"0 to {duration:g} s, what is discarded included",
+            remedy="shorten time.duration_s, or give more of it",
+        )
+
+
 def given_sea(
     elevation: Elevation,
     *,
@@ -95,18 +114,10 @@ def given_sea(
     InputError
         If the elevation does not cover the duration.
     """
-    t = elevation.time_s
-    if t[0] > 1e-6 or t[-1] < duration * (1.0 - 1e-3) - 1.0:
-        raise InputError(
-            "the elevation does not cover the simulation",
-            field="waves.file",
-            value=[float(t[0]), float(t[-1])],
-            allowed=f"0 to {duration:g} s, what is discarded included",
-            remedy="shorten time.duration_s, or give more of it",
-        )
+    require_cover(elevation, duration)
     n = 2 * int(np.ceil(2.0 * highest_hz * duration))
     at = np.arange(n) * (duration / n)
-    lines = np.fft.rfft(np.interp(at, t, elevation.eta_m)) * (2.0 / n)
+    lines = np.fft.rfft(np.interp(at, elevation.time_s, elevation.eta_m)) * (2.0 / n)
     f = np.arange(lines.size) / duration
     kept = (f > 0.0) & (f <= highest_hz)
     heading = np.full(int(kept.sum()), direction)

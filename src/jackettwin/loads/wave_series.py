@@ -12,6 +12,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.loads.current import Current
 from jackettwin.loads.diffraction import scattered
 from jackettwin.loads.ends import Ends, end_forces
+from jackettwin.loads.given_kinematics import TravellingKinematics
 from jackettwin.loads.morison import MorisonPoints, above_bed, point_forces, wetness
 from jackettwin.loads.sea_series import sea_series
 from jackettwin.loads.waves import AirySea, Waves
@@ -83,7 +84,8 @@ def wave_series(
         Let members scatter waves by their own diameter (MacCamy & Fuchs); of Airy waves alone.
     """
     random = isinstance(waves, AirySea) and waves.omega.size > 1
-    n_times = 2 * int(np.ceil(0.5 * period / step)) if random else _REGULAR_SAMPLES
+    many = random or isinstance(waves, TravellingKinematics)
+    n_times = 2 * int(np.ceil(0.5 * period / step)) if many else _REGULAR_SAMPLES
     t = np.arange(n_times, dtype=np.float64) * (period / n_times)
     loads = np.zeros((n_times, columns.shape[1]))
     sigma = np.zeros(grid.weight.size)

@@ -12,6 +12,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
 from jackettwin.loads.current import Current
 from jackettwin.loads.files import read_rotor
+from jackettwin.loads.given_kinematics import Kinematics, read_kinematics
 from jackettwin.loads.given_waves import Elevation, read_elevation
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.waves import peak_factor
@@ -32,6 +33,7 @@ from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Structure, assemble
 
 REGULAR = ("airy", "stokes5", "stream")
+GIVEN = ("elevation", "kinematics")
 _GAP_M = 5.0
 """How far above the bed feet may end, as those of piles that stick out do."""
 _MOST_SAMPLES = 1e7
@@ -193,7 +195,8 @@ def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | No
     if w is None:
         return Sea(depth, coefficients, water, current=current, ends=ends)
     with located(field="waves"):
-        eta = _elevation(w, folder)
+        filed = _filed(w, folder)
+        eta = filed.elevation if isinstance(filed, Kinematics) else filed
         height, period = _size(w) if eta is None else (eta.significant_height_m, eta.peak_period_s)
         return Sea(
             depth_m=depth,
@@ -212,29 +215,35 @@ def _sea(schema: ScenarioSchema, structure: Structure, folder: Path) -> Sea | No
             current=current,
             ends=ends,
             elevation=eta,
+            kinematics=filed if isinstance(filed, Kinematics) else None,
+            celerity_m_s=w.celerity_m_s,
         )
 
 
-def _elevation(w: WavesSchema, folder: Path) -> Elevation | None:
-    """Return the elevation of waves that are given; refuse what does not belong to these."""
-    if (w.type == "elevation") != (w.file is not None):
+def _filed(w: WavesSchema, folder: Path) -> Elevation | Kinematics | None:
+    """Return what is given of waves by a file; refuse what does not belong to these."""
+    if (w.type in GIVEN) != (w.file is not None):
         raise InputError(
-            "a file belongs to waves of type elevation, and they need one",
+            "a file belongs to waves of type elevation or kinematics, and they need one",
             field="file",
             value=w.file,
-            remedy="give type: elevation and file, or height and period",
+            remedy="give type: elevation or kinematics and file, or height and period",
         )
-    if w.file is None:
-        return None
-    for name in ("height_m", "period_s", "hs_m", "tp_s", "gamma", "spreading"):
+    not_linear = () if w.type == "elevation" else ("stretching",)
+    others = ("celerity_m_s",) if w.type != "kinematics" else ()
+    if w.file is not None:
+        others = (*others, "height_m", "period_s", "hs_m", "tp_s", "gamma", "spreading", *not_linear)
+    for name in others:
         if getattr(w, name) is not None:
             raise InputError(
-                "does not belong to waves of type elevation",
+                f"does not belong to waves of type {w.type}",
                 field=name,
                 value=getattr(w, name),
-                remedy="leave it out: the file says it",
+                remedy="leave it out" if w.file is None else "leave it out: the file says it",
             )
-    return read_elevation(folder / w.file)
+    if w.file is None:
+        return None
+    return read_elevation(folder / w.file) if w.type == "elevation" else read_kinematics(folder / w.file)
 
 
 def depth_of(w: WaterSchema, structure: Structure) -> float:
@@ -280,7 +289,7 @@ def _size(w: WavesSchema) -> tuple[float, float]:
 
 def _scatters(w: WavesSchema) -> bool:
     """Return whether members scatter waves; steep ones have no theory of it here."""
-    if w.diffraction == "maccamy-fuchs" and w.type in ("stokes5", "stream"):
+    if w.diffraction == "maccamy-fuchs" and w.type in ("stokes5", "stream", "kinematics"):
         raise InputError(
             f"not known for waves of type {w.type}",
             field="diffraction",

@@ -13,6 +13,7 @@ from jackettwin.loads.bem import Control
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
 from jackettwin.loads.ends import EndCoefficients
+from jackettwin.loads.given_kinematics import Kinematics
 from jackettwin.loads.given_waves import Elevation
 from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
@@ -70,6 +71,10 @@ class Sea:
     ends: EndCoefficients = EndCoefficients()
     elevation: Elevation | None = None
     """Of waves that are given, from the start of what is discarded."""
+    kinematics: Kinematics | None = None
+    """Of waves whose whole motion is given; ``elevation`` is its own."""
+    celerity_m_s: float | None = None
+    """At which given kinematics travel; None is that of their peak period."""
 
 
 TOWER_DRAG = 0.5

@@ -70,10 +70,11 @@ class GroundSchema(Schema):
 
 
 class WavesSchema(Schema):
-    """``waves``: height and period of a regular wave, Hs and Tp of a random sea, or an elevation's file."""
+    """``waves``: height and period of a regular wave, Hs and Tp of a random sea, or a file."""
 
-    type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz", "elevation"]
+    type: Literal["airy", "stokes5", "stream", "jonswap", "pierson-moskowitz", "elevation", "kinematics"]
     file: str | None = None
+    celerity_m_s: Annotated[float, Field(gt=0.0, le=200.0)] | None = None
     height_m: Annotated[float, Field(gt=0.0, le=100.0)] | None = None
     period_s: Period | None = None
     hs_m: SignificantHeight | None = None

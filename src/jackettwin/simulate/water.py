@@ -10,11 +10,12 @@ from scipy.interpolate import CubicSpline
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.ends import Ends, member_ends
-from jackettwin.loads.given_waves import given_sea
+from jackettwin.loads.given_kinematics import Kinematics, TravellingKinematics
+from jackettwin.loads.given_waves import given_sea, require_cover
 from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
 from jackettwin.loads.regular_waves import regular_wave
 from jackettwin.loads.wave_series import WaveSeries, wave_series
-from jackettwin.loads.waves import Waves, airy_wave, irregular_sea
+from jackettwin.loads.waves import Waves, airy_wave, irregular_sea, wave_number
 from jackettwin.simulate.scenario import Sea
 from jackettwin.structure import Assembly
 
@@ -82,6 +83,8 @@ def wave_field(sea: Sea, *, duration: float) -> Waves | None:
             depth=sea.depth_m,
             direction=sea.direction,
         )
+    if sea.kinematics is not None:
+        return _travelling(sea, sea.kinematics, duration)
     if sea.elevation is not None:
         return given_sea(
             sea.elevation,
@@ -108,6 +111,13 @@ def wave_field(sea: Sea, *, duration: float) -> Waves | None:
         spreading=sea.spreading,
         stretching=sea.stretching,
     )
+
+
+def _travelling(sea: Sea, given: Kinematics, duration: float) -> TravellingKinematics:
+    require_cover(given.elevation, duration)
+    omega = 2.0 * np.pi / sea.period_s
+    c = sea.celerity_m_s or omega / float(wave_number(omega, sea.depth_m))
+    return TravellingKinematics(given, duration, c, sea.direction, sea.coefficients.density_kg_m3)
 
 
 def water_points(assembly: Assembly, sea: Sea, *, spacing: float | None = None) -> MorisonPoints:
