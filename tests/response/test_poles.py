@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.response.conftest import monopile_structure, on_law
 
+from jackettwin.response import poles
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Pencil, System, build_system
@@ -103,7 +104,7 @@ def assert_eigenpairs(system: System, modes: DampedModes) -> None:
         assert np.linalg.norm(F @ x) < 1e-9 * np.linalg.norm(abs(F) @ abs(x))
 
 
-@pytest.mark.parametrize("alpha", [0.06, 0.5])
+@pytest.mark.parametrize("alpha", [0.06, 0.5, 0.8])
 def test_springpot_poles_are_all_there(assembly, alpha: float) -> None:
     """As many as the argument principle counts, each at rest under Newton on the determinant."""
     law = Springpot(2.5e9, alpha, 1.15)
@@ -115,6 +116,19 @@ def test_springpot_poles_are_all_there(assembly, alpha: float) -> None:
     inside = np.abs(refined) < high
     assert zeros_above_the_real_axis(full, low, high) == inside.sum() == 3
     assert found.real_poles.size == 0
+
+
+@pytest.mark.parametrize("alpha", [0.03, 0.3, 0.7])
+def test_a_coarse_start_finds_what_a_fine_one_does(assembly, alpha: float, monkeypatch) -> None:
+    """Stiff and soft ground, up to the third bending modes: the same poles, and none twice."""
+    for k in (3e8, 5e9):
+        law = Springpot(k, alpha, 1.15)
+        pencil = build_system(assembly, on_law(assembly.structure, law), rayleigh=RAYLEIGH).pencil
+        found = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
+        with monkeypatch.context() as patched:
+            patched.setattr(poles, "_COARSE", poles._FINE)
+            fine = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
+        np.testing.assert_allclose(found, fine, rtol=1e-7)
 
 
 def test_springpot_with_exponent_zero_is_a_spring(monopile) -> None:

@@ -35,6 +35,14 @@ _AT_REST = 1e-10
 """A pole that a Newton step moves less than this (relative) is found."""
 _ROUNDING = 1e-7
 """What rounding may leave in a pole of a finely cut mesh, whose stiffness spans many decades."""
+_COARSE, _FINE = (1e-2, 10.0, 1), (1e-4, 1e3, 4)
+"""Fit of a springpot to start from: range over the radius and branches a decade. Every branch inside the disc
+brings a real pole for every degree of freedom it holds, and all of these have to be found: the coarse one
+(within 2 % of the law) costs what three Maxwell branches do, the fine one ten times that."""
+_OFF = 0.02
+"""By which the starts of a coarse law may miss."""
+_ALIKE = 0.9
+"""Cosine of two shapes of unit length from which they are one."""
 _CLUSTER = 1e-5
 """Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
 
@@ -47,21 +55,46 @@ def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
     NumericalError
         If the iteration does not converge or a refined pole does not come to rest.
     """
-    start = _finite(pencil, radius)
-    values, vectors = _poles_within(start, radius * (1.0 + _CLUSTER))
-    pairs: list[Pair] = []
-    for members in _clusters(values):
-        pairs += _refined(pencil, values[members], vectors[:, members], exact=start is pencil)
+    if all(isinstance(group.law, Prony) for group in pencil.groups):
+        pairs, _ = _from_start(pencil, pencil, radius)
+    else:
+        pairs, whole = _from_start(pencil, _finite(pencil, radius, _COARSE), radius)
+        if not whole:
+            pairs, _ = _from_start(pencil, _finite(pencil, radius, _FINE), radius)
     inside = [pair for pair in pairs if abs(pair[0]) <= radius and pair[0].imag >= -REAL * abs(pair[0])]
     return sorted(inside, key=lambda pair: abs(pair[0]))
 
 
-def _finite(pencil: Pencil, radius: float) -> Pencil:
-    """Return the pencil itself if every law is a Prony series, else one with the springpots fitted."""
-    if all(isinstance(group.law, Prony) for group in pencil.groups):
-        return pencil
+def _from_start(pencil: Pencil, start: Pencil, radius: float) -> tuple[list[Pair], bool]:
+    """Return the poles of ``pencil`` from those of ``start``, and whether each start had its own."""
+    # a start law is off by some hundredths: what it has just outside may lie inside
+    room = _CLUSTER if start is pencil else _OFF
+    values, vectors = _poles_within(start, radius * (1.0 + room))
+    pairs: list[Pair] = []
+    whole = True
+    for members in _clusters(values):
+        found = _refined(pencil, values[members], vectors[:, members], exact=start is pencil)
+        whole &= bool(found) or not values[members].imag.any()
+        pairs += found
+    return pairs, whole and not _doubled(pairs)
+
+
+def _doubled(pairs: list[Pair]) -> bool:
+    """Tell whether two starts came to one pole: the same value and the same shape."""
+    values = np.array([value for value, _ in pairs])
+    near = np.abs(values[:, None] - values) <= _ROUNDING * np.abs(values)
+    return any(
+        abs(np.vdot(pairs[i][1], pairs[j][1])) > _ALIKE
+        for i, j in zip(*np.nonzero(np.triu(near, 1)), strict=True)
+    )
+
+
+def _finite(pencil: Pencil, radius: float, fit: tuple[float, float, int]) -> Pencil:
+    """Return the pencil with every springpot fitted over a share of the radius, some branches a decade."""
+    low, high, per_decade = fit
+    hz = radius / (2.0 * pi)
     laws = [
-        prony_fit(group.law, 1e-4 * radius / (2.0 * pi), 1e3 * radius / (2.0 * pi))
+        prony_fit(group.law, low * hz, high * hz, per_decade)
         if isinstance(group.law, Springpot)
         else group.law
         for group in pencil.groups
