@@ -10,6 +10,7 @@ from jackettwin.version import __version__
 COMMANDS = {
     "run": "Go from records to modes to updated supports: report.html, result.json, figures.",
     "init": "Write a commented twin file for STRUCTURE and RECORDS, check it, and say what is missing.",
+    "compare": "Say what changed from run A to run B, and by how much of its uncertainty.",
     "verify": "Recompute every published number of the thesis; exit 1 if one fails.",
     "modes": "Undamped and damped modes of STRUCTURE: a shipped name, a YAML file, or a SubDyn .dat file.",
     "identify": "Identify the modes of RECORDS: files, or folders of files.",

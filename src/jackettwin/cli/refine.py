@@ -40,5 +40,12 @@ def refine_command(file: Path, as_json: bool) -> None:
             values = (f"{m[key]:.4f}" for key in ("target_hz", "before_hz", "after_hz"))
             table.add_row(str(m["mode"]), *values, f"{error:+.2f}")
         output.print(table)
+        for m in entry["modes"]:
+            if m["worse"]:
+                before, after = (100 * (m[key] / m["target_hz"] - 1.0) for key in ("before_hz", "after_hz"))
+                output.print(
+                    f"warning: mode {m['mode']} is met worse than before: {before:+.2f} % became {after:+.2f} %; "
+                    "leave it out of frequency_hz, or free other steel"
+                )
     block = {"structure": {"source": "…", "steel": document["steel"]}}
     output.print(yaml.safe_dump(block, sort_keys=False, allow_unicode=True), end="")

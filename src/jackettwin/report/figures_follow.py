@@ -10,6 +10,11 @@ from jackettwin.report import style
 from jackettwin.report.numbers import words
 from jackettwin.twin.followed import Followed
 
+_DAY_MS = 86_400_000
+"""A day on a time axis [ms]."""
+_FEW_DAYS = 10
+"""Days up to which each has its own tick: an axis in hours says nothing of days."""
+
 
 def parameters_through_time(followed: Followed) -> go.Figure:
     """Draw every parameter of the model after each day with its 90 % interval, and the fitted slope."""
@@ -27,7 +32,9 @@ def parameters_through_time(followed: Followed) -> go.Figure:
             row=row,
             col=1,
         )
-    figure.update_xaxes(title="time (UTC)", row=len(names), col=1)
+    figure.update_xaxes(type="date", tickformat="%d %b\n%Y", row=len(names), col=1, title="day (UTC)")
+    if len(followed.days) <= _FEW_DAYS:
+        figure.update_xaxes(dtick=_DAY_MS)
     return style.finish(figure, height=max(360, 240 * len(names)))
 
 
@@ -53,7 +60,7 @@ def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         return
     times = [day.time_utc for day in followed.days]
     median, low, high = followed.drift.line(name, followed.days_since_first).T
-    colour = style.VERMILLION if followed.drift.detected else style.GREY
+    colour = style.GREY
     figure.add_scatter(
         x=[*times, *times[::-1]],
         y=[*high, *low[::-1]],

@@ -19,8 +19,8 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
         If the file cannot be written.
     """
     caption = (
-        "What is known of each parameter from all records up to each day. Band: one "
-        "slope of all stiffness fitted to the data of all days at once; red if it is no chance."
+        "Does the ground drift? What is known of each parameter from all records up to each day; band: one "
+        "slope of all stiffness, 90 %, fitted to the data of all days at once."
     )
     sections = [
         Section(
@@ -50,10 +50,10 @@ def _table(followed: Followed) -> Block:
         for name in names:
             low, high = day.interval_90[name]
             cells.append(f"{day.median[name]:.3g} ({low:.3g} to {high:.3g})")
-        rows.append((f"{day.time_utc:%Y-%m-%d %H:%M}", str(day.records), day.status, *cells))
+        rows.append((f"{day.time_utc:%Y-%m-%d}", str(day.records), day.status, *cells))
     return Table(
-        "Median and 90 % interval of every parameter after each day.",
-        ("time (UTC)", "records", "posterior", *units),
+        "What was known after each day? Median and 90 % interval of every parameter.",
+        ("day (UTC)", "records", "posterior", *units),
         tuple(rows),
         text_columns=3,
     )

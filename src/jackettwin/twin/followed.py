@@ -97,10 +97,14 @@ class Followed:
         slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
         found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
         change = "changes" if len(self.stiffness) == 1 else "change"
-        return (
+        said = (
             f"{found}: {' and '.join(self.stiffness)} {change} by {slope:+.2g} % a day, 90 % interval "
             f"{low:+.2g} to {high:+.2g} %, over {self.days_since_first[-1]:.3g} days."
         )
+        if self.drift.detected:
+            return said
+        most = max(abs(low), abs(high))
+        return f"{said} A drift of more than {most:.2g} % a day would have been seen."
 
 
 def since_first(times: Sequence[datetime]) -> FloatArray:

@@ -15,6 +15,9 @@ from jackettwin.twin.schema import StructureOrName
 from jackettwin.updating.refinement import Refinement, Stage
 from jackettwin.updating.steel import Factor
 
+WORSE = 1e-3
+"""Relative misfit by which a mode must be met worse than before to be named: least squares trade less."""
+
 Positive = Annotated[float, Field(gt=0.0)]
 
 
@@ -78,7 +81,13 @@ def refinement_document(result: Refinement) -> dict[str, Any]:
             {
                 "factors": dict(fit.factors),
                 "modes": [
-                    {"mode": mode, "target_hz": target, "before_hz": before, "after_hz": after}
+                    {
+                        "mode": mode,
+                        "target_hz": target,
+                        "before_hz": before,
+                        "after_hz": after,
+                        "worse": abs(after / target - 1.0) > abs(before / target - 1.0) + WORSE,
+                    }
                     for mode, target, before, after in zip(
                         fit.modes,
                         fit.target_hz.tolist(),

@@ -1,0 +1,83 @@
+"""``jackettwin compare``: what changed between two runs."""
+
+from __future__ import annotations
+
+import json
+from math import expm1
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.table import Table
+
+from jackettwin.answers.compare import Change, compare
+from jackettwin.cli.console import number, output, print_json
+from jackettwin.errors import InputError
+
+
+@click.command("compare")
+@click.argument("a", type=click.Path(path_type=Path))
+@click.argument("b", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def compare_command(a: Path, b: Path, as_json: bool) -> None:
+    """Say what changed from run A to run B, and by how much of its uncertainty.
+
+    A and B are folders that `jackettwin run` wrote, or their result.json.
+    """
+    before, after = _result(a), _result(b)
+    changes = compare(before, after)
+    if as_json:
+        print_json(
+            {
+                "changes": [
+                    {
+                        "what": c.what,
+                        "unit": c.unit,
+                        "before": c.before,
+                        "after": c.after,
+                        "relative_change": None if c.log_change is None else expm1(c.log_change),
+                        "sigmas": c.sigmas,
+                        "verdict": c.verdict,
+                    }
+                    for c in changes
+                ],
+                "headline": {"before": before.get("headline"), "after": after.get("headline")},
+            }
+        )
+        return
+    output.print(_summary(changes))
+    table = Table("what", "before", "after", "change [%]", "over its σ", "verdict")
+    for c in changes:
+        moved = None if c.log_change is None else 100.0 * expm1(c.log_change)
+        unit = "" if c.unit == "-" else f" {c.unit}"
+        table.add_row(
+            f"{c.what}{unit and f' [{c.unit}]'}",
+            number(c.before),
+            number(c.after),
+            "–" if moved is None else f"{moved:+.2g}",
+            "–" if c.sigmas is None else f"{c.sigmas:+.1f}",
+            c.verdict,
+        )
+    output.print(table)
+
+
+def _summary(changes: tuple[Change, ...]) -> str:
+    """Return what changed in a sentence, most first."""
+    changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
+    if not changed:
+        return "Nothing changed by more than two standard deviations of the difference."
+    texts = [f"{c.what} by {100.0 * expm1(c.log_change or 0.0):+.2g} % ({c.sigmas:+.1f} σ)" for c in changed]
+    return f"Changed: {', '.join(texts)}."
+
+
+def _result(path: Path) -> dict[str, Any]:
+    file = path / "result.json" if path.is_dir() else path
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError("no such run", file=file, remedy="a folder that `jackettwin run` wrote") from None
+    except (json.JSONDecodeError, UnicodeDecodeError):
+        document = None
+    if not isinstance(document, dict) or "updates" not in document:
+        raise InputError("not the result of a run", file=file, remedy="result.json of `jackettwin run`")
+    return document

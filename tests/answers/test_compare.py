@@ -1,0 +1,66 @@
+"""Two runs compared: closed forms of the difference of two logarithms."""
+
+from __future__ import annotations
+
+import json
+from math import log
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.answers.compare import change, compare
+from jackettwin.cli import main
+
+
+def document(f: float, k: float) -> dict:
+    return {
+        "modes": [
+            {"label": "fore_aft_1", "frequency_hz": f, "frequency_std_hz": 0.001 * f, "damping_ratio": 0.01,
+             "damping_ratio_std": None},
+        ],
+        "updates": [
+            {"law": "zener", "parameters": {}},
+            {"law": "maxwell-3", "parameters": {"k": {"value": 9.9, "median": k, "interval_90": [k / 1.2, k * 1.2],
+                                                      "unit": "N/m"}}},
+        ],
+        "answers": {"law": "maxwell-3"},
+        "headline": ["…"],
+    }  # fmt: skip
+
+
+def test_a_change_is_measured_in_its_own_uncertainty() -> None:
+    """Ln 1.01 over √2 · 0.001."""
+    found = change("f", "Hz", (0.2, 0.001), (0.202, 0.001))
+    assert found.sigmas == pytest.approx(log(1.01) / (2**0.5 * 0.001))
+    assert found.verdict == "changed"
+    assert change("f", "Hz", (0.2, 0.01), (0.202, 0.01)).verdict == "within its uncertainty"
+    # turned round, the sign turns
+    assert change("f", "Hz", (0.202, 0.001), (0.2, 0.001)).sigmas == pytest.approx(-(found.sigmas or 0.0))
+
+
+def test_what_only_one_run_has_is_new_or_gone() -> None:
+    assert change("f", "Hz", None, (0.2, 0.001)).verdict == "new"
+    assert change("f", "Hz", (0.2, 0.001), None).verdict == "gone"
+    assert change("f", "Hz", (0.2, None), (0.3, 0.1)).verdict == "not known: no uncertainty"
+
+
+def test_the_median_of_the_recommended_law_is_compared() -> None:
+    by = {c.what: c for c in compare(document(0.2, 1e9), document(0.2, 2e9))}
+    assert set(by) == {"frequency of fore_aft_1", "damping ratio of fore_aft_1", "k (maxwell-3)"}
+    assert by["frequency of fore_aft_1"].verdict == "the same"
+    k = by["k (maxwell-3)"]
+    assert (k.before, k.after, k.verdict) == (1e9, 2e9, "changed")
+
+
+def test_the_command_names_what_changed_and_refuses_what_is_no_run(tmp_path: Path) -> None:
+    for name, (f, k) in {"a": (0.2, 1e9), "b": (0.21, 1e9)}.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "result.json").write_text(json.dumps(document(f, k)))
+    a, b = str(tmp_path / "a"), str(tmp_path / "b")
+    said = CliRunner().invoke(main, ["compare", a, b]).stdout
+    assert "Changed: frequency of fore_aft_1 by +5 %" in said
+    changes = json.loads(CliRunner().invoke(main, ["compare", a, b, "--json"]).stdout)["changes"]
+    assert changes[0]["relative_change"] == pytest.approx(0.05)
+    refused = CliRunner().invoke(main, ["compare", a, str(tmp_path / "c")])
+    assert refused.exit_code == 2 and "no such run" in refused.stderr
