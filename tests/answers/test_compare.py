@@ -14,6 +14,7 @@ from jackettwin.cli import main
 
 
 def document(f: float, k: float) -> dict:
+    k_known = {"value": 9.9, "median": k, "interval_90": [k / 1.2, k * 1.2], "unit": "N/m"}
     return {
         "modes": [
             {"label": "fore_aft_1", "frequency_hz": f, "frequency_std_hz": 0.001 * f, "damping_ratio": 0.01,
@@ -21,8 +22,7 @@ def document(f: float, k: float) -> dict:
         ],
         "updates": [
             {"law": "zener", "parameters": {}},
-            {"law": "maxwell-3", "parameters": {"k": {"value": 9.9, "median": k, "interval_90": [k / 1.2, k * 1.2],
-                                                      "unit": "N/m"}}},
+            {"law": "maxwell-3", "parameters": {"k": k_known}},
         ],
         "answers": {"law": "maxwell-3"},
         "headline": ["…"],

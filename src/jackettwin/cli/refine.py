@@ -44,8 +44,8 @@ def refine_command(file: Path, as_json: bool) -> None:
             if m["worse"]:
                 before, after = (100 * (m[key] / m["target_hz"] - 1.0) for key in ("before_hz", "after_hz"))
                 output.print(
-                    f"warning: mode {m['mode']} is met worse than before: {before:+.2f} % became {after:+.2f} %; "
-                    "leave it out of frequency_hz, or free other steel"
+                    f"warning: mode {m['mode']} is met worse than before: {before:+.2f} % became "
+                    f"{after:+.2f} %; leave it out of frequency_hz, or free other steel"
                 )
     block = {"structure": {"source": "…", "steel": document["steel"]}}
     output.print(yaml.safe_dump(block, sort_keys=False, allow_unicode=True), end="")
