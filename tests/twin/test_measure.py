@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -61,3 +62,14 @@ def test_without_any_record_the_first_reason_is_raised(config: TwinConfig, tmp_p
     # a name that is wrong is no record
     with pytest.raises(InputError, match="no such file"):
         measured(replace(config, records=(config.records[0], tmp_path / "missing.parquet")))
+
+
+def test_a_renamed_copy_counts_once_and_is_named(config: TwinConfig, tmp_path: Path) -> None:
+    first = config.records[0]
+    for ending in (".parquet", ".json"):
+        shutil.copy(first.with_suffix(ending), tmp_path / f"copy{ending}")
+    once = measured(replace(config, records=(first,)))
+    twice = measured(replace(config, records=(first, tmp_path / "copy.parquet")))
+    assert twice.state == once.state
+    assert [seen.name for seen in twice.observations] == [first.stem]
+    assert [(f.code, f.subject) for f in twice.findings] == [("record_doubled", "copy")]

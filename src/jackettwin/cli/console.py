@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -61,6 +62,7 @@ class Commands(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; turn errors into one message and an exit code."""
+        _hear()
         try:
             return super().invoke(ctx)
         except InputError as error:
@@ -89,6 +91,22 @@ class Commands(click.Group):
                 soft_wrap=True,
             )
             ctx.exit(OUR_FAULT)
+
+
+class _Messages(logging.Handler):
+    """Prints what the package logs among the messages."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print one line."""
+        messages.print(record.getMessage(), soft_wrap=True, markup=False)
+
+
+def _hear() -> None:
+    """Print what the computing part logs; a server says for itself where its log goes."""
+    log = logging.getLogger("jackettwin.response")
+    if not log.handlers:
+        log.addHandler(_Messages())
+        log.setLevel(logging.INFO)
 
 
 def _plain(text: str) -> str:

@@ -12,7 +12,9 @@ springpot has no real poles but a branch cut; the contour goes around it.
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
+from functools import cache
 from math import pi
 from typing import Any
 
@@ -24,6 +26,8 @@ from jackettwin.response.state import state_matrix
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, law_stiffness
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 from jackettwin.structure.damping import Rayleigh
+
+log = logging.getLogger(__name__)
 
 _INNER = 0.9
 """The disc ends between this share of the band and the band's end, where there is most room."""
@@ -103,10 +107,13 @@ def real_poles(model: Condensed, rows: FloatArray, rayleigh: FloatArray, found: 
     return np.array(sorted(result, key=abs))
 
 
+@cache
 def kernels() -> Any:
     """Return the compiled part, imported when first needed: it brings a compiler along."""
     from jackettwin.response import condensed_kernels
 
+    if not condensed_kernels.compiled_before():
+        log.info("the numerical kernels are compiled, once after an installation: half a minute")
     return condensed_kernels
 
 

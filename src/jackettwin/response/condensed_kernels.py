@@ -15,11 +15,17 @@ One file on purpose: compiled code on disk is renewed when its own file changes,
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from numba import njit
 
 # sums may be regrouped for speed, but signed zeros stay: they tell the sides of the branch cut apart
-compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+_HOW = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
+compiled = njit(cache=True, **_HOW)
+"""For what Python calls."""
+inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
+"""For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
 
 _MAX_STEPS = 30
 _MAX_DEPTH = 24
@@ -41,7 +47,14 @@ _EQUAL = 1e-9
 """Poles nearer than this (relative) are one multiple pole."""
 
 
-@compiled
+def compiled_before() -> bool:
+    """Tell whether what is compiled for this file lies on disk, so that nothing is compiled again."""
+    written = Path(__file__).stat().st_mtime
+    kept = Path(refine.stats.cache_path).glob("condensed_kernels.refine-*.nbi")
+    return any(file.stat().st_mtime >= written for file in kept)
+
+
+@inner
 def _law(row, s):
     """Return D(s) and dD/ds."""
     d = row[0] + (row[1] + row[5] * s) * s
@@ -58,10 +71,11 @@ def _law(row, s):
     return d, dd
 
 
-@compiled
+@inner
 def law_derivatives(row, s, out):
     """Fill ∂D(s)/∂row."""
-    out[:] = 0.0
+    for j in range(out.size):
+        out[j] = 0.0
     out[0] = 1.0
     out[1] = s
     out[5] = s * s
@@ -77,13 +91,14 @@ def law_derivatives(row, s, out):
         out[j + 1] = row[j] * s * u * u
 
 
-@compiled
+@inner
 def _structure(model, mu, s0, s1):
     """Fill S0(μ) and dS0/dμ, packed; return nothing."""
     terms, n_moments, mid = model[0], model[1], model[2]
     n_pairs = terms.shape[1]
-    s0[:] = 0.0
-    s1[:] = 0.0
+    for p in range(n_pairs):
+        s0[p] = 0.0
+        s1[p] = 0.0
     power = 1.0 + 0.0j
     for t in range(terms.shape[0]):
         if t == 0:
@@ -128,8 +143,10 @@ def fill(model, rows, a, b, s, F, dF, s0, s1):
             dF[i, nb + j] = dq * P[i, j]
             F[nb + j, i] = F[i, nb + j]
             dF[nb + j, i] = dF[i, nb + j]
-    F[nb:, nb:] = 0.0
-    dF[nb:, nb:] = 0.0
+    for j in range(nr):
+        for i in range(nr):
+            F[nb + i, nb + j] = 0.0
+            dF[nb + i, nb + j] = 0.0
     for j in range(nr):
         F[nb + j, nb + j] = q + t * w2[j]
         dF[nb + j, nb + j] = dq + b * w2[j]
@@ -144,7 +161,30 @@ def fill(model, rows, a, b, s, F, dF, s0, s1):
     return mu
 
 
-@compiled
+@inner
+def _copy(A, B):
+    """Fill the corner of B that is as large as A with A."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            B[i, j] = A[i, j]
+
+
+@inner
+def _count_from(start, numbers):
+    """Fill numbers with start, start + 1 and so on."""
+    for k in range(numbers.size):
+        numbers[k] = start + k
+
+
+@inner
+def _mirror(G, n):
+    """Copy the upper triangle of the leading n × n of G to the lower one."""
+    for i in range(n):
+        for k in range(i):
+            G[i, k] = G[k, i]
+
+
+@inner
 def eliminate(F, w2, place, G):
     """Eliminate retained modes from F; return the size of what is left in G and the phase of their pivots.
 
@@ -158,17 +198,18 @@ def eliminate(F, w2, place, G):
     for i in range(1, nr):
         for j in range(i):
             if F[nb + i, nb + j] != 0.0:
-                G[:, :] = F
-                place[:] = np.arange(nb, nb + nr)
+                _copy(F, G)
+                _count_from(nb, place)
                 return nb + nr, phase
-    G[:nb, :nb] = F[:nb, :nb]
+    _copy(F[:nb, :nb], G)
     for j in range(nr):
         pivot = F[nb + j, nb + j]
         if abs(pivot) < _NEAR * w2[j]:
             place[j] = m
-            G[:nb, m] = F[:nb, nb + j]
-            G[m, :nb] = F[:nb, nb + j]
-            G[m, nb:m], G[nb:m, m], G[m, m] = 0.0, 0.0, pivot
+            for i in range(m):
+                G[i, m] = F[i, nb + j] if i < nb else 0.0
+                G[m, i] = G[i, m]
+            G[m, m] = pivot
             m += 1
             continue
         place[j] = -1
@@ -178,13 +219,11 @@ def eliminate(F, w2, place, G):
             f = F[i, nb + j] * inverse
             for k in range(i, nb):
                 G[i, k] -= f * F[k, nb + j]
-    for i in range(nb):
-        for k in range(i):
-            G[i, k] = G[k, i]
+    _mirror(G, nb)
     return m, phase
 
 
-@compiled
+@inner
 def solve_eliminated(F, place, G, m, pivot, x, z):
     """Overwrite x with F⁻¹x from the factors of what :func:`eliminate` left; ``z`` is room for m numbers."""
     nr = place.size
@@ -211,7 +250,7 @@ def solve_eliminated(F, place, G, m, pivot, x, z):
         x[nb + j] -= force / F[nb + j, nb + j]
 
 
-@compiled
+@inner
 def factor(A, n, pivot):
     """Factor the leading n × n of A = PLU in place; return the phase of its determinant (0 if singular)."""
     phase = 1.0 + 0.0j
@@ -239,7 +278,7 @@ def factor(A, n, pivot):
     return phase
 
 
-@compiled
+@inner
 def solve(A, n, pivot, x):
     """Overwrite x (n,) with A⁻¹x from the factors of :func:`factor`."""
     for k in range(n):
@@ -254,7 +293,7 @@ def solve(A, n, pivot, x):
         x[i] /= A[i, i]
 
 
-@compiled
+@inner
 def times(A, x, y):
     """Fill y with A x; return xᵀAx."""
     total = 0.0j
@@ -267,7 +306,7 @@ def times(A, x, y):
     return total
 
 
-@compiled
+@inner
 def _product(x, y):
     """Return xᵀy."""
     total = 0.0j
@@ -276,29 +315,31 @@ def _product(x, y):
     return total
 
 
-@compiled
+@inner
 def _matrices(n):
     """Return room for F, dF/ds and what elimination leaves of F."""
     shape = (n, n)
     return np.empty(shape, np.complex128), np.empty(shape, np.complex128), np.empty(shape, np.complex128)
 
 
-@compiled
+@inner
 def _normalise(x):
     size = 0.0
     for i in range(x.size):
         size += x[i].real ** 2 + x[i].imag ** 2
-    x *= 1.0 / np.sqrt(size)
+    size = 1.0 / np.sqrt(size)
+    for i in range(x.size):
+        x[i] *= size
 
 
-@compiled
+@inner
 def _bounded(step, s):
     """Return the step, no longer than a third of |s|."""
     size, most = abs(step), 0.3 * abs(s)
     return step * (most / size) if size > most else step
 
 
-@compiled
+@inner
 def _room(model, size):
     """Return what refining ``size`` poles together works with."""
     n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
@@ -309,7 +350,7 @@ def _room(model, size):
     return F, dF, G, s0, s1, pivot, place, U, W, np.empty(n, np.complex128)
 
 
-@compiled
+@inner
 def _refine_one(model, laws, a, b, s, x, tolerance, room, fresh):
     """Refine one start by inverse iteration with the Rayleigh functional (cubic: F is symmetric); x in place.
 
@@ -330,12 +371,14 @@ def _refine_one(model, laws, a, b, s, x, tolerance, room, fresh):
         left, _ = eliminate(F, w2, place, G)
         if factor(G, left, pivot) == 0.0:
             return s, True
-        u[:] = y
+        for i in range(y.size):
+            u[i] = y[i]
         solve_eliminated(F, place, G, left, pivot, u, z)
         top = _product(u, y)
         step = top / times(dF, u, y)
         _normalise(u)
-        x[:] = u
+        for i in range(u.size):
+            x[i] = u[i]
         if not np.isfinite(abs(step)):
             return s, False
         step = _bounded(step, s)
@@ -345,7 +388,16 @@ def _refine_one(model, laws, a, b, s, x, tolerance, room, fresh):
     return s, False
 
 
-@compiled
+@inner
+def _mean(values):
+    """Return the mean."""
+    total = 0.0j
+    for i in range(values.size):
+        total += values[i]
+    return total / values.size
+
+
+@inner
 def _orthonormalise(U, W):
     """Make the rows of U orthonormal, the rows of W following."""
     for j in range(U.shape[0]):
@@ -354,23 +406,37 @@ def _orthonormalise(U, W):
                 c = 0.0j
                 for k in range(U.shape[1]):
                     c += np.conj(U[i, k]) * U[j, k]
-                U[j] -= c * U[i]
-                W[j] -= c * W[i]
+                for k in range(U.shape[1]):
+                    U[j, k] -= c * U[i, k]
+                    W[j, k] -= c * W[i, k]
         size = 0.0
         for k in range(U.shape[1]):
             size += U[j, k].real ** 2 + U[j, k].imag ** 2
-        U[j] *= 1.0 / np.sqrt(size)
-        W[j] *= 1.0 / np.sqrt(size)
+        size = 1.0 / np.sqrt(size)
+        for k in range(U.shape[1]):
+            U[j, k] *= size
+            W[j, k] *= size
 
 
-@compiled
+@inner
 def _small_eigen(A, B):
     """Return δ and Y of A y = δ B y; NaN if B is singular. Two by two, as most are, in closed form."""
     m = A.shape[0]
     if m > 2:
-        if not (np.isfinite(A).all() and np.isfinite(B).all()) or abs(np.linalg.det(B)) == 0.0:
-            return np.full(m, np.nan + 0.0j), A
-        return np.linalg.eig(np.linalg.solve(B, A))
+        pivot, column = np.empty(m, np.int64), np.empty(m, np.complex128)
+        finite = factor(B, m, pivot) != 0.0
+        for j in range(m):
+            for i in range(m):
+                column[i] = A[i, j]
+            solve(B, m, pivot, column)
+            for i in range(m):
+                A[i, j] = column[i]
+                finite &= np.isfinite(abs(column[i]))
+        if not finite:
+            for i in range(m):
+                column[i] = complex(np.nan, 0.0)
+            return column, A
+        return np.linalg.eig(A)
     inverse = 1.0 / (B[0, 0] * B[1, 1] - B[0, 1] * B[1, 0])
     c00 = (B[1, 1] * A[0, 0] - B[0, 1] * A[1, 0]) * inverse
     c01 = (B[1, 1] * A[0, 1] - B[0, 1] * A[1, 1]) * inverse
@@ -386,7 +452,20 @@ def _small_eigen(A, B):
     return delta, Y
 
 
-@compiled
+@inner
+def _mix(U, Y, vectors):
+    """Fill the rows of ``vectors`` with YᵀU, each of unit norm."""
+    m, n = U.shape
+    for j in range(m):
+        for k in range(n):
+            total = 0.0j
+            for i in range(m):
+                total += Y[i, j] * U[i, k]
+            vectors[j, k] = total
+        _normalise(vectors[j])
+
+
+@inner
 def _ritz(dF, U, W, y, s, values, vectors):
     """Fill the Rayleigh–Ritz values and vectors about s in the span of U (W is F U); return their step."""
     m = values.size
@@ -401,28 +480,23 @@ def _ritz(dF, U, W, y, s, values, vectors):
                 A[i, j] -= U[i, k] * W[j, k]
                 B[i, j] += U[i, k] * y[k]
     delta, Y = _small_eigen(A, B)
-    step, spread = delta.mean(), 0.0
+    step, spread = _mean(delta), 0.0
     for j in range(m):
         spread = max(spread, abs(delta[j] - step))
     if not np.isfinite(spread):
         return complex(np.nan, 0.0)
-    delta -= step
-    step = _bounded(step, s)
-    if spread > 0.3 * abs(s):
-        delta *= 0.3 * abs(s) / spread
-    vectors[:] = U
+    middle, step = step, _bounded(step, s)
+    shrunk = 0.3 * abs(s) / spread if spread > 0.3 * abs(s) else 1.0
+    for j in range(m):
+        values[j] = s + step + shrunk * (delta[j] - middle)
+        vectors[j] = U[j]
     if spread > _EQUAL * abs(s):
         # vectors of equal values would be rounding's, and might be parallel
-        vectors[:] = 0.0
-        for j in range(m):
-            for i in range(m):
-                vectors[j] += Y[i, j] * U[i]
-            _normalise(vectors[j])
-    values[:] = s + step + delta
+        _mix(U, Y, vectors)
     return step
 
 
-@compiled
+@inner
 def _refine_together(model, laws, a, b, values, vectors, tolerance, room, fresh):
     """Refine nearly equal poles by block inverse iteration about their mean; return whether it came to rest.
 
@@ -431,9 +505,9 @@ def _refine_together(model, laws, a, b, values, vectors, tolerance, room, fresh)
     """
     F, dF, G, s0, s1, pivot, place, every_U, every_W, z = room
     m, w2 = values.size, model[4]
-    U, W, y = every_U[:m], every_W[:m], np.empty_like(z)
+    U, W, y = every_U[:m], every_W[:m], np.empty(z.size, np.complex128)
     for round_ in range(0 if fresh else 1, _MAX_STEPS):
-        s = values.mean()
+        s = _mean(values)
         fill(model, laws, a, b, s, F, dF, s0, s1)
         if round_ == 0:
             for j in range(m):
@@ -456,7 +530,23 @@ def _refine_together(model, laws, a, b, values, vectors, tolerance, room, fresh)
     return False
 
 
-@compiled
+@inner
+def _exchange(values, shapes, a, b):
+    """Let two modes take each other's place."""
+    values[a], values[b] = values[b], values[a]
+    for i in range(shapes.shape[1]):
+        shapes[a, i], shapes[b, i] = shapes[b, i], shapes[a, i]
+
+
+@inner
+def _take(values, shapes, i, other_values, other_shapes, j):
+    """Copy mode i to the place j of others."""
+    other_values[j] = values[i]
+    for k in range(shapes.shape[1]):
+        other_shapes[j, k] = shapes[i, k]
+
+
+@inner
 def _next_cluster(values, start, stop, near):
     """Return where the poles that follow ``start``, each within ``near`` (relative) of the last, end."""
     end = start + 1
@@ -465,7 +555,7 @@ def _next_cluster(values, start, stop, near):
     return end
 
 
-@compiled
+@inner
 def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     """Refine poles of one cluster: first together, then those that stand clear of the others alone.
 
@@ -477,9 +567,10 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
         return done
     if not _refine_together(model, laws, a, b, values, vectors, _COARSE, room, True):
         return False
-    order = np.argsort(np.abs(values))
-    values[:] = values[order]
-    vectors[:] = vectors[order]
+    for i in range(1, m):
+        for j in range(i, 0, -1):
+            if abs(values[j]) < abs(values[j - 1]):
+                _exchange(values, vectors, j, j - 1)
     i = 0
     while i < m:
         j = _next_cluster(values, i, m, _INSEPARABLE)
@@ -493,6 +584,21 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     return True
 
 
+@inner
+def _known(values, first, last, at):
+    """Fill ``at`` with the places of what is finite, in the order of its size; return how many there are."""
+    m = 0
+    for i in range(first, last):
+        if np.isfinite(abs(values[i])):
+            j = m
+            while j > 0 and abs(values[at[j - 1]]) > abs(values[i]):
+                at[j] = at[j - 1]
+                j -= 1
+            at[j] = i
+            m += 1
+    return m
+
+
 @compiled
 def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
     """Refine starts of every set in place; those of one family that are near each other go together.
@@ -503,7 +609,7 @@ def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
     n_sets, n_modes = values.shape
     room = _room(model, n_modes)
     done = np.zeros((n_sets, n_modes), np.bool_)
-    own = np.empty(n_modes, np.complex128)
+    own, at = np.empty(n_modes, np.complex128), np.empty(n_modes, np.int64)
     x = np.empty((n_modes, vectors.shape[2]), np.complex128)
     for k in range(n_sets):
         first = 0
@@ -511,27 +617,25 @@ def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
             last = first + 1
             while last < n_modes and family[last] == family[first]:
                 last += 1
-            known = first + np.flatnonzero(np.isfinite(np.abs(values[k, first:last])))
-            known = known[np.argsort(np.abs(values[k][known]))]
-            for i in range(known.size):
-                own[i] = values[k, known[i]]
-                x[i] = vectors[k, known[i]]
+            m = _known(values[k], first, last, at)
+            for i in range(m):
+                _take(values[k], vectors[k], at[i], own, x, i)
             i = 0
-            while i < known.size:
-                j = _next_cluster(own, i, known.size, near)
+            while i < m:
+                j = _next_cluster(own, i, m, near)
                 ok = _refine_cluster(
                     model, rows[k], rayleigh[k, 0], rayleigh[k, 1], own[i:j], x[i:j], tolerance, room
                 )
-                done[k][known[i:j]] = ok
+                for n in range(i, j):
+                    done[k, at[n]] = ok
                 i = j
-            for i in range(known.size):
-                values[k, known[i]] = own[i]
-                vectors[k, known[i]] = x[i]
+            for i in range(m):
+                _take(own, x, i, values[k], vectors[k], at[i])
             first = last
     return done
 
 
-@compiled
+@inner
 def _weighed(M, x, y):
     """Fill y with M x; M is real."""
     for i in range(x.size):
@@ -541,7 +645,7 @@ def _weighed(M, x, y):
         y[i] = total
 
 
-@compiled
+@inner
 def _likeness(x, y):
     """Return xᴴy."""
     total = 0.0j
@@ -550,7 +654,7 @@ def _likeness(x, y):
     return total
 
 
-@compiled
+@inner
 def _members(family, values, first, own):
     """Fill ``own`` with the known modes of the family that begins at ``first``.
 
@@ -565,7 +669,7 @@ def _members(family, values, first, own):
     return m, last
 
 
-@compiled
+@inner
 def _among(M, starts, shapes, own, m, heavy, room, pivot):
     """Return the least share, by mass, of any of m modes that lies in the space of their starts."""
     gram, part, across = room[: m * m].reshape(m, m), room[m * m : m * (m + 1)], room[m * (m + 1) :]
@@ -615,15 +719,7 @@ def recognised(M, family, starts, values, shapes, least, same):
     return good
 
 
-@compiled
-def _exchange(values, shapes, a, b):
-    """Let two modes take each other's place."""
-    values[a], values[b] = values[b], values[a]
-    for i in range(shapes.shape[1]):
-        shapes[a, i], shapes[b, i] = shapes[b, i], shapes[a, i]
-
-
-@compiled
+@inner
 def _sort(own, m, values, shapes):
     """Put m modes in the order of |λ|."""
     for i in range(1, m):
@@ -632,7 +728,7 @@ def _sort(own, m, values, shapes):
                 _exchange(values, shapes, own[j], own[j - 1])
 
 
-@compiled
+@inner
 def _name(like, own, m, values, shapes, likeness):
     """Put each of m modes of a family in the place it resembles most.
 
@@ -657,7 +753,7 @@ def _name(like, own, m, values, shapes, likeness):
                     better = True
 
 
-@compiled
+@inner
 def _turn(like, own, m, values, shapes):
     """Mix m modes of a multiple pole until each has a part of its own pinned mode and none of the others'.
 
@@ -678,14 +774,15 @@ def _turn(like, own, m, values, shapes):
         column[:] = 0.0
         column[i] = largest
         solve(part, m, pivot, column)
-        if not np.abs(column).max() < _SKEWED:
-            return
         for j in range(m):
-            mixed[i] += column[j] * shapes[own[j]]
+            if not abs(column[j]) < _SKEWED:
+                return
+            for k in range(n):
+                mixed[i, k] += column[j] * shapes[own[j], k]
     for i in range(m):
         _normalise(mixed[i])
-        shapes[own[i]] = mixed[i]
         values[own[i]] = mean
+        shapes[own[i]] = mixed[i]
 
 
 @compiled
@@ -721,14 +818,16 @@ def arrange(like, family, values, shapes, same):
     return number
 
 
-@compiled
+@inner
 def _forces(model, s, mu, s0, s1, x, forces):
     """Fill the forces S_g x of every group, then (∂F/∂a) x and (∂F/∂b) x."""
     P, w2 = model[3], model[4]
     group, row, column, weight = model[5], model[6], model[7], model[8]
     nb, nr = P.shape
     a, b = forces.shape[0] - 2, forces.shape[0] - 1
-    forces[:] = 0.0
+    for e in range(forces.shape[0]):
+        for i in range(nb + nr):
+            forces[e, i] = 0.0
     for e in range(group.size):
         forces[group[e], row[e]] += weight[e] * x[column[e]]
     p = 0
@@ -749,12 +848,14 @@ def _forces(model, s, mu, s0, s1, x, forces):
             forces[a, nb + j] += s * P[i, j] * x[i]
 
 
-@compiled
+@inner
 def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
     """Fill −(∂F/∂z) x for every parameter z from the forces of the groups, of a and of b."""
     n_groups, width, n_z = jacobian.shape
     n = forces.shape[1]
-    loads[:] = 0.0
+    for z in range(n_z):
+        for i in range(n):
+            loads[z, i] = 0.0
     for g in range(n_groups + 2):
         if g < n_groups:
             law_derivatives(rows[g], s, law)
@@ -770,15 +871,17 @@ def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
                     loads[z, i] -= c * forces[g, i]
 
 
-@compiled
+@inner
 def _border(F, Y, X, bordered, pivot):
     """Factor [F, F′X; Xᴴ, 0] with Y = F′X, rows of Y and X being modes of one multiple pole."""
     m, n = X.shape
-    bordered[n : n + m, n : n + m] = 0.0
-    bordered[:n, :n] = F
+    _copy(F, bordered)
     for j in range(m):
-        bordered[:n, n + j] = Y[j]
-        bordered[n + j, :n] = np.conj(X[j])
+        for i in range(m):
+            bordered[n + i, n + j] = 0.0
+        for i in range(n):
+            bordered[i, n + j] = Y[j, i]
+            bordered[n + j, i] = np.conj(X[j, i])
     factor(bordered, n + m, pivot)
 
 
@@ -806,7 +909,7 @@ def slopes(
         last = first + 1
         while last < n_values and multiple[last] == multiple[first]:
             last += 1
-        k, m, s, X = which[first], last - first, values[first:last].mean(), vectors[first:last]
+        k, m, s, X = which[first], last - first, _mean(values[first:last]), vectors[first:last]
         mu = fill(model, rows[k], rayleigh[k, 0], rayleigh[k, 1], s, F, dF, s0, s1)
         Y, B, g = np.empty((m, n), np.complex128), np.empty((m, m), np.complex128), np.empty(m, np.complex128)
         small, pivot = np.empty(m, np.int64), np.empty(n + m, np.int64)
@@ -833,7 +936,7 @@ def slopes(
         first = last
 
 
-@compiled
+@inner
 def _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place):
     """Return the phase of det F(s)/Π(s − p)(s − p̄) over the known poles p."""
     fill(model, rows, a, b, s, F, dF, s0, s1)
@@ -845,7 +948,7 @@ def _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place):
     return phase
 
 
-@compiled
+@inner
 def _point(kind, u, radius, small):
     """Return a point of the path at u in [0, 1]: the great arc, the upper side of the cut, the small arc.
 

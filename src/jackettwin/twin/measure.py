@@ -29,7 +29,7 @@ class Measured:
 
     Attributes
     ----------
-    observations : one a record
+    observations : one a record, the first of those with the same samples
     state : TwinState
         Which all of them make.
     shown : Examination or None
@@ -92,7 +92,9 @@ def measure(
     results += [(n + i, seen) for i, seen in others]
     observations, failed = sorted_out(config.records, results)
     state, findings = advance_all(empty_state(model), observations)
-    return Measured(observations, state, shown, findings, failed)
+    first = {one.record_id: one for one in reversed(observations)}
+    once = tuple(one for one in observations if first[one.record_id] is one)
+    return Measured(once, state, shown, findings, failed)
 
 
 def mean_target(mode: int, total: ModeTotal) -> Target:
