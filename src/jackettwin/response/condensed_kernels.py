@@ -11,17 +11,18 @@ of :class:`jackettwin.response.condensed.Condensed`; a support law is a row of
 One file on purpose: compiled code on disk is renewed when its own file changes, whatever other file it calls.
 """
 
-# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-overload"
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numba import njit
 
 # sums may be regrouped for speed, but signed zeros stay: they tell the sides of the branch cut apart
-_HOW = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
 compiled = njit(cache=True, **_HOW)
 """For what Python calls."""
 inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
