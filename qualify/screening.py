@@ -43,7 +43,7 @@ def tower(rng: np.random.Generator) -> RandomSystem:
         scale = 10 ** rng.uniform(np.log10(0.15), np.log10(0.5)) / system.frequency_hz[0]
         system = replace(system, frequency_hz=system.frequency_hz * scale)
         rate = float(min(drawn.sample_rate_hz * scale, 30.0))
-        return RandomSystem(system, min(drawn.duration_s / scale, 1800.0), rate, drawn.rank)
+        return RandomSystem(system, min(drawn.duration_s / scale, 900.0), rate, drawn.rank)
 
 
 def planted(case: int) -> tuple[str, float, RandomSystem, Record]:

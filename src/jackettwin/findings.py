@@ -159,6 +159,11 @@ CATALOGUE: dict[str, Kind] = {
         "the sensors do not move in phase (modal phase collinearity {mpc:.2f}) and no close mode explains it",
     ),
     "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
+    "shape_of_neighbours": Kind(
+        "warning",
+        "its shape is a combination of those of the modes below and above: a peak of the forces, or of "
+        "something that is not measured, seen through these",
+    ),
     "one_method": Kind(
         "warning", "with a shorter lag window it is found in {share:.0%} of the model orders only"
     ),

@@ -11,7 +11,8 @@ Four things are asked of a mode, none of which alone tells it from noise, waves 
    R the mean spectral matrix beside the mode, the power at the mode stands out of that beside it (the peak of
    FDD, without its singular values, which follow whatever is loudest);
 3. a *shape* that is nearly real, unless a close mode shares its plane;
-4. not to be *forces*: as broad as a wave spectrum, where waves are.
+4. not to be *forces*: as broad as a wave spectrum, where waves are; or a peak of forces that is seen through
+   the modes beside it (``neighbours.py``).
 """
 
 from __future__ import annotations
@@ -21,12 +22,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
+from jackettwin.identification.selection.neighbours import apart, of_neighbours
+from jackettwin.identification.selection.second_look import SAME_SHAPE, Look, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
-from jackettwin.identification.subspace.covariances import covariances
-from jackettwin.identification.subspace.ssi_cov import order_poles, ssi_cov
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -36,16 +37,8 @@ if TYPE_CHECKING:
 
 Verdict = tuple[ModeStatus, Finding]
 
-SHORTER = 0.6
-"""Lag window of the second look over that of the first."""
-SECOND_ORDERS = 10
-"""Model orders of the second look."""
 SEEN_AGAIN = 0.4
-"""Share of them, from the first that holds the mode on, that must hold it."""
-SAME_SHAPE = 0.7
-"""Least MAC of the two looks …"""
-SAME_FREQUENCY = 2.0
-"""… and farthest apart, in half bandwidths or in standard deviations of the frequency, whichever is more."""
+"""Share of the orders of the second look, from the first that holds the mode on, that must hold it."""
 LEAST_MPC = 0.5
 """Shapes less collinear than this are doubted …"""
 CLOSE = 2.0
@@ -87,60 +80,6 @@ PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp")
 """Names of the peak period of the sea among a record's conditions."""
 NARROW = 1.5
 """2πζfT below which a peak is hardly broader than a line."""
-
-
-@dataclass(frozen=True)
-class Look:
-    """Poles of the second look: flat arrays of the same length.
-
-    Attributes
-    ----------
-    order : (n_poles,)
-    frequency_hz : (n_poles,)
-    shape : (n_poles, n_channels)
-        In the scaling of the samples.
-    orders : tuple of int
-        All of them.
-    """
-
-    order: Int64Array
-    frequency_hz: FloatArray
-    shape: ComplexArray
-    orders: tuple[int, ...]
-
-
-def second_look(y: FloatArray, ready: Prepared) -> Look:
-    """Return the poles of a shorter lag window, without their uncertainty."""
-    rate = ready.settings.sample_rate_hz
-    rows = max(int(SHORTER * ready.settings.block_rows), 3)
-    top = min(ready.settings.orders[-1], (rows - 1) * len(ready.references), (rows - 1) * len(y))
-    step = max(2 * round(0.5 * top / SECOND_ORDERS), 2)
-    lags = covariances(y, 2 * rows)[:, :, ready.references]
-    subspace = ssi_cov(lags, block_rows=rows, max_order=top, factors=False)
-    orders = tuple(subspace.orders(range(step, top + 1, step)))
-    number, f, shapes = [], [], []
-    for poles in order_poles(subspace, orders):
-        pole = np.log(poles.eigenvalues) * rate
-        number.append(np.full(len(pole), poles.order))
-        f.append(np.abs(pole) / (2.0 * np.pi))
-        shapes.append(poles.shapes)
-    return Look(np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders)
-
-
-def seen_again(look: Look, mode: ModalEstimate, scale: FloatArray, others: Sequence[ModalEstimate]) -> float:
-    """Return the share of the second look's orders that hold the mode, from the first that does on.
-
-    Of a close pair a shape counts that lies in the plane of the two.
-    """
-    shapes = np.array([mode.mode_shape, *(m.mode_shape for m in others)]) / scale
-    reach = SAME_FREQUENCY * max(mode.damping_ratio, (mode.frequency_std_hz or 0.0) / mode.frequency_hz)
-    near = np.abs(look.frequency_hz / mode.frequency_hz - 1.0) < reach
-    q, _ = np.linalg.qr(shapes.T)
-    inside = np.sum(np.abs(look.shape @ q.conj()) ** 2, axis=1) / np.sum(np.abs(look.shape) ** 2, axis=1)
-    held = np.unique(look.order[near & (inside > SAME_SHAPE)])
-    if not len(held):
-        return 0.0
-    return len(held) / sum(order >= int(held[0]) for order in look.orders)
 
 
 def contrast(
@@ -223,7 +162,10 @@ def evidence(y: FloatArray, ready: Prepared, conditions: Mapping[str, Any]) -> E
 
 def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
     """Return the modes with their statuses; some are not modes."""
-    return [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
+    judged = [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
+    for i in of_neighbours(judged, known.scale, CLOSE):
+        judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
+    return judged
 
 
 def worth_keeping(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> bool:
@@ -246,17 +188,11 @@ def rescued(mode: ModalEstimate) -> ModalEstimate:
 
 def _same(mode: ModalEstimate, other: ModalEstimate, scale: FloatArray) -> bool:
     alike = float(mac(mode.mode_shape / scale, other.mode_shape / scale)) > SAME_SHAPE
-    return alike and _apart(mode, other) < CLOSE
-
-
-def _apart(mode: ModalEstimate, other: ModalEstimate) -> float:
-    """Return the distance of two modes in their half bandwidths together."""
-    both = mode.damping_ratio * mode.frequency_hz + other.damping_ratio * other.frequency_hz
-    return abs(mode.frequency_hz - other.frequency_hz) / both
+    return alike and apart(mode, other) < CLOSE
 
 
 def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> ModalEstimate:
-    close = [m for m in others if _apart(mode, m) < CLOSE]
+    close = [m for m in others if apart(mode, m) < CLOSE]
     for status, finding in (
         *_forces(mode, close, known.peak_of_sea_hz),
         *_shape(mode, close, known.scale),
