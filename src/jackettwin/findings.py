@@ -164,6 +164,24 @@ CATALOGUE: dict[str, Kind] = {
         "its shape is a combination of those of the modes below and above: a peak of the forces, or of "
         "something that is not measured, seen through these",
     ),
+    "shape_twice": Kind(
+        "warning", "another mode so near has the same shape: one peak told twice, or one that is not a mode's"
+    ),
+    "too_short": Kind(
+        "alarm",
+        "{share:.0%} of what moves here is slower than {cycles} cycles of the {duration_s:.3g} s: too short "
+        "a record for any statement",
+    ),
+    "few_cycles": Kind("warning", "the record holds {cycles:.0f} cycles of it only"),
+    "zero_steps": Kind(
+        "warning",
+        "the zero steps by {size:.3g} times the rms of the vibration at {time_s:.1f} s; taken back",
+    ),
+    "zero_steps_together": Kind(
+        "alarm",
+        "the zeros of most channels step at {time_s:.1f} s: something happened to the logger or the "
+        "structure",
+    ),
     "one_method": Kind(
         "warning", "with a shorter lag window it is found in {share:.0%} of the model orders only"
     ),

@@ -289,7 +289,7 @@ def _print_methods(document: Mapping[str, Any]) -> None:
 
 
 def _both(m: Mapping[str, Any]) -> str:
-    return f"{m['frequency_hz']:.4f} / {100 * m['damping_ratio']:.2f}"
+    return f"{m['frequency_hz']:.4f} / {_percent(m['damping_ratio'])}"
 
 
 def _print_many(document: Mapping[str, Any]) -> None:
@@ -352,9 +352,18 @@ def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
     return (
         f"{m['frequency_hz']:.4f}",
         number(m["frequency_std_hz"], 2),
-        f"{100 * m['damping_ratio']:.2f}",
-        "–" if interval is None else f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}",
+        _percent(m["damping_ratio"]),
+        _at_most(m) if interval is None else f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}",
     )
+
+
+def _percent(ratio: float | None) -> str:
+    return "–" if ratio is None else f"{100 * ratio:.2f}"
+
+
+def _at_most(m: Mapping[str, Any]) -> str:
+    most = m.get("damping_ratio_at_most")
+    return "–" if most is None else f"at most {100 * most:.2f}"
 
 
 def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:

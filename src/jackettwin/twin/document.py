@@ -11,6 +11,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
+from jackettwin.identification.status import ModeStatus
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.held import held_document
 from jackettwin.twin.observation import Observation
@@ -347,13 +348,15 @@ def identification_document(
 
 def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any]:
     """Return one identified mode; shapes as [real, imaginary] a channel."""
+    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
     document: dict[str, Any] = {
         "frequency_hz": m.frequency_hz,
         "frequency_std_hz": m.frequency_std_hz,
-        "damping_ratio": m.damping_ratio,
-        "damping_ratio_std": m.damping_ratio_std,
+        "damping_ratio": m.damping_ratio if known else None,
+        "damping_ratio_std": m.damping_ratio_std if known else None,
         "frequency_interval_95": m.frequency_interval_95,
-        "damping_ratio_interval_95": m.damping_ratio_interval_95,
+        "damping_ratio_interval_95": interval if known else None,
+        "damping_ratio_at_most": None if known or interval is None else interval[1],
         "mpc": m.mpc,
         "method": m.method,
         "status": m.status.value,

@@ -25,10 +25,10 @@ from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.repair import common_time
-from jackettwin.records.repeats import without_repeats
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
+from jackettwin.twin.doubts import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
 from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
 
 WORTH_SAYING = 1e-3
@@ -39,8 +39,6 @@ MOTION = ("acceleration", "velocity", "displacement")
 """Quantities of which one record may mix several."""
 DEFORMATION = ("inclination", "strain")
 """Quantities identified where no channel measures motion, the first of them that there is."""
-UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
-"""What is found of a record that makes every mode of it doubtful."""
 _NAMED = 5
 """Channels that a finding names; more are dots."""
 
@@ -124,8 +122,10 @@ def examine(
     source = with_conditions(record)
     chosen = _placed(source, sensors) if sensors else moving_channels(source)
     chosen, repeated = each_sample_once(chosen)
+    chosen, stepped = zeros_in_line(chosen)
     quality = assess(chosen)
-    doubts = (*repeated, *(f.coded for f in quality.findings if f.fault in UNFIT))
+    alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
+    doubts = (*alarms, *(f.coded for f in quality.findings if f.fault in UNFIT))
     steps: tuple[Step, ...] = (
         partial(repaired, quality=quality),
         partial(in_rotor_axes, source=source),
@@ -135,6 +135,7 @@ def examine(
     ready, findings = prepared(chosen, steps)
     findings = (
         *doubts,
+        *(f for f in stepped if f.severity != "alarm"),
         *findings,
         *_unplaced(chosen),
         *(() if sensors else (*_unclear(source), *_set_aside(source, chosen))),
@@ -143,7 +144,7 @@ def examine(
 
     def compute() -> Identified:
         found = _beside_orders(identify(ready, settings, picks=picks), findings)
-        found = _doubted(found, doubts)
+        found = doubted(found, doubts)
         found = along_axes(found) if in_axes else found
         warnings = (str(f) for f in findings if f.severity != "info")
         notes = (str(f) for f in findings if f.severity == "info")
@@ -154,14 +155,6 @@ def examine(
     key = identified_key(ready, settings, picks, findings, compare=compare, in_rotor_axes=in_axes)
     made = kept(keep, IDENTIFIED, key, compute)
     return Examination(ready, quality, made.found, findings, made.comparison)
-
-
-def _doubted(found: Identification, reasons: Findings) -> Identification:
-    """Doubt every mode of a record for reasons that concern all of it."""
-    modes = found.modes
-    for reason in reasons[:1]:
-        modes = tuple(m.flagged(ModeStatus.DOUBTFUL, reason) for m in modes)
-    return replace(found, modes=modes)
 
 
 def prepared(record: Record, steps: Iterable[Step]) -> tuple[Record, Findings]:
@@ -181,12 +174,6 @@ def repaired(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
 def cut_to_common_time(record: Record, *, quality: Quality) -> tuple[Record, Findings]:
     """Cut a record to what all loggers have once in step; earlier steps need the source's samples."""
     return common_time(record, quality), ()
-
-
-def each_sample_once(record: Record) -> tuple[Record, Findings]:
-    """Keep one of the samples that every channel repeats: those between make images of the modes."""
-    once, times = without_repeats(record)
-    return once, (Finding("samples_repeated", params={"times": times}),) if times > 1 else ()
 
 
 def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:

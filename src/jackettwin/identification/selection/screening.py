@@ -57,6 +57,9 @@ TOP_OF_SEA = 0.25
 """Relative distance from 1/Tp within which a broad peak is the sea's."""
 TOO_BROAD = 0.10
 """Damping ratio from which nothing is called a mode without doubt."""
+TWICE = 0.9
+"""MAC of two close modes, in enough sensors, from which they are one peak told twice: modes of one frequency
+move in different shapes."""
 ONE_SENSOR = 0.98
 """Share of a shape, in units of each channel's motion, from which it is of one sensor …"""
 ENOUGH_SENSORS = 4
@@ -222,8 +225,10 @@ def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], scale: FloatArra
         yield ModeStatus.DOUBTFUL, Finding("complex_shape", params={"mpc": mode.mpc})
     share = np.abs(mode.mode_shape / scale) ** 2
     share = share / share.sum()
-    if len(share) >= ENOUGH_SENSORS and share.max() > ONE_SENSOR:
-        yield ModeStatus.DOUBTFUL, Finding("one_sensor", params={"share": float(share.max())})
+    if len(share) < ENOUGH_SENSORS:
+        return
+    if any(float(mac(mode.mode_shape / scale, m.mode_shape / scale)) > TWICE for m in close):
+        yield ModeStatus.DOUBTFUL, Finding("shape_twice")
 
 
 def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
@@ -234,6 +239,19 @@ def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evide
     ratio, excess = contrast(known.lines, known.duration_s, mode, shape)
     if ratio < LEAST_CONTRAST or excess < LEAST_CONTRAST_STD:
         yield ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio})
+    yield from _one_sensor(mode, shape, known)
+
+
+def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> Iterator[Verdict]:
+    """Tell what moves one sensor alone: no mode where the others, which could see it, show no peak."""
+    share = np.abs(shape) ** 2 / np.sum(np.abs(shape) ** 2)
+    if len(share) < ENOUGH_SENSORS or share.max() <= ONE_SENSOR:
+        return
+    others = np.arange(len(share)) != share.argmax()
+    ratio, excess = contrast(known.lines[others], known.duration_s, mode, shape[others])
+    seen = ratio > LEAST_CONTRAST and excess > LEAST_CONTRAST_STD
+    status = ModeStatus.DOUBTFUL if seen else ModeStatus.LOCAL
+    yield status, Finding("one_sensor", params={"share": float(share.max())})
 
 
 def _damping(mode: ModalEstimate, known: Evidence) -> Iterator[Verdict]:

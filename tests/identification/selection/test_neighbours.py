@@ -1,0 +1,64 @@
+"""A peak of the forces between two modes has the shape that these make together; a mode has its own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import ModalEstimate, identify
+from jackettwin.identification.selection.neighbours import of_neighbours
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Record
+
+SHAPES = np.array(
+    [[1.0, 0.6, 0.25, 0.1, 0.05, 0.02], [-0.4, 0.6, 0.9, -0.1, 0.2, 0.3], [0.5, -0.6, 0.8, 0.4, -0.3, 0.6]]
+)
+
+
+def estimate(f: float, zeta: float, shape: np.ndarray) -> ModalEstimate:
+    return ModalEstimate(f, zeta, shape.astype(complex), 1.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("part", [-0.8, 0.5, 2.0])
+def test_a_combination_of_the_modes_beside_it_is_theirs(part: float) -> None:
+    between = SHAPES[0] + part * SHAPES[1]
+    modes = [
+        estimate(f, 0.02, s) for f, s in zip([0.3, 0.6, 1.0], [SHAPES[0], between, SHAPES[1]], strict=True)
+    ]
+    # each of the three is a combination of the other two; only one has neighbours on both sides
+    assert of_neighbours(modes, np.ones(6), 2.0) == [1]
+    own = estimate(0.6, 0.02, SHAPES[2])
+    assert of_neighbours([modes[0], own, modes[2]], np.ones(6), 2.0) == []
+
+
+def test_in_few_channels_nothing_is_said() -> None:
+    shapes = SHAPES[:, :3]
+    modes = [
+        estimate(f, 0.02, s)
+        for f, s in zip([0.3, 0.6, 1.0], [shapes[0], shapes[0] + shapes[1], shapes[1]], strict=True)
+    ]
+    assert of_neighbours(modes, np.ones(3), 2.0) == []
+
+
+def forced(seed: int, peak: float) -> Record:
+    """Two modes whose forces have a peak at 0.6 Hz, 2 % broad, of so many times the level beside."""
+    rng = np.random.default_rng(seed)
+    n, rate = 4 * 12_000, 10.0
+    f = np.fft.rfftfreq(n, 1.0 / rate)
+    lines = rng.normal(size=(3, len(f), 2)) @ np.array([1.0, 1j])
+    sharp = peak * 0.04 / (1.0 - (f / 0.6) ** 2 + 0.04j * f / 0.6)
+    force = lines[:2] + np.array([[1.0], [0.8]]) * lines[2] * sharp
+    h = [-(f**2) / (f0**2 - f**2 + 0.02j * f * f0) for f0 in (0.3, 1.0)]
+    y = np.fft.irfft(SHAPES[:2].T @ (np.array(h) * force), n)[:, : n // 4]
+    y += 0.01 * y.std(axis=1, keepdims=True) * rng.standard_normal(y.shape)
+    system = ModalSystem(np.array([0.3, 1.0]), np.full(2, 0.01), SHAPES[:2], np.eye(2))
+    like = simulate(system, rng, duration_s=10.0, sample_rate_hz=rate)
+    return Record(y, rate, like.channels, name="forced")
+
+
+def test_a_peak_of_the_forces_is_doubted() -> None:
+    found = identify(forced(1, 8.0))
+    peaks = [m for m in found.modes if 0.5 < m.frequency_hz < 0.7]
+    assert peaks
+    assert all("shape_of_neighbours" in [r.code for r in m.reasons] for m in peaks)
+    assert [round(m.frequency_hz, 1) for m in found.modes if m.status == "ok"] == [0.3, 1.0]

@@ -1,0 +1,74 @@
+"""What makes every mode of a record doubtful."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import Record
+from jackettwin.twin.examine import examine
+
+PLAIN = IdentificationSettings(refine=False)
+SYSTEM = ModalSystem(
+    np.array([0.3, 1.1, 2.3]),
+    np.array([0.01, 0.015, 0.01]),
+    np.array([[1.0, 0.6, 0.3, 0.1], [-0.4, 0.7, 1.0, 0.4], [0.6, -1.0, 0.5, 0.9]]),
+    np.diag([1.0, 3.0, 5.0]),
+)
+
+
+@pytest.fixture
+def sound(rng: np.random.Generator) -> Record:
+    return simulate(SYSTEM, rng, duration_s=600.0, sample_rate_hz=10.0)
+
+
+def codes(record: Record) -> list[set[str]]:
+    return [{reason.code for reason in mode.reasons} for mode in examine(record, PLAIN).identification.modes]
+
+
+def test_a_sound_record_is_not_doubted(sound: Record) -> None:
+    modes = examine(sound, PLAIN).identification.modes
+    assert [mode.status for mode in modes] == ["ok"] * 3
+
+
+def test_samples_that_stand_twice(sound: Record) -> None:
+    """Each is used once, so that no image of a mode is a mode; what they mean is not known."""
+    repeated = replace(sound, data=np.repeat(sound.data[:, ::2], 2, axis=1))
+    modes = examine(repeated, PLAIN).identification.modes
+    assert modes
+    for mode in modes:
+        assert mode.status == "doubtful"
+        assert np.min(np.abs(np.log(mode.frequency_hz / SYSTEM.frequency_hz))) < 0.02
+
+
+def test_thirty_seconds_are_too_short(sound: Record) -> None:
+    for start in (0, 1_500):
+        found = codes(replace(sound, data=sound.data[:, start : start + 300]))
+        assert all("too_short" in of or "few_cycles" in of for of in found)
+
+
+def test_zeros_that_step_together(sound: Record) -> None:
+    sense = np.array([1.0, -1.0, -1.0, 1.0])[:, None]
+    after = np.arange(sound.data.shape[1]) > 2_500
+    stepped = replace(sound, data=sound.data + 3.0 * sense * sound.data.std(axis=1, keepdims=True) * after)
+    modes = examine(stepped, PLAIN).identification.modes
+    assert modes
+    assert all(mode.reasons[-1].code == "zero_steps_together" for mode in modes)
+
+
+def test_of_channels_of_two_days_every_mode_is_doubted(sound: Record) -> None:
+    other = simulate(SYSTEM, np.random.default_rng(8), duration_s=600.0, sample_rate_hz=10.0)
+    mixed = replace(sound, data=np.vstack([sound.data[:2], other.data[2:]]))
+    found = codes(mixed)
+    assert found
+    assert all("another_time" in of for of in found)
+
+
+def test_a_step_of_one_rms_gives_nothing_that_is_ok(sound: Record) -> None:
+    step = sound.data.std(axis=1, keepdims=True)
+    modes = examine(replace(sound, data=step * np.round(sound.data / step)), PLAIN).identification.modes
+    assert all(mode.status != "ok" for mode in modes)
