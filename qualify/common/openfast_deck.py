@@ -1,4 +1,4 @@
-"""Input files of OpenFAST 5 for a turbine in ElastoDyn on a foundation of ours: no wind, no water.
+"""Input files of OpenFAST 5 for a turbine in ElastoDyn on a foundation of ours, without water.
 
 The order of the items is that of the program's readers (FAST_ReadPrimaryFile, and ReadPrimaryFile,
 ReadTowerFile and ReadBladeFile of ElastoDyn_IO.f90, v5.0.0).
@@ -77,7 +77,11 @@ class Run:
     offset_m: float = 0.0
     rest: tuple[float, ...] = (0.0,) * 12
     sub: int = 2
-    """2 is ExtPtfm, 1 is SubDyn."""
+    """2 is ExtPtfm, 1 is SubDyn, 0 is neither."""
+    wind: bool = False
+    """Whether inflow.dat and aero.dat blow on it."""
+    fixed: bool = False
+    """Whether nothing of it moves."""
 
 
 def write_case(
@@ -109,9 +113,16 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     linear = run.linearise
     duration = 2.0 * run.step_s if linear else run.duration_s
     rows: list[Row | str] = ["SIMULATION CONTROL", ("False", "Echo"), ('"FATAL"', "AbortLevel")]
-    rows += [(duration, "TMax"), (run.step_s, "DT"), (3, "ModCoupling"), (2, "InterpOrder"), (2, "NumCrctn")]
+    rows += [
+        (duration, "TMax"),
+        (run.step_s, "DT"),
+        (1 if run.fixed else 3, "ModCoupling"),
+        (2, "InterpOrder"),
+        (2, "NumCrctn"),
+    ]
     rows += [(1.0, "RhoInf"), (1e-4, "ConvTol"), (6, "MaxConvIter"), (99999, "DT_UJac"), (1e6, "UJacSclFact")]
-    rows += ["FEATURE SWITCHES", (1, "NRotors"), (1, "CompElast"), (0, "CompInflow"), (0, "CompAero")]
+    rows += ["FEATURE SWITCHES", (1, "NRotors"), (1, "CompElast")]
+    rows += [(int(run.wind), "CompInflow"), (2 * run.wind, "CompAero")]
     rows += [(0, "CompServo"), (0, "CompSeaSt"), (0, "CompHydro"), (run.sub, "CompSub"), (0, "CompMooring")]
     rows += [(0, "CompIce"), (0, "CompSoil"), (0, "MHK"), ("F", "MirrorRotor")]
     rows += [
@@ -130,7 +141,8 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     ]
     rows += ["INPUT FILES", ('"elastodyn.dat"', "EDFile")]
     rows += [(unused, f"BDBldFile({k})") for k in (1, 2, 3)]
-    rows += [(unused, key) for key in ("InflowFile", "AeroFile", "ServoFile", "SeaStFile", "HydroFile")]
+    rows += [('"inflow.dat"', "InflowFile"), ('"aero.dat"', "AeroFile")]
+    rows += [(unused, key) for key in ("ServoFile", "SeaStFile", "HydroFile")]
     rows += [(f'"{foundation}"', "SubFile")]
     rows += [(unused, key) for key in ("MooringFile", "IceFile", "SoilFile")]
     rows += [
@@ -163,8 +175,8 @@ def _elastodyn(structure: Structure, turbine: Turbine, run: Run, base: float) ->
     rows: list[Row | str] = ["SIMULATION CONTROL", ("False", "Echo"), (3, "Method"), ('"default"', "DT")]
     rows += ["DEGREES OF FREEDOM", (bends, "FlapDOF1"), (bends, "FlapDOF2"), (bends, "EdgeDOF")]
     rows += [("False", key) for key in ("PitchDOF", "TeetDOF", "DrTrDOF", "GenDOF", "YawDOF")]
-    rows += [("True", key) for key in ("TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2")]
-    rows += [("True", f"Ptfm{key}DOF") for key in ("Sg", "Sw", "Hv", "R", "P", "Y")]
+    rows += [(str(not run.fixed), key) for key in ("TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2")]
+    rows += [(str(not run.fixed), f"Ptfm{key}DOF") for key in ("Sg", "Sw", "Hv", "R", "P", "Y")]
     rows += ["INITIAL CONDITIONS", (0.0, "OoPDefl"), (0.0, "IPDefl")]
     rows += [(np.degrees(r.pitch), f"BlPitch({k})") for k in (1, 2, 3)]
     rows += [(0.0, key) for key in ("TeetDefl", "Azimuth", "RotSpeed", "NacYaw")]
