@@ -11,7 +11,7 @@ from typing import Any
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
-from sqlalchemy import Connection, CursorResult, Engine, Table, create_engine, event, inspect, make_url, text
+from sqlalchemy import Connection, Engine, Table, create_engine, event, inspect, make_url, text
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError, OperationalError
 
@@ -83,8 +83,9 @@ def reading(engine: Engine) -> Iterator[Connection]:
 def insert_new(connection: Connection, table: Table, row: Mapping[str, Any]) -> bool:
     """Insert a row unless one with its key is there; tell whether it is new, whoever else puts it in too."""
     dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
-    done: CursorResult[Any] = connection.execute(dialect.insert(table).values(**row).on_conflict_do_nothing())
-    return done.rowcount == 1
+    new = dialect.insert(table).values(**row).on_conflict_do_nothing()
+    # a driver's count of rows is not to be had where the database draws the row's number
+    return connection.execute(new.returning(*table.primary_key.columns)).first() is not None
 
 
 def _sqlite(url: str) -> Engine:
