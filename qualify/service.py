@@ -2,7 +2,7 @@
 
 Usage: ``python qualify/service.py [--only SCENE …] [--records 150] [--kills 60] [--seed 1]``. Each scene
 keeps its figures in out/qualify/service, so that an interrupted run resumes; the page is written of those
-there are. Faults are drawn from a seed; what counts in the end are records lost or doubled, and days whose
+there are, kills of several seeds together. Faults are drawn from a seed; what counts in the end are records lost or doubled, and days whose
 state differs from an undisturbed run.
 """
 
@@ -355,6 +355,16 @@ SCENES: dict[str, Callable[[Path, argparse.Namespace], Figures]] = {
 }
 
 
+def summed(pieces: list[Figures]) -> Figures:
+    """Return the figures of runs with several seeds together; of one, its own."""
+    total = dict(pieces[0])
+    for piece in pieces[1:]:
+        for name in ("records", "lost", "doubled", "days", "different"):
+            total[name] += piece[name]
+        total["struck"] = {part: n + piece["struck"][part] for part, n in total["struck"].items()}
+    return total
+
+
 def page(kept: dict[str, Figures]) -> list[str]:
     """Return the page of what was measured."""
     lines = ["# The service under load and under fire", "", "`python qualify/service.py`", ""]
@@ -469,7 +479,7 @@ def main() -> None:
     given = parser.parse_args()
     KEPT.mkdir(parents=True, exist_ok=True)
     for scene in given.only:
-        file = KEPT / f"{scene}.json"
+        file = KEPT / f"{scene}-{given.seed}.json"
         if file.exists():
             continue
         print(scene, "…", file=sys.stderr, flush=True)
@@ -478,8 +488,8 @@ def main() -> None:
             figures = SCENES[scene](Path(name), given)
         file.write_text(json.dumps(figures))
         print(json.dumps(figures), file=sys.stderr, flush=True)
-    files = {name: KEPT / f"{name}.json" for name in PAGES}
-    write_page("service", page({n: json.loads(f.read_text()) for n, f in files.items() if f.exists()}))
+    kept = {name: [json.loads(f.read_text()) for f in KEPT.glob(f"{name}-*.json")] for name in PAGES}
+    write_page("service", page({name: summed(pieces) for name, pieces in kept.items() if pieces}))
 
 
 if __name__ == "__main__":

@@ -102,7 +102,7 @@ class Database:
             self._process = subprocess.Popen(
                 [server, *arguments], stdout=log, stderr=log, cwd="/", user=self._user()
             )
-        wait_for_port(self.port, 60.0)
+        wait_for_port(self.port, 120.0)
         time.sleep(0.5)  # it listens a moment before it answers
 
     def _user(self) -> str | None:
@@ -131,8 +131,8 @@ class Database:
 def postgresql(folder: Path) -> Iterator[str]:
     """Run a PostgreSQL; yields the URL of its first database."""
     database = Database(folder)
-    database.start()
     try:
+        database.start()
         yield database.url
     finally:
         database.stop()
