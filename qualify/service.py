@@ -2,8 +2,8 @@
 
 Usage: ``python qualify/service.py [--only SCENE …] [--records 150] [--kills 60] [--seed 1]``. Each scene
 keeps its figures in out/qualify/service, so that an interrupted run resumes; the page is written of those
-there are, kills of several seeds together. Faults are drawn from a seed; what counts in the end are records lost or doubled, and days whose
-state differs from an undisturbed run.
+there are, kills of several seeds together. Faults are drawn from a seed; what counts in the end are records
+lost or doubled, and days whose state differs from an undisturbed run.
 """
 
 from __future__ import annotations
