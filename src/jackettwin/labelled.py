@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from jackettwin.records import Record
-    from jackettwin.twin import Observation, TwinState
+    from jackettwin.twin import Observation, TwinResult, TwinState
     from jackettwin.updating.posterior import Posterior
 
 
@@ -32,21 +32,24 @@ def to_arviz(posterior: Posterior) -> Any:
     return _library("arviz_base").from_dict({"posterior": values, "sample_stats": {"lp": log_l}})
 
 
-def to_dataframe(result: Posterior | Observation | TwinState) -> pd.DataFrame:
-    """Return a table: draws of a posterior, modes of an observation, mean modes of a state by day.
+def to_dataframe(result: TwinResult | Posterior | Observation | TwinState) -> pd.DataFrame:
+    """Return a table: a run's modes, a posterior's draws, an observation's modes, a state's by day.
 
     Raises
     ------
     MissingExtra
         If pandas is not installed.
     """
-    from jackettwin.twin import Observation
+    from jackettwin.twin import Observation, TwinResult
     from jackettwin.updating.posterior import Posterior
 
     frame: Any = _library("pandas").DataFrame
     if isinstance(result, Posterior):
         table: pd.DataFrame = frame(np.exp(result.log_theta), columns=list(result.names))
         return table
+    if isinstance(result, TwinResult):
+        run: pd.DataFrame = frame(_compared(result))
+        return run
     rows = _modes(result) if isinstance(result, Observation) else _days(result)
     modes: pd.DataFrame = frame(rows)
     return modes
@@ -77,6 +80,24 @@ def to_xarray(record: Record) -> xr.DataArray:
         attrs={"sample_rate_hz": record.sample_rate_hz, **record.conditions},
     )
     return array
+
+
+def _compared(result: TwinResult) -> list[dict[str, Any]]:
+    """Return every measured mode, and what each law makes of it."""
+    rows = []
+    for i, m in enumerate(result.measured):
+        row: dict[str, Any] = {
+            "label": m.label,
+            "frequency_hz": m.frequency_hz,
+            "frequency_std_hz": m.frequency_std_hz,
+            "damping_ratio": m.damping_ratio,
+            "damping_ratio_std": m.damping_ratio_std,
+        }
+        for u in result.updates:
+            row[f"frequency_hz {u.law}"] = float(u.modes.frequency_hz[i])
+            row[f"damping_ratio {u.law}"] = float(u.modes.damping_ratio[i])
+        rows.append(row)
+    return rows
 
 
 def _modes(seen: Observation) -> list[dict[str, Any]]:

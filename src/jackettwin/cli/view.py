@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 import numpy as np
+import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
@@ -27,6 +28,7 @@ from jackettwin.response.system import System, build_system
 from jackettwin.structure import Assembly, assemble, check, read_structure
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.member_check import member_uses
+from jackettwin.structure.sacs import is_sacs, sacs_remarks
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports: nothing to look at."""
@@ -119,13 +121,56 @@ def view_command(
         sensors,
         coefficients,
         flooded,
-        (f"{books.mass_kg / 1e3:,.0f} t, {len(chosen.members)} members",),
+        (f"{books.mass_kg / 1e3:,.0f} t, {len(chosen.members)} members", *_dimensions(assembly)),
     )
+    remarks = _remarks(structure)
     path = write_view(view, out or Path("out") / f"{chosen.name}.html")
     if as_json:
-        print_json({"page": str(path), "motions": [motion.name for motion in motions]})
+        print_json(
+            {
+                "page": str(path),
+                "motions": [motion.name for motion in motions],
+                "dimensions": list(_dimensions(assembly)),
+                "not_read": list(remarks),
+            }
+        )
     else:
+        for line in _dimensions(assembly):
+            output.print(f"  {line}")
+        for remark in remarks:
+            output.print(f"  not read: {remark}", markup=False)
         output.print(f"wrote {path}")
+
+
+def _remarks(structure: str) -> tuple[str, ...]:
+    """Return what of a deck was not understood."""
+    path = Path(structure)
+    return sacs_remarks(path) if is_sacs(path) and path.is_file() else ()
+
+
+def _dimensions(assembly: Assembly) -> tuple[str, ...]:
+    """Return levels and widths [m] in words: a preview against which a drawing can be held."""
+    structure = assembly.structure
+    points = assembly.mesh.coordinates - [0.0, 0.0, structure.sea_level_z_m]
+    z, lines = points[:, 2], []
+    feet = [assembly.mesh.node_names.index(n) for n in structure.reaction_nodes]
+    lines.append(f"z {z.min():+.2f} to {z.max():+.2f} m about the sea level")
+    if feet:
+        lines.append(f"{len(feet)} feet at z {points[feet, 2].min():+.2f} m, {_footprint(points[feet])}")
+    for part in dict.fromkeys(m.part for m in structure.members if m.part):
+        own = [m for m in structure.members if m.part == part]
+        ends = points[[assembly.mesh.node_names.index(n) for m in own for n in (m.start, m.end)]]
+        diameters = [s.outer_diameter_m for m in own for s in (m.section_start, m.section_end)]
+        lines.append(
+            f"{part.replace('_', ' ')}: z {ends[:, 2].min():+.2f} to {ends[:, 2].max():+.2f} m, "
+            f"{_footprint(ends)}, tubes {min(diameters):.2f} to {max(diameters):.2f} m"
+        )
+    return tuple(lines)
+
+
+def _footprint(points: npt.NDArray[np.float64]) -> str:
+    x, y = np.ptp(points[:, :2], axis=0)
+    return f"{x:.2f} × {y:.2f} m in plan"
 
 
 def _band(text: str) -> GrowthBand:

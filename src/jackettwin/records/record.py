@@ -42,7 +42,11 @@ class Channel:
     frame: Frame = "global"
 
 
-@dataclass(frozen=True)
+_SHOWN = 6
+"""Channels that a record's ``repr`` names."""
+
+
+@dataclass(frozen=True, repr=False)
 class Record:
     """Samples of several channels at one rate, from one start.
 
@@ -68,6 +72,14 @@ class Record:
     conditions: Mapping[str, Any] = field(default_factory=dict)
     metadata: Mapping[str, Any] = field(default_factory=dict)
     name: str = "record"
+
+    def __repr__(self) -> str:
+        start = "" if self.start_utc is None else f" from {self.start_utc:%Y-%m-%dT%H:%M:%SZ}"
+        named = ", ".join(self.channel_names[:_SHOWN]) + (" …" if len(self.channels) > _SHOWN else "")
+        return (
+            f"Record({self.name!r}, {self.duration_s:.6g} s at {self.sample_rate_hz:g} Hz{start}, "
+            f"{len(self.channels)} channels: {named})"
+        )
 
     def __post_init__(self) -> None:
         if self.data.ndim != 2 or self.data.shape[0] != len(self.channels):

@@ -29,6 +29,7 @@ from jackettwin.structure.model import (
     Vector,
 )
 from jackettwin.structure.rotor_modes import FlexibleRotor, with_rotor, without_rotor
+from jackettwin.structure.sacs import is_sacs, read_sacs
 from jackettwin.structure.subdyn import read_subdyn
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -240,7 +241,7 @@ def shipped_structures() -> tuple[str, ...]:
 
 
 def read_structure(source: str | Path, *, folder: Path | None = None) -> Structure:
-    """Read a structure: a shipped name, a YAML file, or an OpenFAST SubDyn input file (``.dat``).
+    """Read a structure: a shipped name, a YAML file, an OpenFAST SubDyn input (``.dat``) or a SACS deck.
 
     Parameters
     ----------
@@ -253,9 +254,13 @@ def read_structure(source: str | Path, *, folder: Path | None = None) -> Structu
     InputError
         If the file is missing or anything in it is wrong; the message names file, field and value.
     """
-    path = find_file(source, "structures", folder=folder, also=" or a SubDyn .dat file")
+    path = find_file(
+        source, "structures", folder=folder, also=", a SubDyn .dat file, or a SACS deck (sacinp.*, *.sacs)"
+    )
     if path.suffix.lower() == ".dat":
         return read_subdyn(path)
+    if is_sacs(path):
+        return read_sacs(path)
     return _read_yaml_structure(path)
 
 

@@ -111,7 +111,7 @@ class DampingExcess:
         return 0.05 * self.measured if self.measured_std is None else 2.0 * self.measured_std
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TwinResult:
     """Everything one run produced.
 
@@ -153,6 +153,14 @@ class TwinResult:
     relaxations: tuple[MeasuredRelaxation, ...] = ()
     rotor_speed_hz: tuple[float, float] | None = None
     blades: int = 3
+
+    def __repr__(self) -> str:
+        modes = ", ".join(f"{m.label} {m.frequency_hz or float('nan'):.4g} Hz" for m in self.measured)
+        laws = ", ".join(u.law for u in self.updates)
+        return (
+            f"TwinResult({self.name!r}, {len(self.observations)} records, measured: {modes or 'nothing'}; "
+            f"updated under {laws or 'no law'})"
+        )
 
     @property
     def record(self) -> Record | None:

@@ -71,7 +71,7 @@ class Uncertainty:
         return np.asarray(np.exp(np.quantile(self.log_theta, [0.05, 0.95], axis=0)).T)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Update:
     """A law fitted to targets.
 
@@ -102,6 +102,12 @@ class Update:
     modes: ExactModes
     budget: Budget
     uncertainty: Uncertainty | None
+
+    def __repr__(self) -> str:
+        values = self.best.theta if self.uncertainty is None else self.uncertainty.median
+        texts = (f"{p.name} {v:.3g}" for p, v in zip(self.problem.parameters, values, strict=True))
+        kind = "best fit" if self.uncertainty is None else "median"
+        return f"Update({self.law!r}, {kind}: {', '.join(texts)}; {len(self.search.solutions)} solutions)"
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
