@@ -22,8 +22,8 @@ def load(name: str, fz: float) -> str:
 
 DECK = f"""\
 OPTIONS      EN  SDUC   2 1
-SECT BR1       TUB                               16.000 0.625
-SECT WF1       WF                                24.000 0.500
+SECT BR1       TUB                               16.0000.625
+SECT WF1       WF                                24.0000.500
 GRUP
 GRUP LG1         42.000 1.375 29.0011.6050.00 1    1.001.00     0.500N490.005.00
 GRUP LG1         41.250 1.000 29.0011.6036.00 1    1.001.00     0.500N490.00
