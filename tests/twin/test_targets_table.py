@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.twin import read_twin
+from jackettwin.twin.fitted import target_modes
+from jackettwin.twin.narrative import cautions
 from jackettwin.twin.targets_table import read_targets_table
 
 
@@ -92,3 +95,24 @@ def test_a_logger_is_told_once_for_all_records(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is not a time zone") as refused:
         read_twin(tmp_path / "twin.yaml")
     assert refused.value.field == "logger.clock"
+
+
+def test_frequencies_alone_are_given_their_modes_and_the_assignment_is_said(tmp_path: Path) -> None:
+    """Pinned, the jacket has .1832 .1859 .5720 .7489 .7941 Hz (thesis, chapter 5)."""
+    table(tmp_path / "m.csv", "frequency [Hz],mode", "0.7362,", "0.1838,", "0.1819,side_side_1")
+    (tmp_path / "t.yaml").write_text("structure: jacket15\ntargets: m.csv\n")
+    config = read_twin(tmp_path / "t.yaml")
+    assert [(t.mode, t.frequency_hz) for t in config.targets] == [(4, 0.7362), (2, 0.1838), (1, 0.1819)]
+    assert config.assigned == (4, 2)
+    measured = target_modes(config, tuple(f"mode_{k}" for k in range(1, 13)), pinned_hz=np.full(12, 0.75))
+    (said,) = [line for line in cautions(config, None, measured, ()) if "without a name" in line]
+    assert "0.7362 Hz is mode_4 (mode 4)" in said and "0.1838 Hz is mode_2" in said and "0.1819" not in said
+
+
+def test_a_frequency_that_is_no_mode_is_refused_with_the_nearest(tmp_path: Path) -> None:
+    (tmp_path / "t.yaml").write_text(
+        "structure: jacket15\ntargets: [{frequency_hz: 0.182}, {frequency_hz: 0.09}]\n"
+    )
+    message = r"t\.yaml: targets\.frequency_hz: is near no mode .*0\.09.*nearest is mode 1"
+    with pytest.raises(InputError, match=message):
+        read_twin(tmp_path / "t.yaml")

@@ -57,7 +57,7 @@ def validate(schema: type[S], data: Any, *, file: Path | str | None = None, fiel
     try:
         valid = schema.model_validate(data)
     except ValidationError as error:
-        errors = [{**e, "loc": _place(e["loc"], schema)} for e in error.errors()]
+        errors = [{**e, "loc": _place(e, schema)} for e in error.errors()]
         first = _most_telling(errors)
         others = [e for e in errors if e["loc"] == first["loc"] and e is not first]
         found = _as_input_error(first, schema)
@@ -88,13 +88,18 @@ def _yes_for_a_number(data: Any, valid: Any, place: str = "") -> Iterator[tuple[
         yield from _yes_for_a_number(given, taken, f"{place}.{key}" if place else str(key))
 
 
-def _place(location: tuple[Any, ...], schema: type[BaseModel]) -> tuple[Any, ...]:
-    """Return a location without what pydantic puts in for each alternative of a union."""
+def _place(error: Any, schema: type[BaseModel]) -> tuple[Any, ...]:
+    """Return a mistake's location without what pydantic puts in for each alternative of a union."""
+    location = error["loc"]
+    unknown = error["type"] == "extra_forbidden"
     names = {model.__name__ for model in _all_models(schema)}
+    last = len(location) - 1  # an unknown key itself is said whatever it looks like
     return tuple(
         part
-        for part in location
-        if not isinstance(part, str) or not (part in names or part in _KINDS or part.endswith("]"))
+        for k, part in enumerate(location)
+        if not isinstance(part, str)
+        or not (part in names or part in _KINDS or part.endswith("]"))
+        or (k == last and unknown)
     )
 
 

@@ -42,7 +42,17 @@ def _unique_mapping(loader: _Loader, node: yaml.MappingNode, deep: bool = False)
     return mapping
 
 
+def _scalar(loader: _Loader, node: yaml.ScalarNode) -> Any:
+    """Return a date, a whole number or the like; one that is none (month 13) is a mistake with a line."""
+    try:
+        return yaml.SafeLoader.yaml_constructors[node.tag](loader, node)
+    except (ValueError, OverflowError) as error:
+        raise yaml.constructor.ConstructorError(None, None, str(error), node.start_mark) from None
+
+
 _Loader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _unique_mapping)
+for _tag in ("timestamp", "int", "float", "binary"):
+    _Loader.add_constructor(f"tag:yaml.org,2002:{_tag}", _scalar)
 
 
 def read_text(path: Path | str, *, what: str = "file") -> str:

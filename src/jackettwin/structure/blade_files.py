@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, radians, sin
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -75,17 +75,23 @@ def _properties(content: WindIO) -> _Properties:
     if content.newer:
         part = blade["structure"]["elastic_properties"]
         stiffness, inertia = part["stiffness_matrix"], part["inertia_matrix"]
-        grid = stiffness["grid"].numbers()
-        mass = np.interp(grid, inertia["grid"].numbers(), inertia["mass"].numbers())
-        return _Properties(
-            grid, mass, stiffness["K55"].numbers(), stiffness["K44"].numbers(), content.shape["twist"]
-        )
-    part = blade["elastic_properties_mb"]["six_x_six"]
-    stiffness, inertia = part["stiff_matrix"], part["inertia_matrix"]
-    K, M = (np.array([row.numbers() for row in one["values"].entries()]) for one in (stiffness, inertia))
-    grid = stiffness["grid"].numbers()
-    mass = np.interp(grid, inertia["grid"].numbers(), M[:, 0])
-    return _Properties(grid, mass, K[:, _FLAP], K[:, _EDGE], part["twist"])
+        (grid, flap), (_, edge) = (_curve(stiffness, stiffness[key].value) for key in ("K55", "K44"))
+        mass, twist = _curve(inertia, inertia["mass"].value), content.shape["twist"]
+    else:
+        part = blade["elastic_properties_mb"]["six_x_six"]
+        stiffness, inertia, twist = part["stiff_matrix"], part["inertia_matrix"], part["twist"]
+        (grid, flap), (_, edge) = (_curve(stiffness, _entry(stiffness, k)) for k in (_FLAP, _EDGE))
+        mass = _curve(inertia, _entry(inertia, 0))
+    return _Properties(grid, np.interp(grid, *mass), flap, edge, twist)
+
+
+def _curve(part: Part, values: Any) -> tuple[FloatArray, FloatArray]:
+    return Part({"grid": part["grid"].value, "values": values}, part.place).curve()
+
+
+def _entry(part: Part, k: int) -> list[float]:
+    """Return the k-th number of every matrix."""
+    return [row[k].number() for row in part["values"].entries()]
 
 
 def _elastodyn(path: Path) -> FlexibleRotor:
@@ -127,7 +133,7 @@ def read_elastodyn_blade(path: Path, *, length: float) -> BladeStructure:
         key: np.array([number(row, key, path) for row in rows])
         for key in ("blfract", "strctwst", "bmassden", "flpstff", "edgstff")
     }
-    factors = {key: float(deck.scalar(key, "1")) for key in ("AdjBlMs", "AdjFlSt", "AdjEdSt")}
+    factors = {key: to_float(deck.scalar(key, "1"), path, key) for key in ("AdjBlMs", "AdjFlSt", "AdjEdSt")}
     ratio = next((s for key in ("BldFlDmp1", "BldFlDmp(1)") if (s := deck.scalar(key, ""))), "")
     with located(file=path):
         return BladeStructure(

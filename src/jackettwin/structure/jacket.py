@@ -84,7 +84,7 @@ def jacket(
     _require(1 <= lattice.bays <= 100, "lattice.bays", lattice.bays, "1 to 100")
     for field in ("base_width_m", "top_width_m", "height_m"):
         value = getattr(lattice, field)
-        _require(0.0 < value <= 1e3, f"lattice.{field}", value, "> 0, at most 1000 m")
+        _require(1e-3 <= value <= 1e3, f"lattice.{field}", value, "1 mm to 1000 m")
     _require(1 <= tower.elements <= 1000, "tower.elements", tower.elements, "1 to 1000")
     _require(0.0 < tower.height_m <= 1e3, "tower.height_m", tower.height_m, "> 0, at most 1000 m")
     n_braces = len(lattice.brace) if isinstance(lattice.brace, tuple) else lattice.bays

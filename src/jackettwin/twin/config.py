@@ -150,3 +150,5 @@ class TwinConfig:
     """Which state of operation a record was in, and whether it may update the supports."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
+    assigned: tuple[int, ...] = ()
+    """Modes that were found for targets that give a frequency and no mode."""

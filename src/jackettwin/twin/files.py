@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Container
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
@@ -19,6 +22,7 @@ from jackettwin.simulate.files import depth_of
 from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.assembled import assembled
+from jackettwin.twin.assigned import assigned_modes
 from jackettwin.twin.config import PAIRED_MODES, GivenRelaxation, ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
 from jackettwin.twin.targets_table import read_targets_table
@@ -59,12 +63,16 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
                 field="records",
                 remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
             )
-        return _build(_with_numbers(schema, path), path)
+        numbered = _with_numbers(schema, path)
+        pairs = zip(schema.targets, numbered.targets, strict=True)
+        assigned = tuple(after.number or 0 for before, after in pairs if before.is_unnamed)
+        return replace(_build(numbered, path), assigned=assigned)
 
 
 def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
-    """Return the schema with named modes (``mode: 1st FA``) as numbers of the structure's modes."""
-    if not any(isinstance(target.mode, str) for target in schema.targets):
+    """Return the schema with the numbers of modes that are named (``mode: 1st FA``), or not even that."""
+    unnamed = [i for i, target in enumerate(schema.targets) if target.is_unnamed]
+    if not unnamed and not any(isinstance(target.mode, str) for target in schema.targets):
         return schema
     assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSchema()}), path))
     numbered = numbered_modes(assembly, PAIRED_MODES)
@@ -75,6 +83,12 @@ def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
             with located(field=f"targets.{i}"):
                 target = target.model_copy(update={"mode": _number(target.mode, labels)})
         targets.append(target)
+    frequencies = np.array([targets[i].frequency_hz for i in unnamed])
+    taken = {target.number for target in targets if target.number is not None}
+    with located(field="targets"):
+        modes = assigned_modes(frequencies, numbered.frequency_hz, taken)
+    for i, mode in zip(unnamed, modes, strict=True):
+        targets[i] = targets[i].model_copy(update={"mode": mode})
     return schema.model_copy(update={"targets": targets})
 
 

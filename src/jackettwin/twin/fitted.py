@@ -8,6 +8,7 @@ from math import hypot, pi
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.identification import ModalEstimate
+from jackettwin.twin.assigned import LEAST_SHARE, MOST_SHARE
 from jackettwin.twin.config import ModelError, TwinConfig
 from jackettwin.twin.measure import mean_target
 from jackettwin.twin.result import MeasuredMode, MeasuredRelaxation
@@ -16,8 +17,6 @@ from jackettwin.updating import Residuals, Target
 
 _FAR_ABOVE = 3.0
 """A target this many times above the model's highest numbered mode is in another unit."""
-_LEAST_SHARE, _MOST_SHARE = 0.5, 1.15
-"""Of a mode's frequency on rigid feet: what soft soil leaves of it, and what errors of a model add to it."""
 _FITS = 0.2
 """A mode fits that lies less than this below its frequency on rigid feet, or half of it above."""
 _STIFFEST = 1.5
@@ -116,7 +115,7 @@ def _refuse_misnumbered(
         return
     share = target.frequency_hz / pinned_hz
     own = float(share[target.mode - 1])
-    if _LEAST_SHARE <= own <= _MOST_SHARE:
+    if LEAST_SHARE <= own <= MOST_SHARE:
         return
     taken = {t.mode for t in config.targets}
     fitting = [i for i, s in enumerate(share) if i + 1 not in taken and 1.0 - _FITS <= s <= 1.0 + 0.5 * _FITS]

@@ -82,6 +82,10 @@ def cautions(
 ) -> tuple[str, ...]:
     """Return what the reader should beware of; ``labels`` are those of the model's numbered modes."""
     lines = []
+    if config.assigned:
+        ours = [m for m in measured if m.mode in config.assigned]
+        pairs = ", ".join(f"{m.frequency_hz:.4g} Hz is {m.label} (mode {m.mode})" for m in ours)
+        lines.append(f"Frequencies without a name were taken for the nearest modes: {pairs}.")
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]

@@ -243,6 +243,11 @@ class TargetSchema(Schema):
         return GivenRelaxation(self.rate_rad_s, self.rate_std_rad_s, self.shape)
 
     @property
+    def is_unnamed(self) -> bool:
+        """Whether it gives a frequency and does not say of which mode."""
+        return self.mode is None and self.frequency_hz is not None and self.rate_rad_s is None
+
+    @property
     def number(self) -> int | None:
         """The mode's number; None of a relaxation, or of a mode that is only named yet."""
         return self.mode if isinstance(self.mode, int) else None

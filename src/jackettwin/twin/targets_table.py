@@ -23,8 +23,8 @@ INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 TWO_SIDED_95 = 1.959964
 """Half width of a 95 % interval in standard deviations."""
 _CELL = re.compile(
-    r"^\s*(?P<value>[+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
-    r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>[\d.]+(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
+    r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
+    r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
 )
 MOST_RATIO = 0.2
 """A damping ratio beyond this is a percentage whose unit was forgotten."""
@@ -57,10 +57,11 @@ def _targets(text: str) -> list[dict[str, Any]]:
     delimiter = max(";\t,|", key=lines[0].count)
     rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=delimiter)]
     columns = {i: key for i, name in enumerate(rows[0]) if (key := _key(name)) is not None}
-    for needed in ("mode", "frequency_hz"):
-        if needed not in columns.values():
+    strangers = len(columns) < len(rows[0])  # one of them may name the modes; without any, none is named
+    for needed, what in (("mode", "name of the mode"), ("frequency_hz", "frequency")):
+        if needed not in columns.values() and (needed != "mode" or strangers):
             raise InputError(
-                f"has no column for the {'name of the mode' if needed == 'mode' else 'frequency'}",
+                f"has no column for the {what}",
                 field="columns",
                 value=", ".join(rows[0]),
                 allowed="mode, frequency [Hz], std [Hz], damping [%], std damping [%]",
