@@ -24,7 +24,7 @@ from jackettwin.soil.files import read_support
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.structure import Section, Structure, read_structure
 from jackettwin.structure.blade_files import read_elastodyn_blade, read_flexible_rotor
-from jackettwin.structure.model import STEEL, Member
+from jackettwin.structure.model import STEEL, Member, Reaction
 from jackettwin.twin import read_twin
 from jackettwin.twin.modal_table import read_modal_table
 from jackettwin.twin.refinement import read_refinement
@@ -33,8 +33,14 @@ from jackettwin.twin.targets_table import read_targets_table
 ROOT = Path(__file__).parents[1]
 SHIPPED, PUBLIC = ROOT / "src/jackettwin/data", ROOT / "tests/data"
 TUBE = Section(1.0, 0.02)
-MAST = Structure(
-    "mast", {"a": (0.0, 0.0, 0.0), "b": (0.0, 0.0, 40.0)}, (Member("m", "a", "b", TUBE, TUBE, STEEL),)
+FRAME = Structure(
+    "frame",
+    {"a": (0.0, 0.0, 0.0), "b": (0.0, 0.0, 40.0), "c": (8.0, 0.0, 10.0), "d": (0.0, 0.0, 10.0)},
+    tuple(
+        Member(name, *ends, TUBE, TUBE, STEEL) for name, ends in (("leg", "ab"), ("brace", "cd"), ("x", "ca"))
+    ),
+    reactions=(Reaction("a"),),
+    sea_level_z_m=30.0,
 )
 TIME_S = 0.05 * np.arange(100)
 
@@ -65,6 +71,7 @@ TURBINE = """------- ELASTODYN INPUT FILE -----
 1.96 Twr2Shft
 -5 ShftTilt
 0 BlPitch(1)
+-2.5 PreCone(1)
 "blade.dat" BldFile(1)
 """
 TWIN = """structure: jacket15
@@ -72,16 +79,27 @@ sensors:
   - {channel: a, height_m: 140.0, direction: [1, 0, 0]}
   - {channel: b, height_m: 77.0, direction: [0, 1, 0]}
 targets:
-  - {mode: 1, frequency_hz: 0.18, frequency_std_hz: 0.001, damping_ratio: 0.012, mode_shape: {a: 1.0, b: [0.3, 0.1]}}
+  - mode: 1
+    frequency_hz: 0.18
+    frequency_std_hz: 0.001
+    mode_shape: {a: 1.0, b: [0.3, 0.1]}
   - {frequency_hz: 0.74}
   - {rate_rad_s: 0.5, rate_std_rad_s: 0.1}
-update: {mac_std: 0.02, starts: 3, laws: [zener], bounds: {k0: [1e8, 1e10]}, model_error: [{modes: [1], frequency: 0.01}]}
+update: {mac_std: 0.02, starts: 3, laws: [zener], bounds: {k0: [1e8, 1e10]}}
 """
-SETTINGS = "structure: jacket15\nsupport: {tie: per-leg, shared: [c]}\nrecords: [a.parquet]\nidentification: {max_order: 40}\n"
+SETTINGS = """structure: jacket15
+support: {tie: per-leg, shared: [c]}
+records: [a.parquet]
+identification: {max_order: 40}
+"""
 SIGNALS = "time [s];acc_top_x [m/s2];acc_top_y [m/s2]\n" + "".join(
     f"{t:.2f};{np.sin(t):.5f};{np.cos(t):.5f}\n" for t in TIME_S
 )
-MODES = "mode;frequency [Hz];std [Hz];damping [%]\n1st FA;0,1819;0,0010;1,27\nSS1;0,1838 ± 0,001;;\ntorsion;0,79;;\n"
+MODES = """mode;frequency [Hz];std [Hz];damping [%]
+1st FA;0,1819;0,0010;1,27
+SS1;0,1838 ± 0,001;;
+torsion;0,79;;
+"""
 HISTORY = "time,label,frequency_hz,damping_ratio,wind_speed\n" + "".join(
     f"2025-01-{1 + k:02d}T06:00:00Z,fore_aft_1,{0.18 + 1e-4 * k:.4f},0.01,{5 + k % 7}\n" for k in range(20)
 )
@@ -102,7 +120,7 @@ READERS: dict[str, tuple[str, str, Callable[[Path], Any], int]] = {
     "hydrodyn.dat": (
         (PUBLIC / "hydrodyn/members.dat").read_text(),
         "HydroDyn",
-        lambda path: read_hydrodyn(path, MAST, density_kg_m3=1025.0),
+        lambda path: read_hydrodyn(path, FRAME, density_kg_m3=1025.0),
         60,
     ),
     "blade.dat": (BLADE, "ElastoDyn's blade", lambda path: read_elastodyn_blade(path, length=60.0), 80),
@@ -110,7 +128,7 @@ READERS: dict[str, tuple[str, str, Callable[[Path], Any], int]] = {
     "rotor.yaml": (_shipped("rotors/iea15.yaml"), "windIO", read_rotor, 3),
     "blades.yaml": (_shipped("rotors/iea15.yaml"), "windIO's blades", read_flexible_rotor, 3),
     "foundation.yaml": (_shipped("foundations/jacket15_records.yaml"), "soil", read_foundation, 60),
-    "support.yaml": (SUPPORT, "supports", lambda path: read_support(path, MAST), 80),
+    "support.yaml": (SUPPORT, "supports", lambda path: read_support(path, FRAME), 80),
     "signals.csv": (SIGNALS, "record", read_record, 60),
     "twin.yaml": (TWIN, "twin", read_twin, 40),
     "settings.yaml": (SETTINGS, "twin of records", read_twin, 40),
