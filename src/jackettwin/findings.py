@@ -112,6 +112,12 @@ CATALOGUE: dict[str, Kind] = {
         )
     },
     # identification
+    "not_refined": Kind("warning", "modes at {frequencies_hz} Hz not refined: {obstacle}"),
+    "hidden_mode": Kind(
+        "warning",
+        "a second mode may hide beside {frequency_hz:.4g} Hz: poles of another shape at {other_hz:.4g} Hz, "
+        "within its bandwidth, were left out",
+    ),
     "steady_tone_near": Kind(
         "warning", "a steady tone at {frequency_hz:.4g} Hz is too near to trust the damping"
     ),

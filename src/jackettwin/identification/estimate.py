@@ -214,6 +214,9 @@ class Identification:
     settings: ResolvedSettings
     duration_s: float
     warnings: tuple[str, ...] = ()
+    """What to beware of, the findings included."""
+    findings: tuple[Finding, ...] = ()
+    """What the refinement could not do."""
     notes: tuple[str, ...] = ()
     """What was done to the modes, for those who ask; nothing to beware of."""
     real_poles: tuple[RealPole, ...] = ()

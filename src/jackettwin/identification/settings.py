@@ -67,7 +67,7 @@ class IdentificationSettings:
     max_order : int or None
         Largest model order (2 to 400); default 60 or what the Hankel matrix supports.
     order_step : int
-        Step between model orders (1 to 20).
+        Step between model orders up to 20, twice that beyond (1 to 20).
     weighting : "br" or "cva"
         Balanced realisation or canonical variate analysis.
     state_matrix : "shift" or "one-lag"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -340,6 +341,7 @@ def identification_document(
         "duration_s": found.duration_s,
         "quality": dict(quality),
         "warnings": list(found.warnings),
+        "findings": [asdict(finding) for finding in found.findings],
         "notes": list(found.notes),
         **({} if compared is None else {"methods": comparison_document(compared)}),
         "conditions": dict(conditions),

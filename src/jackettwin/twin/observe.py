@@ -70,7 +70,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
     """
     found = seen.identification
     known = _known(seen, model, model.likest_feet(seen))
-    said = {str(f) for f in seen.findings}
+    said = {str(f) for f in (*seen.findings, *found.findings)}
     others = (Finding("identification", params={"text": t}) for t in found.warnings if t not in said)
     return Observation(
         record_id=record_id(record),
@@ -88,6 +88,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         findings=(
             *(f.coded for f in seen.quality.findings),
             *seen.findings,
+            *found.findings,
             *others,
             *known.findings,
             *uncalibrated(model.calibrations, record.start_utc),

@@ -83,7 +83,9 @@ def test_uncertainty_does_not_depend_on_the_order_step(y):
     shared = propagation(ssi_cov(lagged, block_rows=10, max_order=12), block_deviations(blocks, 10))
     every = {p.order: p for p in order_poles_with_uncertainty(shared, range(2, 13))}
     for poles in order_poles_with_uncertainty(shared, range(2, 13, 5)):
-        np.testing.assert_array_equal(poles.eigenvalue_deviations, every[poles.order].eigenvalue_deviations)
+        same = every[poles.order].eigenvalue_deviations
+        # the same sums over other parts
+        np.testing.assert_allclose(poles.eigenvalue_deviations, same, rtol=1e-9, atol=1e-12)
 
 
 def test_damping_lies_inside_its_interval(tower):

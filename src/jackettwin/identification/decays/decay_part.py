@@ -98,7 +98,8 @@ def decay_part(y: FloatArray, sample_rate_hz: float) -> DecayPart | None:
 def _cycles_width(y: FloatArray, sample_rate_hz: float) -> int | None:
     """Return the samples of two cycles of the frequency at which the channels move most, where they do."""
     white = y / (y.std(axis=1, keepdims=True) + 1e-300)
-    rough = ndimage.uniform_filter1d(np.mean(white**4, axis=0), max(y.shape[1] // 50, 8), mode="nearest")
+    fourth = np.mean(np.square(np.square(white)), axis=0)
+    rough = ndimage.uniform_filter1d(fourth, max(y.shape[1] // 50, 8), mode="nearest")
     strongest = _strongest_hz(white[:, int(np.argmax(rough)) :], sample_rate_hz)
     if strongest is None:
         return None

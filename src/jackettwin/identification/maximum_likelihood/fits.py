@@ -16,6 +16,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import NumericalError
+from jackettwin.findings import Finding
 from jackettwin.identification.maximum_likelihood.local_refinement import DITHER_SHARES, groups, refine_group
 from jackettwin.identification.maximum_likelihood.mode_drift import strayed
 from jackettwin.identification.maximum_likelihood.refined import Refined
@@ -101,8 +102,8 @@ class _Tried:
 
 def accepted_fits(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start
-) -> tuple[list[Believed], tuple[str, ...]]:
-    """Return the fits that are believed, and a sentence on each group of modes that none describes.
+) -> tuple[list[Believed], tuple[Finding, ...]]:
+    """Return the fits that are believed, and a finding on each group of modes that none describes.
 
     Parameters
     ----------
@@ -112,7 +113,7 @@ def accepted_fits(
     duration_s = y.shape[1] / sample_rate_hz
     whole = _whole_band(y, sample_rate_hz, band_hz, start)
     left = np.ones(len(start.sure), dtype=bool)
-    fits, warnings = [], []
+    fits, findings = [], []
     for group in groups(start.frequency_hz, start.sure, band_hz):
         if whole.fit is not None and not np.any(group.members & start.sure & whole.strayed):
             continue
@@ -126,12 +127,16 @@ def accepted_fits(
                 fits.append(_believed(local, group.members))
                 break
         else:
-            f = _listed(start.frequency_hz[group.members & start.sure])
             obstacle = local.obstacle or f"the fit left the peak at {_listed(start.frequency_hz[lost])} Hz"
-            warnings.append(f"modes at {f} Hz not refined: {obstacle}")
+            findings.append(not_refined(start.frequency_hz[group.members & start.sure], obstacle))
     if whole.fit is not None and left.any():
         fits.append(_believed(whole, left))
-    return fits, tuple(warnings)
+    return fits, tuple(findings)
+
+
+def not_refined(frequency_hz: FloatArray, obstacle: str) -> Finding:
+    """Return what is said of modes that are left as the subspace method found them, and why."""
+    return Finding("not_refined", params={"frequencies_hz": _listed(frequency_hz), "obstacle": obstacle})
 
 
 def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start) -> _Tried:

@@ -33,6 +33,8 @@ GUARD = 1.25
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
+DENSE_ORDERS = 20
+"""Model orders up to which every step is taken, then every second."""
 FEW_CYCLES = 60.0
 """With fewer cycles of its lowest mode a record is called short."""
 STRONG_BELOW = 0.1
@@ -92,10 +94,20 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
     reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
     n_channels = len(record.channels)
     top = min(settings.max_order or 60, (window - 1) * n_channels)
-    orders = tuple(
-        range(min(settings.order_step, 2) if settings.order_step < 2 else 2, top + 1, settings.order_step)
-    )
+    orders = _orders(settings.order_step, top)
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def _orders(step: int, top: int) -> tuple[int, ...]:
+    """Return the model orders: high ones differ by little from their neighbours, and are half as dense.
+
+    Examples
+    --------
+    >>> _orders(2, 30)
+    (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28)
+    """
+    low = range(min(step, 2), min(top, DENSE_ORDERS) + 1, step)
+    return (*low, *range(low[-1] + 2 * step, top + 1, 2 * step)) if len(low) else ()
 
 
 def shortness(reduced: Record, resolved: ResolvedSettings, *, chosen: bool) -> tuple[str, ...]:

@@ -52,7 +52,8 @@ def spectral_matrix(
     segments = _segments(np.where(valid, y, 0.0), segment_length)
     window = signal.get_window("hann", segment_length)
     x = np.fft.rfft(segments * window, axis=-1)
-    matrix = np.einsum("asf,bsf->fab", x, x.conj()) / segments.shape[1]
+    x = x.transpose(2, 0, 1)
+    matrix = x @ x.conj().transpose(0, 2, 1) / segments.shape[1]
     matrix *= 2.0 / (sample_rate_hz * np.sum(window**2))
     share = np.maximum(valid.mean(axis=1), 1e-3)
     f = np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length))

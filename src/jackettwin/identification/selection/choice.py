@@ -11,7 +11,7 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
-from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
+from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits, not_refined
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
@@ -53,12 +53,12 @@ TAKEN_LINES = 0.75
 
 @dataclass(frozen=True)
 class Choice:
-    """Modes by ascending frequency, the candidate each came from, and what was left out."""
+    """Modes by ascending frequency, the candidate each came from, what was left out, what to beware of."""
 
     modes: tuple[ModalEstimate, ...]
     candidate: tuple[int, ...]
     rejected: tuple[Rejected, ...]
-    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]
 
 
 def chosen_modes(
@@ -68,26 +68,27 @@ def chosen_modes(
     y, scale, resolved = tones.clean, ready.scale, ready.settings
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
     sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
-    warnings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
     modes = {i: judged[i].mode for i, certain in zip(open_to, sure, strict=True) if certain}
     if settings.refine and sure.any():
         if np.isnan(y).mean(axis=1).max() > MOST_MISSING:
-            warnings = ("modes not refined: gaps remain in the record",)
+            f = np.array([mode.frequency_hz for mode in modes.values()])
+            findings = (not_refined(f, "gaps remain in the record"),)
         else:
             start = _start([judged[i].mode for i in open_to], sure, ready, tones, settings)
             band = guarded_band_hz(resolved)
-            fits, warnings = accepted_fits(y, resolved.sample_rate_hz, band, start)
+            fits, findings = accepted_fits(y, resolved.sample_rate_hz, band, start)
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
                 modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
     tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
     tones_hz += [tone.swept_hz for tone in tones.drifting]
-    found = _sorted(judged, modes, tones_hz, resolved, settings, warnings)
+    found = _sorted(judged, modes, tones_hz, resolved, settings, findings)
     flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
     found = replace(found, modes=tuple(_steady(mode, y, ready) for mode in flagged))
     if settings.refine:
-        found = replace(found, warnings=(*found.warnings, *_hidden(judged, found)))
+        found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
 
 
@@ -216,7 +217,7 @@ def _sorted(
     tones_hz: Collection[tuple[float, float]],
     resolved: ResolvedSettings,
     settings: IdentificationSettings,
-    warnings: tuple[str, ...],
+    findings: tuple[Finding, ...],
 ) -> Choice:
     """Drop what is outside the band or hardly known; order by frequency."""
     rejected = {i: c.rejected for i, c in enumerate(judged) if i not in modes}
@@ -235,7 +236,7 @@ def _sorted(
         modes=tuple(kept[i] for i in order),
         candidate=tuple(order),
         rejected=tuple(rejected[i] for i in sorted(rejected)),
-        warnings=warnings,
+        findings=findings,
     )
 
 
@@ -247,12 +248,12 @@ def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     return [Rejected(f, None, reason, ModeStatus.TONE) for f, reason in sorted(found) if low < f < high]
 
 
-def _hidden(judged: Sequence[Candidate], found: Choice) -> list[str]:
+def _hidden(judged: Sequence[Candidate], found: Choice) -> list[Finding]:
     """Say where what was left out may be the other mode of a close pair, beside the mode it is nearest to.
 
     Only beside modes that no fit describes: where one does, the spectrum needs no other.
     """
-    out: dict[float, str] = {}
+    out: dict[float, Finding] = {}
     for i, c in enumerate(judged):
         near = [m for m in found.modes if _overlap(c.mode, m)]
         alike = [float(mac(c.mode.mode_shape, m.mode_shape)) for m in near]
@@ -260,10 +261,8 @@ def _hidden(judged: Sequence[Candidate], found: Choice) -> list[str]:
         if known or not near or max(alike) > SAME_SHAPE or any(m.unrefined is not None for m in near):
             continue
         mode = min(near, key=lambda m: abs(m.frequency_hz - c.mode.frequency_hz))
-        out[mode.frequency_hz] = (
-            f"a second mode may hide beside {mode.frequency_hz:.4g} Hz: poles of another shape at "
-            f"{c.mode.frequency_hz:.4g} Hz, within its bandwidth, were left out"
-        )
+        where = {"frequency_hz": mode.frequency_hz, "other_hz": c.mode.frequency_hz}
+        out[mode.frequency_hz] = Finding("hidden_mode", params=where)
     return list(out.values())
 
 

@@ -107,8 +107,8 @@ class OrderPoles:
     """(n_blocks, n_poles, n_channels)."""
 
 
-def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1) -> FloatArray:
-    """Return the block Hankel matrix with block (a, b) = R_{first_lag + a + b}.
+def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1, every: int = 1) -> FloatArray:
+    """Return the block Hankel matrix with block (a, b) = R_{first_lag + a + every·b}.
 
     Thesis eq. (6.4) with its block columns reversed, which changes nothing below. Lag 0, which
     carries the measurement noise, is left out.
@@ -117,11 +117,13 @@ def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1) -> Floa
     ----------
     covariances : (n_lags + 1, n_channels, n_references)
         Lags 0 … at least ``first_lag + 2·block_rows − 2``.
+    every : int
+        Of the block columns, which are instruments: so many samples apart, they span as long a past.
     """
     _, n_channels, n_references = covariances.shape
-    lag = first_lag + np.add.outer(np.arange(block_rows), np.arange(block_rows))
+    lag = first_lag + np.add.outer(np.arange(block_rows), np.arange(0, block_rows, every))
     blocks = covariances[lag]
-    size = (block_rows * n_channels, block_rows * n_references)
+    size = (block_rows * n_channels, lag.shape[1] * n_references)
     return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size))
 
 
@@ -133,6 +135,7 @@ def ssi_cov(
     weighting: Weighting = "br",
     state_matrix: StateMatrix = "shift",
     factors: bool = True,
+    every: int = 1,
 ) -> Subspace:
     r"""Factorise the covariances once for all model orders.
 
@@ -149,11 +152,14 @@ def ssi_cov(
         Lags 0 … 2·block_rows.
     factors : bool
         Whether the full factorisation, which uncertainty needs, is kept.
+    every : int
+        Of the block columns, with unit weights and shift structure only.
     """
     n_channels = covariances.shape[1]
-    h = hankel(covariances, block_rows)
     if weighting == "br" and state_matrix == "shift":
+        h = hankel(covariances, block_rows, every=every)
         return balanced_subspace(h, n_channels, max_order, factors=factors)
+    h = hankel(covariances, block_rows)
     w1_inverse, w2_inverse = _weights(covariances, block_rows, weighting)
     all_ = _factors(_divide(h, w1_inverse, w2_inverse))
     n = min(max_order, len(all_.singular_values) - n_channels)

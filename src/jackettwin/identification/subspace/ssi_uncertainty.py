@@ -39,10 +39,7 @@ class Propagation:
 
     subspace: Subspace
     outside: FloatArray
-    """(n_rows · n_blocks, n_max): D Σ₁^½, of which an order takes the rows beyond it and columns up to it."""
-    outside_turned: FloatArray
-    """(n_max · n_blocks, n_rows): the same, turned."""
-    n_blocks: int
+    """(n_rows, n_blocks, n_max): D Σ₁^½, of which an order takes the rows beyond it and columns up to it."""
     seen: FloatArray
     """(2 n_max + n_channels, n_rows): Qᵀ U↓, Qᵀ U↑ and the first block row of U."""
     residual_low: FloatArray
@@ -51,18 +48,20 @@ class Propagation:
     """U↑ᵀ O↑, (n_rows, n_max)."""
 
 
-def block_deviations(blocks: FloatArray, block_rows: int) -> Iterable[FloatArray]:
+def block_deviations(blocks: FloatArray, block_rows: int, every: int = 1) -> Iterable[FloatArray]:
     """Yield ΔH_b such that Σ vec ΔH_b vec ΔH_bᵀ is the covariance of the mean Hankel matrix.
 
     Parameters
     ----------
     blocks : (n_blocks, n_lags + 1, n_channels, n_channels)
         From ``block_covariances``.
+    every : int
+        As of ``hankel``.
     """
     n_blocks = len(blocks)
     mean = blocks.mean(axis=0)
     for block in blocks:
-        yield hankel((block - mean) / np.sqrt(n_blocks * (n_blocks - 1.0)), block_rows)
+        yield hankel((block - mean) / np.sqrt(n_blocks * (n_blocks - 1.0)), block_rows, every=every)
 
 
 def stacked_hankel(
@@ -128,12 +127,9 @@ def propagation(
     outside = np.stack(
         [_outside(factors, delta.astype(precision, copy=False), o.shape[1]) for delta in deviations], axis=1
     )
-    n_rows, n_blocks, n_max = outside.shape
     return Propagation(
         subspace=subspace,
-        outside=outside.reshape(n_rows * n_blocks, n_max),
-        outside_turned=np.ascontiguousarray(outside.transpose(2, 1, 0)).reshape(n_max * n_blocks, n_rows),
-        n_blocks=n_blocks,
+        outside=outside,
         seen=np.vstack([q.T @ u[n_channels:], q.T @ u[:-n_channels], u[:n_channels]]).astype(precision),
         residual_low=(u[:-n_channels].T @ o[n_channels:]).astype(precision),
         residual_up=(u[:-n_channels].T @ o[:-n_channels]).astype(precision),
@@ -170,49 +166,82 @@ def order_poles_with_uncertainty(
     real : bool
         Report real eigenvalues between 0 and 1 instead.
     """
-    out = []
-    for order in orders:
+    out, sums = [], _Sums.none(shared)
+    for order in sorted(orders, reverse=True):
         eigenvalues, vectors = linalg.eig(shared.subspace.state_matrix(order), check_finite=False)
         mu = eigenvalues.real
         chosen = (eigenvalues.imag == 0.0) & (mu > 0.0) & (mu < 1.0) if real else eigenvalues.imag > 0.0
         if keep is not None:
             chosen &= keep(eigenvalues)
-        out.append(_one_order(shared, order, eigenvalues, vectors, np.flatnonzero(chosen)))
-    return out
+        sums.reach(shared, order)
+        out.append(_one_order(shared.subspace, sums, eigenvalues, vectors, np.flatnonzero(chosen)))
+    return out[::-1]
+
+
+@dataclass
+class _Sums:
+    """Sums over the rows of ``outside`` from an order on, which the next lower order adds a few to.
+
+    Attributes
+    ----------
+    first : int
+        The first row that is in them.
+    seen : (2 n_max + n_channels, n_blocks, n_max)
+        Of the rows with ``seen``.
+    low, up : (n_blocks, n_max, n_max)
+        Of the rows, turned, with the residuals.
+    """
+
+    first: int
+    seen: FloatArray
+    low: FloatArray
+    up: FloatArray
+
+    @classmethod
+    def none(cls, shared: Propagation) -> _Sums:
+        """Return sums over no rows yet."""
+        n_rows, n_blocks, n_max = shared.outside.shape
+        kind = shared.outside.dtype
+        turned = np.zeros((2, n_blocks, n_max, n_max), dtype=kind)
+        return cls(n_rows, np.zeros((len(shared.seen), n_blocks, n_max), dtype=kind), *turned)
+
+    def reach(self, shared: Propagation, order: int) -> None:
+        """Add the rows down to an order."""
+        added = slice(order, self.first)
+        outside = shared.outside[added].reshape(self.first - order, -1)
+        self.seen += (shared.seen[:, added] @ outside).reshape(self.seen.shape)
+        self.low += (outside.T @ shared.residual_low[added]).reshape(self.low.shape)
+        self.up += (outside.T @ shared.residual_up[added]).reshape(self.up.shape)
+        self.first = order
 
 
 def _one_order(
-    shared: Propagation,
-    n: int,
-    eigenvalues: ComplexArray,
-    vectors: ComplexArray,
-    chosen: IntArray,
+    subspace: Subspace, sums: _Sums, eigenvalues: ComplexArray, vectors: ComplexArray, chosen: IntArray
 ) -> OrderPoles:
-    """Propagate to the chosen poles of order n: ``e = Dψ``, then δAψ, then eigenvalue and shape."""
-    subspace, n_blocks = shared.subspace, shared.n_blocks
+    """Propagate to the chosen poles of an order: δOψ, then δAψ, then eigenvalue and shape."""
+    n = len(eigenvalues)
     raw_shapes = subspace.output_matrix(n) @ vectors
     bare = OrderPoles(n, eigenvalues[chosen], normalised(np.asarray(raw_shapes[:, chosen].T)))
     if not len(chosen):
         return bare
     mu, psi = eigenvalues[chosen], vectors[:, chosen]
-    n_max = shared.residual_low.shape[1]
-    e = _parts_of_product(shared.outside[n * n_blocks :, :n], psi).reshape(-1, n_blocks * 2 * len(chosen))
-    rows = np.r_[0:n, n_max : n_max + n, 2 * n_max : len(shared.seen)]
-    seen = _joined(shared.seen[rows, n:] @ e, n_blocks)
-    residual = shared.residual_low[n:, :n] @ psi - mu * (shared.residual_up[n:, :n] @ psi)
-    turned = _parts_of_product(shared.outside_turned[: n * n_blocks, n:], residual)
+    n_max = sums.low.shape[1]
+    rows = np.r_[0:n, n_max : n_max + n, 2 * n_max : len(sums.seen)]
+    seen = _complex_product(sums.seen[rows, :, :n], psi)
+    low, up = (_complex_product(part[:, :n, :n], psi) for part in (sums.low, sums.up))
+    turned = (low - mu * up).transpose(1, 0, 2)
     upper = subspace.upper[:n, :n]
-    t = _joined(linalg.inv(upper, check_finite=False).T @ turned.reshape(n, -1), n_blocks)
+    t = _stack_times(np.asarray(linalg.inv(upper, check_finite=False).T), turned)
     t += seen[:n] - mu * seen[n : 2 * n]
-    modal = _stack_times(np.asarray(np.linalg.inv(upper @ vectors), dtype=complex), t)
+    modal = _stack_times(np.asarray(np.linalg.inv(upper @ vectors)), t)
     index = np.arange(len(chosen))
     gap = mu - eigenvalues[:, None]
     gap[chosen, index] = np.inf
     delta_mu = modal[chosen, :, index].T
-    delta_shape = seen[2 * n :] + _stack_times(np.asarray(raw_shapes, dtype=complex), modal / gap[:, None, :])
+    delta_shape = seen[2 * n :] + _stack_times(np.asarray(raw_shapes), modal / gap[:, None, :])
     return replace(
         bare,
-        eigenvalue_deviations=delta_mu.reshape(n_blocks, -1),
+        eigenvalue_deviations=delta_mu,
         shape_deviations=_of_normalised(raw_shapes[:, chosen], delta_shape),
     )
 
@@ -226,18 +255,13 @@ def _of_normalised(raw: ComplexArray, delta: ComplexArray) -> ComplexArray:
     return np.asarray(((delta - (raw / top)[:, None, :] * at_top) / top).transpose(1, 2, 0))
 
 
-def _parts_of_product(a: FloatArray, b: ComplexArray) -> FloatArray:
-    """Return real a (…, n) times the real and the imaginary parts of b (n, m), (…, 2m): one real product."""
-    return np.asarray(a @ np.hstack([b.real, b.imag]).astype(a.dtype, copy=False))
+def _complex_product(a: FloatArray, b: ComplexArray) -> ComplexArray:
+    """Return real a (…, n) times complex b (n, m): one real product, in the precision of a."""
+    both = np.ascontiguousarray(a) @ np.hstack([b.real, b.imag]).astype(a.dtype, copy=False)
+    m = b.shape[1]
+    return np.asarray(both[..., :m] + 1j * both[..., m:], dtype=complex)
 
 
-def _joined(parts: FloatArray, n_blocks: int) -> ComplexArray:
-    """Return complex (k, n_blocks, m) of real and imaginary parts (k, n_blocks · 2m)."""
-    both = parts.reshape(len(parts), n_blocks, -1)
-    m = both.shape[2] // 2
-    return np.asarray(both[:, :, :m] + 1j * both[:, :, m:])
-
-
-def _stack_times(a: ComplexArray, b: ComplexArray) -> ComplexArray:
-    """Return a (n, k) times b (k, n_blocks, n_poles), both complex."""
+def _stack_times(a: ComplexArray | FloatArray, b: ComplexArray) -> ComplexArray:
+    """Return a (n, k) times b (k, n_blocks, n_poles)."""
     return np.asarray(a @ b.reshape(len(b), -1)).reshape(len(a), *b.shape[1:])

@@ -31,6 +31,8 @@ STEP = 0.7
 """From one band to the next, in half widths."""
 WORTH_FOLLOWING = 0.5
 """Relative variance of the squared envelope below which a band is looked at closer."""
+WORTH_A_LOOK = 0.7
+"""The same at a pole, where less is asked: a tone of two thirds of the power leaves 0.55, a mode near 1."""
 STEADY_SHARE = 0.4
 """Of the D asked of a tone at a pole, where its envelope in the band is steadier than that of a mode is."""
 FOLLOWED = 8
@@ -109,6 +111,8 @@ def tone_at(lines: ComplexArray, duration_s: float, frequency_hz: float) -> Phas
     """
     half = np.maximum(np.array(DRIFTS) * frequency_hz, FEWEST_LINES / duration_s)
     for band in bands_of(lines, duration_s, np.full(len(half), frequency_hz), half):
+        if band.variance > WORTH_A_LOOK:
+            continue
         share = STEADY_SHARE if band.variance < band.expected else 1.0
         track = _tone_in(lines, duration_s, band, share)
         if track is not None and track.passes(frequency_hz):
