@@ -11,13 +11,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray
 from jackettwin.errors import InputError
 from jackettwin.identification.decays.free_decay import transient
-from jackettwin.identification.estimate import (
-    Identification,
-    ModalEstimate,
-    RealPole,
-    ResolvedSettings,
-    Stabilisation,
-)
+from jackettwin.identification.estimate import Identification, ModalEstimate, RealPole, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.picks import Pick, of_record
@@ -260,17 +254,18 @@ def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
         weighting=settings.weighting,
         state_matrix=settings.state_matrix,
         factors=_uncertain(settings),
-        every=_every(resolved, len(ready.references)),
+        every=_every(ready, settings),
     )
 
 
-def _every(resolved: ResolvedSettings, n_references: int) -> int:
-    """Return the samples between the instruments of the past, of which twice the largest order is enough."""
-    enough = ENOUGH_INSTRUMENTS * max(resolved.orders, default=1)
-    return EVERY if resolved.block_rows * n_references >= EVERY * enough else 1
+def _every(ready: Prepared, settings: IdentificationSettings) -> int:
+    """Return the samples between the instruments of the past: one if relaxations are sought or few left."""
+    enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
+    many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
+    return EVERY if many and not settings.real_poles else 1
 
 
 def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
-    rows, every = ready.settings.block_rows, _every(ready.settings, len(ready.references))
+    rows, every = ready.settings.block_rows, _every(ready, settings)
     blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
     return propagation(subspace, block_deviations(blocks, rows, every), np.float32)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from jackettwin.errors import NumericalError
 from jackettwin.identification import identify
 from jackettwin.identification.maximum_likelihood import fits
+from jackettwin.identification.storage import from_plain, to_plain
 from jackettwin.identification.synthetic import simulate
 
 
@@ -33,7 +35,10 @@ def test_what_breaks_down_leaves_the_modes_as_the_subspace_method_found_them(err
     found = identify(record)
     assert len(found.modes) == 4
     assert {mode.method for mode in found.modes} == {"ssi-cov"}
-    assert any(f"broke down ({type(error).__name__})" in text for text in found.warnings)
+    assert {finding.code for finding in found.findings} == {"not_refined"}
+    assert all(f"broke down ({type(error).__name__})" in finding.text for finding in found.findings)
+    assert [str(finding) for finding in found.findings] == list(found.warnings)
+    assert from_plain(json.loads(json.dumps(to_plain(found)))).findings == found.findings
 
 
 def test_a_result_that_is_no_number_is_not_believed(tower, rng, monkeypatch):

@@ -108,7 +108,7 @@ def test_a_mode_whose_start_is_nowhere_near_is_left_unrefined(tower, rng):
         avoid_hz=(),
         most_damping=0.15,
     )
-    fits, warnings = accepted_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
+    fits, findings = accepted_fits(y / y.std(axis=1, keepdims=True), 5.0, (0.2, 1.6), start)
     assert [np.flatnonzero(fit.candidates).tolist() for fit in fits] == [[0, 1]]
-    assert len(warnings) == 1
-    assert "1.2, 1.26 Hz not refined: the fit left the peak at 1.2" in warnings[0]
+    assert [finding.code for finding in findings] == ["not_refined"]
+    assert "1.2, 1.26 Hz not refined: the fit left the peak at 1.2" in findings[0].text

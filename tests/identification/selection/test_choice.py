@@ -119,5 +119,5 @@ def test_a_pair_half_left_out_is_hinted_at(tower, rng):
     assert _hidden(judged, whole) == []
     half = dict(list(enumerate(result.modes))[1:])
     hints = _hidden(judged, _sorted(judged, half, (), result.settings, settings, ()))
-    assert len(hints) == 1
-    assert f"beside {result.modes[1].frequency_hz:.4g} Hz" in hints[0]
+    assert [hint.code for hint in hints] == ["hidden_mode"]
+    assert f"beside {result.modes[1].frequency_hz:.4g} Hz" in hints[0].text

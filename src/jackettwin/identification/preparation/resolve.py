@@ -34,7 +34,8 @@ allows: a mode near the edge is known by its whole peak, and one beyond it must 
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
 DENSE_ORDERS = 20
-"""Model orders up to which every step is taken, then every second."""
+"""Model orders up to which every step is taken, then every second; of relaxations, which are in few,
+all are taken."""
 FEW_CYCLES = 60.0
 """With fewer cycles of its lowest mode a record is called short."""
 STRONG_BELOW = 0.1
@@ -94,11 +95,11 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
     reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
     n_channels = len(record.channels)
     top = min(settings.max_order or 60, (window - 1) * n_channels)
-    orders = _orders(settings.order_step, top)
+    orders = _orders(settings.order_step, top, top if settings.real_poles else DENSE_ORDERS)
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
 
 
-def _orders(step: int, top: int) -> tuple[int, ...]:
+def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:
     """Return the model orders: high ones differ by little from their neighbours, and are half as dense.
 
     Examples
@@ -106,7 +107,7 @@ def _orders(step: int, top: int) -> tuple[int, ...]:
     >>> _orders(2, 30)
     (2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 24, 28)
     """
-    low = range(min(step, 2), min(top, DENSE_ORDERS) + 1, step)
+    low = range(min(step, 2), min(top, dense) + 1, step)
     return (*low, *range(low[-1] + 2 * step, top + 1, 2 * step)) if len(low) else ()
 
 
