@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import NumericalError
-from jackettwin.identification import identify
+from jackettwin.files.codec import decode, encode
+from jackettwin.identification import Identification, identify
 from jackettwin.identification.maximum_likelihood import fits
-from jackettwin.identification.storage import from_plain, to_plain
 from jackettwin.identification.synthetic import simulate
 
 
@@ -38,7 +38,8 @@ def test_what_breaks_down_leaves_the_modes_as_the_subspace_method_found_them(err
     assert {finding.code for finding in found.findings} == {"not_refined"}
     assert all(f"broke down ({type(error).__name__})" in finding.text for finding in found.findings)
     assert [str(finding) for finding in found.findings] == list(found.warnings)
-    assert from_plain(json.loads(json.dumps(to_plain(found)))).findings == found.findings
+    stored = json.dumps(encode(found.without_figures))
+    assert decode(Identification, json.loads(stored)).findings == found.findings
 
 
 def test_a_result_that_is_no_number_is_not_believed(tower, rng, monkeypatch):
