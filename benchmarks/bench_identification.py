@@ -1,4 +1,5 @@
-"""Speed of SSI-cov side by side with pyOMA2 and koma, one thread, the same samples and block rows.
+"""Speed of SSI-cov side by side with pyOMA2 and koma, one thread, the same samples and block rows; of identify
+on the shipped OpenFAST records, step by step, beside a dense eigenvalue problem.
 
 koma asks for a 3D viewer its SSI does not use: ``pip install --no-deps koma-python`` puts it beside us.
 
@@ -13,10 +14,12 @@ import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
 from statistics import median
+from pathlib import Path
 from time import process_time
 
 import numpy as np
 
+import jackettwin
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.subspace.covariances import block_covariances, covariances
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
@@ -26,7 +29,9 @@ from jackettwin.identification.subspace.ssi_uncertainty import (
     propagation,
 )
 from jackettwin.identification.synthetic import ModalSystem, simulate
+from jackettwin.records import read_record
 
+RECORDS = Path(jackettwin.__file__).parent / "data" / "records"
 RATE, MAX_ORDER, BLOCKS = 100.0, 80, 50
 ORDERS = range(1, MAX_ORDER + 1)
 
@@ -76,14 +81,28 @@ def koma(y: np.ndarray, block_rows: int) -> None:
     oma.covssi(y.T, RATE, block_rows, np.arange(2, MAX_ORDER + 1), weighting="br", showinfo=False)
 
 
+def real_records() -> None:
+    """Print what each step of the shipped records of an independent program costs, reading left out."""
+    for path in sorted(RECORDS.glob("*.parquet")):
+        record, times = read_record(path), []
+        start = process_time()
+        identify(record, progress=lambda step: times.append((step, process_time())))  # noqa: B023
+        ends = [*(at for _, at in times[1:]), process_time()]
+        report(f"identify {path.stem}", process_time() - start)
+        steps = (f"{step} {end - at:.2f}" for (step, at), end in zip(times, ends, strict=True))
+        sys.stdout.write("  " + ", ".join(steps) + "\n")
+
+
 def main() -> None:
     warnings.simplefilter("ignore")
+    dense = np.random.default_rng(0).standard_normal((800, 800))
+    report("dense 800 × 800 eigenvalue problem", seconds(lambda: np.linalg.eig(dense), 3))
     record = simulate(ten_modes(), np.random.default_rng(1), sample_rate_hz=RATE)
     y = record.data / record.data.std(axis=1, keepdims=True)
     for block_rows in (50, 100):
         ours = seconds(lambda: poles(y, block_rows), 5)  # noqa: B023
         report(f"SSI-cov, {block_rows} block rows, every order to 80", ours)
-        for method in ("cov_R", "cov"):
+        for method in ("cov_R", "cov") if find_spec("pyoma2") is not None else ():
             theirs = seconds(lambda: pyoma(y, block_rows, method), 1)  # noqa: B023
             report(f"  pyOMA2 {method}", theirs, theirs / ours)
         if find_spec("koma") is not None:
@@ -94,6 +113,7 @@ def main() -> None:
     without = seconds(lambda: identify(record, plain), 3)
     report("identify, automatic, with uncertainty", without)
     report("  and refined by maximum likelihood", seconds(lambda: identify(record), 3) - without)
+    real_records()
 
 
 def report(what: str, time_s: float, ratio: float | None = None) -> None:
