@@ -35,9 +35,10 @@ def test_what_breaks_down_leaves_the_modes_as_the_subspace_method_found_them(err
     found = identify(record)
     assert len(found.modes) == 4
     assert {mode.method for mode in found.modes} == {"ssi-cov"}
-    assert {finding.code for finding in found.findings} == {"not_refined"}
-    assert all(f"broke down ({type(error).__name__})" in finding.text for finding in found.findings)
-    assert [str(finding) for finding in found.findings] == list(found.warnings)
+    left = [finding.text for finding in found.findings if finding.code == "not_refined"]
+    assert left
+    assert all(f"broke down ({type(error).__name__})" in text for text in left)
+    assert {str(finding) for finding in found.findings} <= set(found.warnings)
     stored = json.dumps(encode(found.without_figures))
     assert decode(Identification, json.loads(stored)).findings == found.findings
 
