@@ -1,5 +1,6 @@
-"""Speed of SSI-cov side by side with pyOMA2 and koma, one thread, the same samples and block rows; of identify
-on the shipped OpenFAST records, step by step, beside a dense eigenvalue problem.
+"""Speed of SSI-cov side by side with pyOMA2 and koma, one thread, the same samples and block rows.
+
+And of identify on the shipped OpenFAST records, step by step, beside a dense eigenvalue problem.
 
 koma asks for a 3D viewer its SSI does not use: ``pip install --no-deps koma-python`` puts it beside us.
 
@@ -13,8 +14,8 @@ import sys
 import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
-from statistics import median
 from pathlib import Path
+from statistics import median
 from time import process_time
 
 import numpy as np
