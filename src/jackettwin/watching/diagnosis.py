@@ -23,7 +23,7 @@ from jackettwin.watching.scatter import STRONGER
 from jackettwin.watching.watch import Change
 
 INSEPARABLE = 2.0
-"""Causes whose directions differ by fewer than so many standard deviations of the data are not told apart."""
+"""Causes that differ by fewer than so many standard deviations of data and model are not told apart."""
 _OTHER_PRIOR = 1.0
 MISFIT = 0.1
 """A model's direction is not the structure's: it may miss by so much of its length, in any quantity."""
@@ -77,7 +77,7 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     verdicts.append(Verdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
     ordered = tuple(sorted(verdicts, key=lambda v: -v.probability))
     likely = [c for c, p in zip(causes, probability, strict=False) if p > 0.02]
-    return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}))
+    return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds))
 
 
 def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, float, tuple[float, float]]:
@@ -129,7 +129,7 @@ def _misfit(J: FloatArray, kinds: Sequence[str]) -> FloatArray:
 
 
 def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
-    """Return ln of the evidence of louder noise: each mode is louder or not, by any of the factors.
+    """Return ln of the evidence of louder noise: each mode is louder or not, by any factor, and one is.
 
     What moves besides is judged by the scatter that each begin makes likely.
     """
@@ -143,6 +143,9 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
         mass = np.logaddexp.reduce(logs, axis=1)
         total += mass - np.log(2.0)
         louder[:, of_mode] = np.exp(np.exp(logs - mass[:, None]) @ ln_g)[:, None]
+    # that none is louder is no failing sensor
+    none = -np.log(2.0) * len(np.unique(cause.louder))
+    total += np.log(np.maximum(-np.expm1(np.minimum(none - total, 0.0)), 1e-12)) - np.log(-np.expm1(none))
     moved = cause.draws
     info = change.info / (louder[:, :, None] * louder[:, None, :])
     wide = np.eye(len(moved)) + moved.T @ info @ moved
@@ -170,9 +173,12 @@ def _something(change: Change, kinds: Sequence[str]) -> float:
 
 
 def _groups(
-    change: Change, causes: Sequence[Cause], verdicts: dict[str, Verdict]
+    change: Change, causes: Sequence[Cause], verdicts: dict[str, Verdict], kinds: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
-    """Return groups of causes that the data cannot tell apart, each at the size it would have."""
+    """Return groups of causes that data and model cannot tell apart, each at the size it would have.
+
+    The covariance of what they differ by is that of the data and of what a direction may miss: A⁻¹ + D².
+    """
     with_size = [c for c in causes if not c.louder.size]
     best = change.info[_best(change)]
     steps = {c.name: verdicts[c.name].size * c.draws.mean(axis=0) for c in with_size}
@@ -180,7 +186,9 @@ def _groups(
     for i, one in enumerate(with_size):
         for other in with_size[:i]:
             difference = steps[one.name] - steps[other.name]
-            if np.sqrt(difference @ best @ difference) < INSEPARABLE:
+            miss = _misfit(steps[one.name][None], kinds) ** 2
+            known = best @ np.linalg.inv(np.eye(len(miss)) + miss[:, None] * best)
+            if np.sqrt(difference @ known @ difference) < INSEPARABLE:
                 joined = {one.name, other.name}
                 for group in [g for g in groups if g & joined]:
                     joined |= group
