@@ -23,17 +23,18 @@ def recommended(updates: Sequence[Update]) -> Update | None:
 
 
 def likely(updates: Sequence[Update]) -> Update | None:
-    """Return the first law, or the most probable one if that is ten times as probable."""
+    """Return the first law; where another is ten times as probable, the simplest that comes near that one."""
     if not updates:
         return None
     first = next((u for u in updates if not u.best.locked_damper), updates[0])
     probability = approximate_probability(updates)
     if first.law not in probability:
         return first
-    best = max(probability, key=probability.__getitem__)
-    if probability[first.law] >= PREFERRED * probability[best]:
+    least = PREFERRED * max(probability.values())
+    if probability[first.law] >= least:
         return first
-    return next(u for u in updates if u.law == best)
+    near = [u for u in updates if probability.get(u.law, 0.0) >= least]
+    return min(near, key=lambda u: (len(u.problem.parameters), -probability[u.law]))
 
 
 def approximate_probability(updates: Sequence[Update]) -> dict[str, float]:
