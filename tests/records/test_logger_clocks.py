@@ -1,6 +1,6 @@
 """Loggers out of step are found, brought into step or cut; structures that lag by nature are left alone.
 
-``qualify/logger_clocks.py`` counts both over many structures.
+``qualify/screening.py`` counts what they do to modes over many systems.
 """
 
 from __future__ import annotations
