@@ -8,8 +8,6 @@ mode is ``λ = −ζω + iω√(1−ζ²)``.
 
 from __future__ import annotations
 
-DOF_NAMES = ("x", "y", "z", "rx", "ry", "rz")
 DOFS_PER_NODE = 6
 TRANSLATIONS = (0, 1, 2)
-ROTATIONS = (3, 4, 5)
 GRAVITY_M_S2 = 9.80665

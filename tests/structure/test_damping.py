@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import scipy.linalg as la
 
 from jackettwin.errors import InputError
-from jackettwin.structure.damping import Rayleigh, modal_damping
+from jackettwin.structure.damping import Rayleigh
 
 
 def test_minimum_is_at_the_frequency_asked_for() -> None:
@@ -42,18 +41,3 @@ def test_none_is_none() -> None:
 def test_bad_damping_is_refused(ratio: float, f: float, message: str) -> None:
     with pytest.raises(InputError, match=message):
         Rayleigh.minimum(ratio, f)
-
-
-def test_modal_damping_gives_each_mode_its_own_ratio(rng) -> None:
-    root = rng.standard_normal((5, 5))
-    M = root @ root.T + np.eye(5)
-    K = np.diag([1.0, 4.0, 9.0, 16.0, 30.0])
-    w2, phi = la.eigh(K, M)
-    omega, zeta = np.sqrt(w2), np.array([0.01, 0.02, 0.0, 0.05, 0.3])
-    C = modal_damping(M, phi, omega, zeta)
-    np.testing.assert_allclose(C, C.T, atol=1e-12)
-    A = np.block([[np.zeros((5, 5)), np.eye(5)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
-    values = np.linalg.eigvals(A)
-    values = values[values.imag > 0][np.argsort(np.abs(values[values.imag > 0]))]
-    np.testing.assert_allclose(-values.real / np.abs(values), zeta, atol=1e-12)
-    np.testing.assert_allclose(np.abs(values), omega, rtol=1e-12)

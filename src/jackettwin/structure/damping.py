@@ -49,17 +49,3 @@ class Rayleigh:
         """Return ζ(ω) = α/(2ω) + βω/2."""
         omega = 2.0 * pi * np.asarray(frequency_hz)
         return 0.5 * (self.alpha / omega + self.beta * omega)
-
-
-def modal_damping(mass: FloatArray, shapes: FloatArray, omega: FloatArray, zeta: FloatArray) -> FloatArray:
-    """Return C = Σ 2ζ_jω_j m φ_j φ_jᵀ m, which gives each mass-normalised mode its own ratio.
-
-    Parameters
-    ----------
-    mass : (n_dof, n_dof) mass matrix, dense or sparse
-    shapes : (n_dof, n_modes) mass-normalised real modes
-    omega : (n_modes,) [rad/s]
-    zeta : (n_modes,)
-    """
-    weighted = mass @ shapes
-    return np.asarray((weighted * (2.0 * zeta * omega)) @ weighted.T)

@@ -26,9 +26,6 @@ from jackettwin.watching import (
 from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
 
-RARE_DAYS = 3
-"""Days after the baseline below which there is nothing to watch yet."""
-
 
 @dataclass(frozen=True)
 class Alarm:
