@@ -178,12 +178,7 @@ def _from_here(request: Request) -> bool:
 
     A page elsewhere may point its name at 127.0.0.1.
     """
-    host = (
-        request.headers.get("host", "").rsplit(":", 1)[0]
-        if ":" in request.headers.get("host", "")
-        else (request.headers.get("host", ""))
-    )
-    return is_loopback(host)
+    return is_loopback(request.url.hostname or "")
 
 
 VIEWER, ENGINEER, ADMIN = (Depends(allowed(role)) for role in people.ROLES)
