@@ -139,7 +139,9 @@ def identify(
         missing = left_out(judged, picked)
         judged = with_verdicts(wanted, judge(picked))
     say("refinement")
-    known = evidence(tones.clean, ready, record.conditions) if _uncertain(settings) else None
+    known = None
+    if _uncertain(settings):
+        known = evidence(tones.clean, ready, record.conditions, sensors=basis is None)
     if known is not None and not wanted:
         judged = cleared(judged, known)
     chosen = chosen_modes(judged, tones, ready, settings)

@@ -128,6 +128,8 @@ class Evidence:
         1/Tp where the conditions say it.
     band_hz : (low, high)
         Of interest.
+    sensors : bool
+        Whether channels are sensors: a mode may well move one component of many alone.
     """
 
     look: Look
@@ -136,13 +138,16 @@ class Evidence:
     duration_s: float
     peak_of_sea_hz: float | None
     band_hz: tuple[float, float]
+    sensors: bool = True
 
     def inside(self, frequency_hz: float) -> bool:
         """Whether a frequency lies in the band of interest."""
         return self.band_hz[0] < frequency_hz < self.band_hz[1]
 
 
-def evidence(y: FloatArray, ready: Prepared, conditions: Mapping[str, Any]) -> Evidence:
+def evidence(
+    y: FloatArray, ready: Prepared, conditions: Mapping[str, Any], *, sensors: bool = True
+) -> Evidence:
     """Gather what modes are judged by.
 
     Parameters
@@ -151,6 +156,8 @@ def evidence(y: FloatArray, ready: Prepared, conditions: Mapping[str, Any]) -> E
         Without tones, divided by the channels' scale; NaN marks a missing sample.
     conditions : mapping
         Of the record; ``wave_tp_s``, ``tp_s`` or ``peak_period_s`` is the peak period of the sea [s].
+    sensors : bool
+        Whether the channels are sensors, not what dozens of them say together.
     """
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
@@ -160,6 +167,7 @@ def evidence(y: FloatArray, ready: Prepared, conditions: Mapping[str, Any]) -> E
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
         band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
+        sensors=sensors,
     )
 
 
@@ -245,7 +253,7 @@ def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evide
 def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> Iterator[Verdict]:
     """Tell what moves one sensor alone: no mode where the others, which could see it, show no peak."""
     share = np.abs(shape) ** 2 / np.sum(np.abs(shape) ** 2)
-    if len(share) < ENOUGH_SENSORS or share.max() <= ONE_SENSOR:
+    if not known.sensors or len(share) < ENOUGH_SENSORS or share.max() <= ONE_SENSOR:
         return
     others = np.arange(len(share)) != share.argmax()
     ratio, excess = contrast(known.lines[others], known.duration_s, mode, shape[others])
