@@ -148,6 +148,7 @@ def make_service(
     monkeypatch.setattr(
         engine, "known", lambda folder, days: {"status": "ok", "parameters": {"days": len(days)}}
     )
+    monkeypatch.setattr(engine, "watched", lambda folder, days, kept: ({"days": len(days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:
         add_text_version(connection, made, "wtg", TWIN, {}, "test")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import numpy as np
@@ -67,3 +67,28 @@ def observation(
         recognised=tuple(Recognised(mode, f"mode_{mode}", mac) for mode in modes),
         sensors=sensors,
     )
+
+
+BEGUN = 75
+"""Day on which a season of two modes changes."""
+
+
+def seen(days: int, step: float = 0.0, seed: int = 1) -> list[Observation]:
+    """Return four records a day of two modes that temperature and a slow process move; perhaps a step."""
+    rng = np.random.default_rng(seed)
+    out, slow = [], 0.0
+    for day in range(days):
+        slow = 0.6 * slow + 0.8 * 5e-4 * rng.standard_normal()
+        air = 10.0 + 5.0 * np.sin(day / 9.0)
+        for hour in (3, 9, 15, 21):
+            own = slow - 1e-4 * air + step * (day >= BEGUN) + 1e-3 * rng.standard_normal(2)
+            modes = {
+                k + 1: estimate(
+                    float(f * np.exp(x)), float(0.012 * np.exp(0.1 * rng.standard_normal())), 1e-3
+                )
+                for k, (f, x) in enumerate(zip((0.18, 0.183), own, strict=True))
+            }
+            start = datetime(2025, 1, 1, hour, tzinfo=UTC) + timedelta(days=day)
+            conditions = {"state": "parked", "mean_wind_speed_m_s": 5.0 + hour, "air_temperature_c": air}
+            out.append(observation(modes, start, name=f"{day}-{hour}", conditions=conditions))
+    return out

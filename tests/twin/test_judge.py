@@ -7,35 +7,10 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
-from observations import estimate, observation
+from observations import BEGUN, seen
 
 from jackettwin.twin import Observation, TwinModel, TwinState, advance_all
 from jackettwin.twin.judge import JUDGED, Judged, judge
-
-BEGUN = 75
-"""Day of the change, after a baseline of 60 days."""
-
-
-def seen(days: int, step: float = 0.0, seed: int = 1) -> list[Observation]:
-    """Return four records a day of two modes that temperature and a slow process move; perhaps a step."""
-    rng = np.random.default_rng(seed)
-    out, slow = [], 0.0
-    for day in range(days):
-        slow = 0.6 * slow + 0.8 * 5e-4 * rng.standard_normal()
-        air = 10.0 + 5.0 * np.sin(day / 9.0)
-        for hour in (3, 9, 15, 21):
-            own = slow - 1e-4 * air + step * (day >= BEGUN) + 1e-3 * rng.standard_normal(2)
-            modes = {
-                k + 1: estimate(
-                    float(f * np.exp(x)), float(0.012 * np.exp(0.1 * rng.standard_normal())), 1e-3
-                )
-                for k, (f, x) in enumerate(zip((0.18, 0.183), own, strict=True))
-            }
-            start = datetime(2025, 1, 1, hour, tzinfo=UTC) + timedelta(days=day)
-            conditions = {"state": "parked", "mean_wind_speed_m_s": 5.0 + hour, "air_temperature_c": air}
-            out.append(observation(modes, start, name=f"{day}-{hour}", conditions=conditions))
-    return out
-
 
 MODEL = TwinModel("asset")
 CHANGED = seen(100, step=-0.008)

@@ -111,7 +111,7 @@ def twin(
     supports = (
         None if at is not None else results.find_knowledge(connection, version.asset, version.model_hash)
     )
-    known["parameters"] = dict(supports or {})
+    known["parameters"] = dict((supports or {}).get("known", {}))
     return TwinOut(
         asset=version.asset,
         version=version.version,

@@ -68,15 +68,27 @@ def question_of(connection: Connection, service: Place, job: work.Job) -> Questi
     """Return what a worker must know to say what a turbine's state says of its supports."""
     days = results.states_until(connection, job.asset, job.model_hash)
     folder = twin_folder(connection, service, job.asset, job.version)
-    return Question(str(folder), {state.day: state.document for state in days})
+    kept = results.find_knowledge(connection, job.asset, job.model_hash) or {}
+    return Question(str(folder), {state.day: state.document for state in days}, kept.get("judged"))
 
 
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
-    """Keep what a state says of the supports."""
-    if work.finish(connection, job, service.server_id, "done", service.now()):
-        document = json.loads(outcome.document or "{}")
-        results.put_knowledge(connection, job.asset, job.model_hash, document, service.now())
-        journal.tell(connection, "state", job.asset, {"known": document["status"]}, service.now())
+    """Keep what a turbine's days say of the supports, and of a change."""
+    now = service.now()
+    if not work.finish(connection, job, service.server_id, "done", now):
+        return
+    document = json.loads(outcome.document or "{}")
+    results.put_knowledge(connection, job.asset, job.model_hash, document, now)
+    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
+    rows = [
+        _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
+        for f in outcome.findings
+    ]
+    for new in results.put_watched(connection, job.asset, job.model_hash, rows):
+        if new["severity"] != "info":
+            said = {name: new[name] for name in ("code", "severity", "subject", "params", "text")}
+            journal.tell(connection, "finding", job.asset, said, now)
+    journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
 
 
 def ask_known(connection: Connection, service: Place, job: work.Job) -> None:

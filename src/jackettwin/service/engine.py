@@ -16,7 +16,17 @@ from typing import Any
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
 from jackettwin.store import read_waveform
-from jackettwin.twin import TwinModel, TwinState, advance, observe, read_twin, twin_model
+from jackettwin.twin import (
+    JUDGED,
+    TwinModel,
+    TwinState,
+    advance,
+    finding_of,
+    judge,
+    observe,
+    read_twin,
+    twin_model,
+)
 from jackettwin.twin.follow import estimate
 from jackettwin.twin.observation import OBSERVATION
 from jackettwin.twin.state import ALL, Day, empty_state
@@ -192,6 +202,24 @@ def known(folder: Path, days: Mapping[str, str]) -> dict[str, Any]:
             for name, value in found.known.median.items()
         },
     }
+
+
+def watched(
+    folder: Path, days: Mapping[str, str], kept: Mapping[str, Any] | None
+) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
+    """Return what is kept of watching a turbine's days, and every finding of them that holds now, as rows.
+
+    Parameters
+    ----------
+    kept : what an earlier call returned; it only saves time
+    """
+    config, model = read_twin(folder / TWIN_FILE, records_follow=True), load_model(folder)
+    promise = {"baseline_days": config.watch.baseline_days, "arl_years": config.watch.arl_years}
+    last = max(days)
+    judged, new = judge(model, state_of(model, days), JUDGED.load(kept) if kept else None, **promise)
+    said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
+    said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
+    return JUDGED.dump(judged), tuple(_finding(f) | {"time_utc": at, "day": at[:10]} for at, f in said)
 
 
 def stabilisation(folder: str, waveform: str) -> dict[str, Any]:

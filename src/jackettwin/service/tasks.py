@@ -129,20 +129,27 @@ def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
 
 @dataclass(frozen=True)
 class Question:
-    """The days of a turbine, of which it is asked what they say of the supports."""
+    """The days of a turbine, of which it is asked what they say of the supports and of a change.
+
+    ``judged`` is what is kept of watching them.
+    """
 
     twin_folder: str
     days: Mapping[str, str]
+    judged: Mapping[str, Any] | None = None
 
 
 def know(question: Question) -> Outcome:
-    """Answer a question about the supports."""
-    from jackettwin.service.engine import known
+    """Answer a question about a turbine's days."""
+    from jackettwin.service import engine
 
+    folder = Path(question.twin_folder)
     try:
-        return Outcome(json.dumps(known(Path(question.twin_folder), question.days)))
+        known = engine.known(folder, question.days)
     except JackettwinError as error:
-        return Outcome(json.dumps({"status": str(error), "parameters": {}}))
+        known = {"status": str(error), "parameters": {}}
+    judged, findings = engine.watched(folder, question.days, question.judged) if question.days else (None, ())
+    return Outcome(json.dumps({"known": known, "judged": judged}), findings=findings)
 
 
 def observe_stored(task: Task) -> Outcome:

@@ -155,6 +155,26 @@ def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> N
         connection.execute(insert(findings), list(rows))
 
 
+def put_watched(
+    connection: Connection, asset: str, model_hash: str, rows: Sequence[Mapping[str, Any]]
+) -> list[Mapping[str, Any]]:
+    """Keep what watching a turbine's days says now; return the rows that are new.
+
+    What was said before and holds no more, since a late record changed a day, is taken away.
+    """
+    own = and_(findings.c.asset == asset, findings.c.model_hash == model_hash, findings.c.origin == "watch")
+    before = {
+        (alarm_key(row), row["text"]): row["id"]
+        for row in (dict(r._mapping) for r in connection.execute(select(findings).where(own)))
+    }
+    now = {(alarm_key(row), row["text"]): row for row in rows}
+    gone = [number for key, number in before.items() if key not in now]
+    connection.execute(delete(findings).where(findings.c.id.in_(gone)))
+    new = [row for key, row in now.items() if key not in before]
+    put_findings(connection, new)
+    return new
+
+
 def list_modes(
     connection: Connection,
     asset: str,

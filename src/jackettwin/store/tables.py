@@ -200,7 +200,8 @@ knowledge = Table(
     Column("computed_utc", Utc, nullable=False),
     Column("document", JSON, nullable=False),
 )
-"""What the newest state says of the supports: costly to find, so found when there is time and kept."""
+"""What the newest state says, found when there is time since it is costly: ``known`` of the supports;
+``judged`` is what is kept of watching the days."""
 
 findings = Table(
     "findings",
@@ -221,7 +222,8 @@ findings = Table(
     Index("ix_findings_record", "asset", "record_id"),
     Index("ix_findings_page", "asset", "model_hash", "severity", "id"),
 )
-"""``origin``: observe or advance. Those of advance are written anew when a day is advanced anew."""
+"""``origin``: observe, advance or watch. Those of advance are written anew when a day is advanced anew, those
+of watch, which are of no single record (``record_id`` is empty), when the days are judged anew."""
 
 acknowledgements = Table(
     "acknowledgements",

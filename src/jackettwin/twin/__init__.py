@@ -18,7 +18,12 @@ if TYPE_CHECKING:
         examine_file as examine_file,
     )
     from jackettwin.twin.files import read_twin as read_twin, shipped_twins as shipped_twins
-    from jackettwin.twin.judge import JUDGED as JUDGED, Judged as Judged, judge as judge
+    from jackettwin.twin.judge import (
+        JUDGED as JUDGED,
+        Judged as Judged,
+        finding_of as finding_of,
+        judge as judge,
+    )
     from jackettwin.twin.model import TwinModel as TwinModel, twin_model as twin_model
     from jackettwin.twin.observation import OBSERVATION as OBSERVATION, Observation as Observation
     from jackettwin.twin.observe import observe as observe

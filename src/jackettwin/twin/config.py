@@ -111,6 +111,20 @@ class UpdateSettings:
 
 
 @dataclass(frozen=True)
+class WatchSettings:
+    """What is learnt from and promised when the days of a twin are watched for change.
+
+    Attributes
+    ----------
+    baseline_days : days from the first record that tell what is normal; a year has a round of seasons
+    arl_years : a false alarm once in so many years, or more rarely, of all quantities together
+    """
+
+    baseline_days: float = 365.0
+    arl_years: float = 10.0
+
+
+@dataclass(frozen=True)
 class TwinConfig:
     """A checked twin file; relative paths are resolved."""
 
@@ -148,6 +162,8 @@ class TwinConfig:
     """What held of the sensors for a while."""
     operation: OperationRule = OperationRule()
     """Which state of operation a record was in, and whether it may update the supports."""
+    watch: WatchSettings = WatchSettings()
+    """How its days are watched for change."""
     rotor_speed_rpm: tuple[float, float] | None = None
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     assigned: tuple[int, ...] = ()

@@ -23,7 +23,14 @@ from jackettwin.simulate.water_files import WaterSchema, water_members
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.assigned import assigned_modes
-from jackettwin.twin.config import PAIRED_MODES, GivenRelaxation, ModelError, TwinConfig, UpdateSettings
+from jackettwin.twin.config import (
+    PAIRED_MODES,
+    GivenRelaxation,
+    ModelError,
+    TwinConfig,
+    UpdateSettings,
+    WatchSettings,
+)
 from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
@@ -143,6 +150,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         sensors=tuple(sensor.build() for sensor in schema.sensors),
         calibrations=tuple(c for sensor in schema.sensors for c in sensor.history()),
         operation=schema.operation.build(),
+        watch=WatchSettings(**schema.watch.model_dump()),
         records=tuple(path.parent / record for record in schema.records),
         unsaid=_unsaid(schema),
         targets=targets,

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.findings import Finding
+from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
 from jackettwin.twin.stored import StoredSchema
@@ -26,9 +27,6 @@ from jackettwin.watching import History, Watch, start, step
 from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
-BASELINE_DAYS = 365.0
-"""A season's round."""
-ARL_YEARS = 10.0
 
 
 @dataclass(frozen=True)
@@ -64,8 +62,8 @@ def judge(
     state: TwinState,
     kept: Judged | None = None,
     *,
-    baseline_days: float = BASELINE_DAYS,
-    arl_years: float = ARL_YEARS,
+    baseline_days: float = WatchSettings.baseline_days,
+    arl_years: float = WatchSettings.arl_years,
 ) -> tuple[Judged, tuple[Finding, ...]]:
     """Return what the days of a state say of a change, and what is worth saying that was not said before.
 
@@ -98,7 +96,7 @@ def judge(
         known = _day(model, known, baseline, history_of(columns, state, [day]), day)
     known = replace(known, judged=_fingerprint(state, after))
     told = {alarm["time_utc"] for alarm in kept.alarms}
-    return known, (*findings, *(_finding(a) for a in known.alarms if a["time_utc"] not in told))
+    return known, (*findings, *(finding_of(a) for a in known.alarms if a["time_utc"] not in told))
 
 
 def _known(
@@ -134,7 +132,7 @@ def _day(model: TwinModel, known: Judged, baseline: History, day: History, name:
     return replace(known, watch=watch, through=name, alarms=alarms)
 
 
-def _finding(alarm: Mapping[str, Any]) -> Finding:
+def finding_of(alarm: Mapping[str, Any]) -> Finding:
     """Return what is said of an alarm."""
     best = alarm["causes"][0]
     low, high = alarm["size_interval_90"]
@@ -168,8 +166,12 @@ def _time(day: float) -> datetime:
 
 @dataclass(frozen=True)
 class Columns:
-    """What the rows of a history are made of: as the baseline has it, so that days go on in the same way."""
+    """What the rows of a history are made of: as the baseline has it, so that days go on in the same way.
 
+    ``numbers`` are those of the modes that were seen, in the order of ``labels``.
+    """
+
+    numbers: tuple[int, ...]
     labels: tuple[str, ...]
     conditions: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -178,9 +180,11 @@ class Columns:
     def of(cls, model: TwinModel, state: TwinState, dates: Sequence[str]) -> Columns:
         """Return the modes, conditions and states of operation of some days."""
         operations = [item for d in dates for item in state.days[d].operations.items()]
-        numbers = [n for _, operation in operations for n in operation.modes]
+        numbers = sorted({n for _, o in operations for n, sums in o.modes.items() if sums.known})
+        named = dict(enumerate(model.labels, start=1))
         return cls(
-            model.labels or tuple(f"mode_{k}" for k in range(1, max(numbers, default=0) + 1)),
+            tuple(numbers),
+            tuple(named.get(n, f"mode_{n}") for n in numbers),
             ("wind_m_s", "wave_height_m", *sorted({name for _, o in operations for name in o.beside})),
             tuple(sorted({_kind(name) for name, _ in operations})),
         )
@@ -198,8 +202,8 @@ def history_of(columns: Columns, state: TwinState, dates: Sequence[str]) -> Hist
     beside = np.full((len(rows), len(columns.conditions)), np.nan)
     for i, (_, _, operation) in enumerate(rows):
         for number, sums in operation.modes.items():
-            if sums.known and number <= len(columns.labels):
-                values[:, i, number - 1] = _means(sums)
+            if sums.known and number in columns.numbers:
+                values[:, i, columns.numbers.index(number)] = _means(sums)
         beside[i] = [_condition(operation, name) for name in columns.conditions]
     new = len(columns.kinds)
     states = [columns.kinds.index(kind) if kind in columns.kinds else new for _, kind, _ in rows]

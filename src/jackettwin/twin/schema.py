@@ -310,6 +310,13 @@ class UpdateSchema(Schema):
     steel_damping: Literal["fixed", "free"] = "fixed"
 
 
+class WatchSchema(Schema):
+    """``watch``: days to learn from, and years in which one false alarm is allowed."""
+
+    baseline_days: Annotated[float, Field(ge=30.0, le=3653.0)] = 365.0
+    arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
+
+
 class SeaSchema(Schema):
     """``sea``: the mean sea of the records, a JONSWAP spectrum."""
 
@@ -339,3 +346,4 @@ class TwinSchema(Schema):
     identification: dict[str, Any] = {}
     update: UpdateSchema = UpdateSchema()
     operation: OperationSchema = OperationSchema()
+    watch: WatchSchema = WatchSchema()

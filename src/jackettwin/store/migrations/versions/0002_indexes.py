@@ -15,11 +15,10 @@ def upgrade() -> None:
     op.create_index("ix_findings_page", "findings", ["asset", "model_hash", "severity", "id"])
     with op.batch_alter_table("windows") as windows:
         windows.add_column(sa.Column("n_known", sa.Integer(), nullable=False, server_default="0"))
-    counted = (
-        "select count(*) from packets where packets.asset = windows.asset "
-        "and packets.window_utc = windows.window_utc"
+    op.execute(
+        "update windows set n_known = (select count(*) from packets where packets.asset = windows.asset "
+        "and packets.window_utc = windows.window_utc)"
     )
-    op.execute(f"update windows set n_known = ({counted})")
     op.execute(
         "insert into windows (asset, window_utc, n_packets, n_known, record_id) "
         "select asset, window_utc, 0, count(*), null from packets p where not exists "

@@ -1,0 +1,70 @@
+"""Watching a turbine's days: alarms found in them, told once, taken back where a late record undoes them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from tests.service.conftest import TWIN, turn, upload
+from tests.support.observations import seen
+
+from jackettwin.service import engine
+from jackettwin.service.context import Service
+from jackettwin.twin import TwinState, advance_all
+
+ALARM = {
+    "code": "structure_changed", "severity": "alarm", "subject": "bending_1", "params": {}, "text": "changed",
+    "time_utc": "2025-03-20T00:00:00+00:00", "day": "2025-03-20",
+}  # fmt: skip
+
+
+def days(n: int, step: float) -> dict[str, str]:
+    state = advance_all(TwinState("model", by_wind=True), seen(n, step))[0]
+    return {day: json.dumps(engine.DAY.dump(content)) for day, content in state.days.items()}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / engine.TWIN_FILE).write_text(TWIN + "watch: {baseline_days: 60}\n")
+    return tmp_path
+
+
+def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(folder: Path) -> None:
+    kept, findings = engine.watched(folder, days(95, -0.008), None)
+    assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
+    assert findings[1]["day"] > "2025-03-16"
+    _, again = engine.watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
+    assert again == findings[1:]
+    assert len(json.dumps(kept)) < 5e6
+    _, quiet = engine.watched(folder, days(95, 0.0), None)
+    assert [f["severity"] for f in quiet] == ["info"]
+
+
+def test_before_the_baseline_is_whole_it_is_said_how_much_is_there(folder: Path) -> None:
+    _, (finding,) = engine.watched(folder, days(40, 0.0), None)
+    assert finding["code"] == "watch_learning" and "of 60 days" in finding["text"]
+
+
+def test_an_alarm_reaches_the_api_once_and_stays_acknowledged(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def alarms() -> list[dict[str, Any]]:
+        return list(client.get("/api/v1/assets/wtg/alarms").json()["items"])
+
+    def record(k: int, *found: dict[str, Any]) -> None:
+        monkeypatch.setattr(engine, "watched", lambda folder, days, kept: ({}, found))
+        upload(client, k)
+        turn(service)
+
+    record(1)
+    assert alarms() == []
+    record(2, ALARM)
+    (alarm,) = alarms()
+    assert (alarm["code"], alarm["acknowledged_by"]) == ("structure_changed", None)
+    client.post(f"/api/v1/alarms/{alarm['id']}/acknowledge", json={"comment": "divers sent"})
+    record(3, ALARM)
+    (alarm,) = alarms()
+    assert alarm["comment"] == "divers sent"
+    record(4)
+    assert alarms() == []
