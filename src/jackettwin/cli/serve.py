@@ -25,6 +25,11 @@ from jackettwin.cli.store_options import needs_service
 @click.option("--tls-key", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @click.option("--behind-proxy", is_flag=True, help="A proxy in front ends TLS.")
 @click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
+@click.option(
+    "--raw-days",
+    type=click.FloatRange(0.0),
+    help="Days for which samples of observed records are kept, from now on; 0: for ever, the default.",
+)
 @click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")
 @click.option("--json", "as_json", is_flag=True, help="Print the address as JSON when it can be asked.")
 def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> None:

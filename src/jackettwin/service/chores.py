@@ -22,6 +22,9 @@ class Housekeeping:
 
     def __init__(self, service: Service) -> None:
         self._service = service
+        if (days := service.settings.raw_days) is not None:
+            with writing(service.database) as connection:
+                settings.put(connection, settings.RAW_DAYS, days or None)
         self._next = 0.0
 
     def turn(self) -> None:

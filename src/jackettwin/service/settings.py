@@ -34,6 +34,8 @@ class ServiceSettings:
         Whether a proxy in front ends TLS and passes on who asked.
     trusted_header : str or None
         Header in which the proxy names the user it has authenticated, as OIDC proxies do.
+    raw_days : float or None
+        Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy.
     upload_limit_bytes : int
         Largest file that is taken.
     samples_limit : int
@@ -55,6 +57,7 @@ class ServiceSettings:
     tls_key: Path | None = None
     behind_proxy: bool = False
     trusted_header: str | None = None
+    raw_days: float | None = None
     upload_limit_bytes: int = 512 * 2**20
     samples_limit: int = 200_000_000
     parse_limit_s: float = 120.0
