@@ -71,7 +71,6 @@ FLAGGED_SIGNALS: dict[str, tuple[Callable[..., np.ndarray], str]] = {
     "every other missing": (lambda y, rng: np.where(np.arange(6000) % 2, np.nan, y), "gaps"),
     "drift": (lambda y, rng: y + 1e3 * y.std() * np.linspace(0, 1, 6000) ** 2, "drift"),
     "frozen": (lambda y, rng: np.where((TIME_S > 50) & (TIME_S < 150), y[:, 999:1000], y), "stuck"),
-    "read slowly": (lambda y, rng: np.repeat(y[:, ::10], 10, axis=1), "held"),
     "growing": (lambda y, rng: y * np.exp(np.linspace(0, 6, 6000)), "unsteady"),
     "tones alone": (lambda y, rng: np.outer([1.0, 0.5], TONES), ""),
     "twice the same": (lambda y, rng: y[[0, 0]], ""),
@@ -198,6 +197,12 @@ def test_signals_with_faults(name: str, case: Case, clean: np.ndarray) -> None:
     assert not fault or fault in {finding["fault"] for finding in document["quality"]["findings"]}
     if name == "tones alone":
         assert document["modes"] == []
+
+
+def test_samples_that_stand_for_several_are_used_once(case: Case, clean: np.ndarray) -> None:
+    document = flagged(identify(signals(case, np.repeat(clean[:, ::10], 10, axis=1))))
+    assert any("every value of every channel stands 10 times" in warning for warning in document["warnings"])
+    assert not [mode for mode in document["modes"] if mode["status"] == "ok"]
 
 
 def test_run_goes_through_with_flagged_signals(case: Case, clean: np.ndarray, tmp_path: Path) -> None:

@@ -58,7 +58,9 @@ def test_the_loop_closes(tmp_path: Path) -> None:
         low, high = p["interval_90"]
         assert high / low < 20.0  # an interval over the whole prior would hold anything
     assert (tmp_path / "out" / "records" / "manifest.json").exists()
-    assert "Against the known truth" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "What these records state of their asset" in (tmp_path / "out" / "report.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_coverage_is_said_only_of_intervals() -> None:

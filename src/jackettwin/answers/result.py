@@ -28,8 +28,8 @@ class Span:
     def of(cls, value: float | None, std: float | None) -> Span | None:
         """Return the span of a positive number known with a standard deviation, normal in its logarithm.
 
-        >>> Span.of(2.0, 0.1)
-        Span(value=2.0, low=1.8421..., high=2.1714...)
+        >>> Span.of(2.0, 0.1)  # doctest: +ELLIPSIS
+        Span(value=2.0, low=1.842..., high=2.171...)
         """
         if value is None:
             return None

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import scipy.sparse as sp
 
+from jackettwin.errors import located
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record
@@ -163,8 +164,17 @@ def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, .
 
 
 def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinModel:
-    """Return the model of a twin; with ``assembly`` its structure is not assembled again."""
+    """Return the model of a twin; with ``assembly`` its structure is not assembled again.
+
+    Raises
+    ------
+    InputError
+        If a sensor sits where the structure has no place.
+    """
     assembly = assembled(config) if assembly is None else assembly
+    if config.sensors:  # wrong places are the twin file's, not those of the first record
+        with located(file=config.path):
+            observation_matrix(assembly, config.sensors)
     number = max([PAIRED_MODES, *(target.mode + 2 for target in config.targets)])
     numbered = numbered_modes(assembly, number)
     return TwinModel(
