@@ -146,9 +146,9 @@ def make_service(
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
     monkeypatch.setattr(
-        engine, "known", lambda folder, days: {"status": "ok", "parameters": {"days": len(days)}}
+        engine, "known", lambda twin, state: {"status": "ok", "parameters": {"days": len(state.days)}}
     )
-    monkeypatch.setattr(engine, "watched", lambda folder, days, kept: ({"days": len(days)}, ()))
+    monkeypatch.setattr(engine, "watched", lambda twin, state, kept: ({"days": len(state.days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:
         add_text_version(connection, made, "wtg", TWIN, {}, "test")

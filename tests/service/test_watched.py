@@ -24,6 +24,11 @@ def days(n: int, step: float) -> dict[str, str]:
     return {day: json.dumps(engine.DAY.dump(content)) for day, content in state.days.items()}
 
 
+def watched(folder: Path, days: dict[str, str], kept: Any) -> Any:
+    twin = engine.load_twin(folder)
+    return engine.watched(twin, engine.state_of(twin.model, days), kept)
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     (tmp_path / engine.TWIN_FILE).write_text(TWIN + "watch: {baseline_days: 60}\n")
@@ -31,18 +36,18 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(folder: Path) -> None:
-    kept, findings = engine.watched(folder, days(95, -0.008), None)
+    kept, findings = watched(folder, days(95, -0.008), None)
     assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
     assert findings[1]["day"] > "2025-03-16"
-    _, again = engine.watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
+    _, again = watched(folder, days(95, -0.008), json.loads(json.dumps(kept)))
     assert again == findings[1:]
     assert len(json.dumps(kept)) < 5e6
-    _, quiet = engine.watched(folder, days(95, 0.0), None)
+    _, quiet = watched(folder, days(95, 0.0), None)
     assert [f["severity"] for f in quiet] == ["info"]
 
 
 def test_before_the_baseline_is_whole_it_is_said_how_much_is_there(folder: Path) -> None:
-    _, (finding,) = engine.watched(folder, days(40, 0.0), None)
+    _, (finding,) = watched(folder, days(40, 0.0), None)
     assert finding["code"] == "watch_learning" and "of 60 days" in finding["text"]
 
 

@@ -105,13 +105,11 @@ def twin(
 ) -> TwinOut:
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
-    model = engine.load_model(twin_folder(connection, service, version.asset, version.version))
+    model = engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
     told = service.remembered.told(connection, version, model, last)
     known = engine.knowledge(model, told.sums)
-    supports = (
-        None if at is not None else results.find_knowledge(connection, version.asset, version.model_hash)
-    )
-    known["parameters"] = dict((supports or {}).get("known", {}))
+    if at is None:
+        known["parameters"] = results.find_supports(connection, version.asset, version.model_hash)
     return TwinOut(
         asset=version.asset,
         version=version.version,

@@ -87,7 +87,7 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
         try:
-            return engine.identity(engine.load_model.__wrapped__(Path(folder)))
+            return engine.identity(engine.load_twin.__wrapped__(Path(folder)).model)
         except InputError as error:
             error.file = engine.TWIN_FILE
             raise

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -100,11 +101,12 @@ def _observe_again(connection: Connection, place: Place, asset: str, changed: se
     """Queue the records that overlap the interval of a changed condition."""
     since, until = min(changed) - timedelta(days=1), max(changed) + streams.INTERVAL
     adopted, again = assets.found_version(connection, asset).version, 0
-    spans = sorted(changed)
+    starts = sorted(changed)
     for record in records.all_with_samples(connection, asset, since, until):
         end = record.start_utc + timedelta(seconds=record.duration_s)
-        if any(t < end and t + streams.INTERVAL > record.start_utc for t in spans):
-            jobs = [job for job in work.jobs_of(connection, asset, record.record_id)]
+        first = bisect_right(starts, record.start_utc - streams.INTERVAL)
+        if first < len(starts) and starts[first] < end:
+            jobs = work.jobs_of(connection, asset, record.record_id)
             again += bool([work.renew(connection, job.id) for job in jobs if job.version >= adopted])
     return again
 

@@ -217,7 +217,7 @@ def fold(
         todo = [changed]
     if not todo:
         return
-    model = engine.load_model(twin_folder(connection, service, asset, version))
+    model = engine.load_twin(twin_folder(connection, service, asset, version)).model
     folded = engine.advance_day(model, day, stored.document if stored else None, [o.document for o in todo])
     results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
     key = {"asset": asset, "model_hash": model_hash}

@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
     JUDGED,
+    TwinConfig,
     TwinModel,
     TwinState,
     advance,
@@ -47,10 +48,18 @@ class FoldedDay:
     findings: tuple[tuple[dict[str, Any], ...], ...]
 
 
+class Twin(NamedTuple):
+    """What a version of a twin says, and the model that it builds."""
+
+    config: TwinConfig
+    model: TwinModel
+
+
 @lru_cache(maxsize=256)
-def load_model(folder: Path) -> TwinModel:
-    """Return the model of a twin whose files stand in a folder, kept: a version never changes."""
-    return twin_model(read_twin(folder / TWIN_FILE, records_follow=True))
+def load_twin(folder: Path) -> Twin:
+    """Return a twin whose files stand in a folder, kept: a version never changes."""
+    config = read_twin(folder / TWIN_FILE, records_follow=True)
+    return Twin(config, twin_model(config))
 
 
 def identity(model: TwinModel) -> tuple[str, str]:
@@ -61,10 +70,9 @@ def identity(model: TwinModel) -> tuple[str, str]:
 
 def channels(folder: Path) -> dict[str, Channel]:
     """Return what a twin says of its channels, {name: channel}."""
-    config = read_twin(folder / TWIN_FILE, records_follow=True)
     return {
         s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
-        for s in config.sensors
+        for s in load_twin(folder).config.sensors
     }
 
 
@@ -181,11 +189,9 @@ def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
     }
 
 
-def known(folder: Path, days: Mapping[str, str]) -> dict[str, Any]:
+def known(twin: Twin, state: TwinState) -> dict[str, Any]:
     """Return what a state says of the supports: per parameter the median, its 90 % interval and unit."""
-    config, model = read_twin(folder / TWIN_FILE, records_follow=True), load_model(folder)
-    state = state_of(model, days)
-    found = estimate(config, model, state)
+    found = estimate(twin.config, twin.model, state)
     if found is None:
         return {"status": "no mode of the model has been seen", "parameters": {}}
     return {
@@ -205,18 +211,20 @@ def known(folder: Path, days: Mapping[str, str]) -> dict[str, Any]:
 
 
 def watched(
-    folder: Path, days: Mapping[str, str], kept: Mapping[str, Any] | None
+    twin: Twin, state: TwinState, kept: Mapping[str, Any] | None
 ) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
     """Return what is kept of watching a turbine's days, and every finding of them that holds now, as rows.
 
     Parameters
     ----------
-    kept : what an earlier call returned; it only saves time
+    state : TwinState
+        With one day at least.
+    kept : mapping or None
+        What an earlier call returned; it only saves time.
     """
-    config, model = read_twin(folder / TWIN_FILE, records_follow=True), load_model(folder)
-    promise = {"baseline_days": config.watch.baseline_days, "arl_years": config.watch.arl_years}
-    last = max(days)
-    judged, new = judge(model, state_of(model, days), JUDGED.load(kept) if kept else None, **promise)
+    promise = {"baseline_days": twin.config.watch.baseline_days, "arl_years": twin.config.watch.arl_years}
+    last = max(state.days)
+    judged, new = judge(twin.model, state, JUDGED.load(kept) if kept else None, **promise)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
     return JUDGED.dump(judged), tuple(_finding(f) | {"time_utc": at, "day": at[:10]} for at, f in said)
@@ -226,8 +234,8 @@ def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
     """Return the poles of every model order of a stored record."""
     from jackettwin.twin.observe import examined
 
-    model, record = load_model(Path(folder)), read_waveform(Path(waveform))
-    poles = examined(record, model).identification.stabilisation
+    record = read_waveform(Path(waveform))
+    poles = examined(record, load_twin(Path(folder)).model).identification.stabilisation
     return {
         "order": poles.order.tolist(),
         "frequency_hz": poles.frequency_hz.tolist(),

@@ -143,21 +143,22 @@ def know(question: Question) -> Outcome:
     """Answer a question about a turbine's days."""
     from jackettwin.service import engine
 
-    folder = Path(question.twin_folder)
+    twin = engine.load_twin(Path(question.twin_folder))
+    state = engine.state_of(twin.model, question.days)
     try:
-        known = engine.known(folder, question.days)
+        known = engine.known(twin, state)
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
-    judged, findings = engine.watched(folder, question.days, question.judged) if question.days else (None, ())
+    judged, findings = engine.watched(twin, state, question.judged) if question.days else (None, ())
     return Outcome(json.dumps({"known": known, "judged": judged}), findings=findings)
 
 
 def observe_stored(task: Task) -> Outcome:
     """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
-    from jackettwin.service.engine import load_model, observed
+    from jackettwin.service.engine import load_twin, observed
 
     try:
-        model = load_model(Path(task.twin_folder))
+        model = load_twin(Path(task.twin_folder)).model
         poles = (task.picks or {}).get("poles", ())
         return Outcome(*observed(model, Path(task.waveform), task.conditions, poles))
     except InputError as error:

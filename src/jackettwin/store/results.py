@@ -249,10 +249,16 @@ def put_knowledge(
 
 
 def find_knowledge(connection: Connection, asset: str, model_hash: str) -> Mapping[str, Any] | None:
-    """Return what is known of the supports, or None."""
+    """Return what the days say of the supports and of a change, or None."""
     same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
     row = connection.execute(select(knowledge.c.document).where(same)).one_or_none()
     return None if row is None else row.document
+
+
+def find_supports(connection: Connection, asset: str, model_hash: str) -> dict[str, Any]:
+    """Return what the days say of the supports alone, empty if nothing yet: without what watching keeps."""
+    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
+    return connection.scalar(select(knowledge.c.document["known"]).where(same)) or {}
 
 
 def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:
