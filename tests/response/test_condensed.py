@@ -9,9 +9,8 @@ from jackettwin.response.certified import all_modes
 from jackettwin.response.condensed import Condensed, condense
 from jackettwin.response.modal import damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
-from jackettwin.soil.coefficients import law_rows
 from jackettwin.soil.support import Spring, Support, on_translations, pinned
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, law_rows, maxwell_3, zener
 from jackettwin.structure import Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil.coefficients import law_rows
+from jackettwin.soil.viscoelastic import law_rows
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import SupportModel, family, support_model
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters

@@ -18,6 +18,7 @@ from jackettwin.answers.result import (
     ModeAnswer,
     Span,
 )
+from jackettwin.soil.families import FAMILIES
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Parameter, Update, law_probability
@@ -31,7 +32,7 @@ PRECISION = 0.2
 """A damping ratio known to ± so much (90 %) tells a design with half a per cent more from one without."""
 _DESIGNS = 100
 """Draws of the prior that the design's frequencies are made of: their 5 % quantile to some tenth of a σ."""
-_STIFF = ("k", "k0")
+_STIFF = {law.names[0] for law in FAMILIES.values()}
 """Parameters of the laws that are the ground's stiffness; k1 of Zener's law is a part of what damps."""
 _STRANGERS = ("c_fore_aft", "c_side_side", "water_", "rayleigh_")
 """Names of what is updated beside the ground."""

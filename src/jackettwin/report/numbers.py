@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from jackettwin.soil.families import FAMILIES
+
 UNKNOWN = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _Z95 = 1.959963984540054
@@ -126,14 +128,7 @@ def between(low: float, high: float, unit: str) -> str:
     return f"{number} to {b}" if same == b.partition(" ")[2] else f"{a} to {b}"
 
 
-_PARAMETERS = {
-    "k": "stiffness",
-    "k0": "static stiffness",
-    "k1": "stiffness of the damping branch",
-    "c": "dashpot",
-    "loss_factor": "loss factor",
-    "alpha": "springpot exponent",
-}
+_PARAMETERS = {p.name: p.words for law in FAMILIES.values() for p in law.parameters}
 
 
 def parameter_words(name: str) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from jackettwin.answers.result import Answers, Clearance, GroundAnswer, ModeAnswer, NextStep, Span
 from jackettwin.report.numbers import UNKNOWN, between, count, listed, parameter_words, quantity, words
+from jackettwin.soil.families import FAMILIES
 
 MARGIN = 0.10
 """Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
@@ -18,12 +19,6 @@ _SHOWN_GAINS = 2
 _MOST = 4
 """Parameters of the ground on the first page; what there is of single legs follows."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
-_LAWS = {
-    "maxwell-3": "a loss factor that hardly depends on frequency, as soil's does",
-    "kelvin-voigt": "a spring beside a dashpot",
-    "zener": "a spring beside a spring and dashpot in series",
-    "springpot": "one element between spring and dashpot",
-}
 _STEPS = {
     "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
     "amplitude (to 10 %) gives the stiffness, its lag (to 0.6°) the damping",
@@ -306,7 +301,7 @@ def _law(a: Answers) -> list[str]:
     law = next((one for one in a.laws if one.law == a.law), None)
     if law is None:
         return []
-    why = _LAWS.get(law.law, "")
+    why = FAMILIES[law.law].words
     if law.probability is None:
         return [f"Law: {law.law} ({why})."]
     others = [one for one in a.laws if one.law != a.law and one.probability is not None]

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import plotly.graph_objects as go
 
+from jackettwin.soil.families import FAMILIES
+
 # Okabe & Ito 2008: distinct for all common forms of colour blindness.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
@@ -24,12 +26,19 @@ class Look(NamedTuple):
     dash: str
 
 
-LAWS = {
-    "kelvin-voigt": Look(ORANGE, "square", "dash"),
-    "zener": Look(SKY, "diamond", "dot"),
-    "maxwell-3": Look(PURPLE, "triangle-up", "solid"),
-    "springpot": Look(GREEN, "cross", "dashdot"),
-}
+_LAWS = dict(
+    zip(
+        FAMILIES,
+        (
+            Look(ORANGE, "square", "dash"),
+            Look(SKY, "diamond", "dot"),
+            Look(PURPLE, "triangle-up", "solid"),
+            Look(GREEN, "cross", "dashdot"),
+        ),
+        strict=False,
+    )
+)
+"""Of the support laws in their order; one that comes after these is grey."""
 MEASURED = Look(INK, "circle", "solid")
 _KINDS = {
     "fore_aft": (BLUE, "circle"),
@@ -51,7 +60,7 @@ _VARIANTS = ("", "-open", "-open-dot", "-dot")
 
 def law_look(law: str) -> Look:
     """Return the look of a support law, the same on the whole page."""
-    return LAWS.get(law, Look(GREY, "x", "longdash"))
+    return _LAWS.get(law, Look(GREY, "x", "longdash"))
 
 
 def mode_look(label: str) -> Look:

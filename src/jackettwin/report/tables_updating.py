@@ -10,10 +10,10 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import Table
+from jackettwin.soil.parameter import Parameter
 from jackettwin.twin import TwinResult
 from jackettwin.twin.truth import TrueMode, TrueParameter
 from jackettwin.updating import Update
-from jackettwin.updating.families import Parameter
 from jackettwin.updating.law_choice import recommended
 
 

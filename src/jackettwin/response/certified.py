@@ -202,7 +202,7 @@ def _one_branch(row: FloatArray, radius: float) -> Prony:
     omega = radius * np.array([0.1, 0.2, 0.4, 0.8])
     s = np.asarray(1j * omega, dtype=np.complex128)
     tau = 2.0 / radius
-    D = law_stiffness(row[None], s[None])[0]
+    D = law_stiffness(row, s)
     A = np.stack([np.ones_like(s), s / radius, tau * s / (1.0 + tau * s)], axis=1) / np.abs(D)[:, None]
     D = D / np.abs(D)
     fit = np.linalg.lstsq(np.vstack([A.real, A.imag]), np.concatenate([D.real, D.imag]))[0]

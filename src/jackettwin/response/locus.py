@@ -10,8 +10,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points, numbered_poles
-from jackettwin.soil.coefficients import law_rows
-from jackettwin.soil.viscoelastic import Law
+from jackettwin.soil.viscoelastic import Law, law_rows
 
 
 def root_locus(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import pi
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,18 +11,11 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
+from jackettwin.soil.families import FAMILIES, Family
 from jackettwin.soil.foundation import build_foundation, read_foundation, shipped_foundations
 from jackettwin.soil.law_files import ElasticLaw, LawSchema
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
-from jackettwin.soil.viscoelastic import (
-    Law,
-    Prony,
-    Springpot,
-    kelvin_voigt,
-    maxwell_3,
-    require_positive,
-    zener,
-)
+from jackettwin.soil.viscoelastic import Law, Prony, require_positive
 from jackettwin.structure.model import Structure
 
 
@@ -102,13 +94,14 @@ def read_support(
     )
 
 
+def _short_form(law: Family) -> str:
+    return ",".join(f"{name}=" for name in (*law.names, *(["f0"] if law.needs_frequency else [])))
+
+
 SHORT_FORMS: Mapping[str, str] = {
     "elastic": "k=",
-    "kelvin-voigt": "k=,c=",
-    "zener": "k0=,c=,k1=",
     "maxwell": "k0=,branches=k/tau;k/tau",
-    "maxwell-3": "k=,loss_factor=,f0=",
-    "springpot": "k=,alpha=,f0=",
+    **{name: _short_form(law) for name, law in FAMILIES.items()},
 }
 
 
@@ -121,22 +114,16 @@ def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]
         If an argument is missing, unknown, given twice, not a number or out of range.
     """
     number, branches = _arguments(name, arguments)
-
-    def f0() -> float:
-        f = number["f0"] if "f0" in number else first_frequency_hz()
-        require_positive("f0", f)
-        return f
-
-    builders: Mapping[str, Callable[[], Law]] = {
-        "elastic": lambda: Prony(k0=number["k"]),
-        "kelvin-voigt": lambda: kelvin_voigt(number["k"], number["c"]),
-        "zener": lambda: zener(number["k0"], number["c"], number["k1"]),
-        "maxwell": lambda: Prony(number["k0"], 0.0, *_branches(branches)),
-        "maxwell-3": lambda: maxwell_3(number["k"], number["loss_factor"], f0()),
-        "springpot": lambda: Springpot(number["k"], number["alpha"], 2.0 * pi * f0()),
-    }
     with located(field=f"support.{name}"):
-        return builders[name]()
+        if name == "elastic":
+            return Prony(k0=number["k"])
+        if name == "maxwell":
+            return Prony(number["k0"], 0.0, *_branches(branches))
+        law, f0 = FAMILIES[name], 1.0
+        if law.needs_frequency:
+            f0 = number["f0"] if "f0" in number else first_frequency_hz()
+            require_positive("f0", f0)
+        return law.build(np.array([number[p] for p in law.names]), f0)
 
 
 def _arguments(name: str, text: str) -> tuple[dict[str, float], str]:

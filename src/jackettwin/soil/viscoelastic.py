@@ -10,47 +10,79 @@ Maxwell (Prony) solid. A springpot, D(s) = k (s/ω₀)^α, dissipates the same s
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, gamma, pi
-from typing import Protocol
 
 import numpy as np
 from scipy.linalg import expm
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
+from jackettwin.soil.coefficients import (
+    ALPHA,
+    BRANCHES,
+    K0,
+    K_ALPHA,
+    OMEGA0,
+    C,
+    law_slope,
+    law_stiffness,
+    static_rows,
+)
 
 _LARGEST = 1e25
 """Of stiffness, damping and relaxation time; rigid in any structure, and clear of overflow."""
 
 
-class Law(Protocol):
-    """A complex stiffness; vectorised over s [rad/s]."""
+class Law(ABC):
+    """A complex stiffness, vectorised over s [rad/s]: what its row of numbers says."""
+
+    @property
+    @abstractmethod
+    def row(self) -> FloatArray:
+        """Its numbers (width,), as :mod:`jackettwin.soil.coefficients` orders them."""
+
+    @abstractmethod
+    def creep(self, t: FloatArray) -> FloatArray:
+        """Return the displacement under a unit step of force at times t > 0 [m/N]."""
+
+    @abstractmethod
+    def relaxation(self, t: FloatArray) -> FloatArray:
+        """Return the force under a unit step of displacement at times t > 0 [N/m]."""
 
     def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
         """Return D(s) [N/m]."""
-        ...
+        return law_stiffness(self.row, s)
 
     def slope(self, s: ComplexArray | complex) -> ComplexArray:
         """Return dD/ds [N·s/m]."""
-        ...
+        return law_slope(self.row, s)
 
     @property
     def static_stiffness(self) -> float:
         """Stiffness of the undamped structure: D(0), for the springpot Re D(iω₀) [N/m]."""
-        ...
+        return float(static_rows(self.row)[K0])
 
-    def creep(self, t: FloatArray) -> FloatArray:
-        """Return the displacement under a unit step of force at times t > 0 [m/N]."""
-        ...
 
-    def relaxation(self, t: FloatArray) -> FloatArray:
-        """Return the force under a unit step of displacement at times t > 0 [N/m]."""
-        ...
+def law_rows(laws: Sequence[Law]) -> FloatArray:
+    """Return (n_laws, width) rows, padded with zeros to the longest.
+
+    Examples
+    --------
+    >>> law_rows([kelvin_voigt(2.0, 3.0), zener(2.0, 3.0, 6.0)]).tolist()
+    [[2.0, 3.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.5]]
+    """
+    own = [law.row for law in laws]
+    rows = np.zeros((len(own), max((row.size for row in own), default=BRANCHES)))
+    for row, numbers in zip(rows, own, strict=True):
+        row[: numbers.size] = numbers
+    return rows
 
 
 @dataclass(frozen=True)
-class Prony:
+class Prony(Law):
     """Spring, dashpot and Maxwell branches in parallel.
 
     Attributes
@@ -77,26 +109,13 @@ class Prony:
                 "every branch needs k and tau", field="branches", value=(len(self.k), len(self.tau))
             )
 
-    def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return D(s) [N/m]."""
-        s = np.asarray(s, dtype=np.complex128)
-        D = self.k0 + self.c * s
-        for k, tau in zip(self.k, self.tau, strict=True):
-            D = D + k * (tau * s / (1.0 + tau * s))
-        return np.asarray(D)
-
-    def slope(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return dD/ds [N·s/m]."""
-        s = np.asarray(s, dtype=np.complex128)
-        slope = np.full_like(s, self.c)
-        for k, tau in zip(self.k, self.tau, strict=True):
-            slope = slope + k * tau / (1.0 + tau * s) ** 2
-        return np.asarray(slope)
-
     @property
-    def static_stiffness(self) -> float:
-        """D(0) = k0 [N/m]."""
-        return self.k0
+    def row(self) -> FloatArray:
+        """Its numbers."""
+        row = np.zeros(BRANCHES + 2 * len(self.k))
+        row[K0], row[C], row[OMEGA0] = self.k0, self.c, 1.0
+        row[BRANCHES::2], row[BRANCHES + 1 :: 2] = self.k, self.tau
+        return row
 
     def relaxation(self, t: FloatArray) -> FloatArray:
         """Return k0 + Σ k_j exp(−t/τ_j), thesis (4.4) and (4.9), without the dashpot's impulse at t = 0."""
@@ -137,7 +156,7 @@ class Prony:
 
 
 @dataclass(frozen=True)
-class Springpot:
+class Springpot(Law):
     """D(s) = k (s/ω₀)^α on the principal branch: loss factor tan(απ/2) at every frequency.
 
     Attributes
@@ -168,19 +187,12 @@ class Springpot:
         alpha = 2.0 / pi * atan(loss_factor)
         return cls(k / float(np.cos(0.5 * pi * alpha)), alpha, omega0)
 
-    def stiffness(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return D(s) [N/m]."""
-        return np.asarray(self.k * (np.asarray(s, dtype=np.complex128) / self.omega0) ** self.alpha)
-
-    def slope(self, s: ComplexArray | complex) -> ComplexArray:
-        """Return dD/ds [N·s/m]."""
-        s = np.asarray(s, dtype=np.complex128)
-        return np.asarray(self.alpha * self.stiffness(s) / s)
-
     @property
-    def static_stiffness(self) -> float:
-        """Re D(iω₀) [N/m]; D(0) is zero."""
-        return float(self.stiffness(1j * self.omega0).real)
+    def row(self) -> FloatArray:
+        """Its numbers."""
+        row = np.zeros(BRANCHES)
+        row[K_ALPHA], row[ALPHA], row[OMEGA0] = self.k, self.alpha, self.omega0
+        return row
 
     def creep(self, t: FloatArray) -> FloatArray:
         """Return (ω₀t)^α / (k Γ(1+α))."""

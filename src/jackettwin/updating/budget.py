@@ -117,7 +117,7 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
     a, b = points.rayleigh[:, :1], points.rayleigh[:, 1:]
     groups = np.zeros((*pole.shape, len(pencil.groups)))
     for g, group in enumerate(pencil.groups):
-        D = law_stiffness(points.rows[:, g], pole)
+        D = law_stiffness(points.rows[:, g, None], pole)
         groups[..., g] = D.imag / pole.imag * np.einsum("kmi,kmi->km", x.conj() @ group.S, x).real
     soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:n_rotor].sum(axis=-1)
     lost = np.stack([a * m + b * k, soil, rotor], axis=-1)

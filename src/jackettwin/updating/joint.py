@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.updating.families import Parameter
+from jackettwin.soil.parameter import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State

@@ -64,11 +64,11 @@ def predict_quantities(
 def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, FloatArray]:
     """Return the supports as data see them (see :class:`Predictive`)."""
     pinned = model.condensed.pinned.omega
-    s = 1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]]
+    s = np.asarray(1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]], dtype=np.complex128)
     rows = model.points(theta).plain().rows
     quantities = {}
     for g, suffix in enumerate(model.tie_groups.suffixes):
-        D = law_stiffness(rows[:, g], np.broadcast_to(s, (len(theta), 2)))
+        D = law_stiffness(rows[:, g, None], s)
         loss = D.imag / D.real
         quantities[f"static_stiffness{suffix}"] = static_rows(rows[:, g])[:, 0]
         quantities[f"storage_stiffness{suffix}"] = D.real[:, 0]

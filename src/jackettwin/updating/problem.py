@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.response.numbered import NumberedModes
 from jackettwin.response.relaxation import Relaxation
-from jackettwin.updating.families import Parameter
+from jackettwin.soil.parameter import Parameter
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.relaxations import RelaxationTarget
