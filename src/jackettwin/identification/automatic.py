@@ -6,18 +6,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from jackettwin.arrays import BoolArray, ComplexArray
 from jackettwin.errors import InputError
 from jackettwin.identification.decays.free_decay import transient
-from jackettwin.identification.estimate import Identification, ModalEstimate, RealPole, Stabilisation
+from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
-from jackettwin.identification.frequency_domain.plscf import plscf_poles
+from jackettwin.identification.methods import poles_of, relaxations, uncertain
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.preparation.components import at_all_channels, components
-from jackettwin.identification.preparation.prepared import Prepared, prepare
-from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.selection.candidates import candidates, find_tones
@@ -26,17 +22,6 @@ from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
-from jackettwin.identification.subspace.covariances import block_covariances, covariances
-from jackettwin.identification.subspace.real_poles import real_poles
-from jackettwin.identification.subspace.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
-from jackettwin.identification.subspace.ssi_dat import ssi_dat
-from jackettwin.identification.subspace.ssi_uncertainty import (
-    Propagation,
-    block_deviations,
-    order_poles_with_uncertainty,
-    propagation,
-)
-from jackettwin.identification.subspace.stabilisation import admissible, stabilisation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -45,17 +30,8 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 
-FEWEST_BLOCKS = 5
-"""Fewer blocks give no standard deviation worth printing."""
-EVERY = 2
-"""Samples from one instrument of the past to the next: neighbours tell nearly the same. As many modes of
-random systems are found as with all of them, with the same scatter, in half the time, …"""
-ENOUGH_INSTRUMENTS = 2
-"""… where so many times the largest model order are left."""
 STEADFAST = 0.8
 """Share of the orders in which a mode must appear where no uncertainty speaks for it."""
-PLSCF_WINDOWS = 2
-"""Lags of the half spectra, in lag windows of SSI: a resolution of half a line of the lowest mode."""
 
 
 def identify(
@@ -120,7 +96,7 @@ def identify(
     ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
-    poles = _poles(ready, settings)
+    poles = poles_of(ready, settings)
     say("selection")
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
     tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.drifting)
@@ -140,7 +116,7 @@ def identify(
         judged = with_verdicts(wanted, judge(picked))
     say("refinement")
     known = None
-    if _uncertain(settings):
+    if uncertain(settings):
         known = evidence(tones.clean, ready, record.conditions, sensors=basis is None)
     if known is not None and not wanted:
         judged = cleared(judged, known)
@@ -162,7 +138,7 @@ def identify(
         duration_s=record.duration_s,
         warnings=(*ready.warnings, *missing, *map(str, chosen.findings)),
         findings=chosen.findings,
-        real_poles=_relaxations(ready, settings) if settings.real_poles else (),
+        real_poles=relaxations(ready, settings) if settings.real_poles else (),
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
     return identified if basis is None else at_all_channels(identified, whole, basis)
@@ -187,87 +163,3 @@ def _refuse_picks(picks: Sequence[Pick]) -> None:
 
 def _named(mode: ModalEstimate, settings: IdentificationSettings) -> ModalEstimate:
     return mode if settings.method == "ssi-cov" else replace(mode, method=settings.method)
-
-
-def _poles(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
-    """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
-    resolved = ready.settings
-    band = guarded_band_hz(resolved)
-    rate = resolved.sample_rate_hz
-    if settings.method == "plscf":
-        lags = covariances(ready.y, PLSCF_WINDOWS * 2 * resolved.block_rows)[:, :, ready.references]
-        poles = plscf_poles(lags, resolved.orders, band=(band[0] / rate, band[1] / rate))
-    elif settings.method == "ssi-dat":
-        subspace = ssi_dat(
-            ready.y,
-            block_rows=resolved.block_rows,
-            max_order=resolved.orders[-1],
-            references=ready.references,
-        )
-        poles = order_poles(subspace, subspace.orders(resolved.orders))
-    else:
-        poles = _ssi_cov_poles(ready, settings, lambda mu: admissible(mu, settings, rate, band))
-    return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
-
-
-def _ssi_cov_poles(
-    ready: Prepared, settings: IdentificationSettings, keep: Callable[[ComplexArray], BoolArray]
-) -> list[OrderPoles]:
-    resolved = ready.settings
-    subspace = _subspace(ready, settings)
-    orders = subspace.orders(resolved.orders)
-    if not _uncertain(settings):
-        return order_poles(subspace, orders)
-    return order_poles_with_uncertainty(_propagation(ready, subspace, settings), orders, keep=keep)
-
-
-def _relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[RealPole, ...]:
-    if not _uncertain(settings):
-        raise InputError(
-            "real poles need the uncertainty of ssi-cov",
-            field="real_poles",
-            value=True,
-            allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
-            remedy="leave these settings at their defaults",
-        )
-    resolved, subspace = ready.settings, _subspace(ready, settings)
-    shared = _propagation(ready, subspace, settings)
-    return real_poles(
-        order_poles_with_uncertainty(shared, subspace.orders(resolved.orders), real=True),
-        settings,
-        sample_rate_hz=resolved.sample_rate_hz,
-        band_hz=(resolved.lowest_frequency_hz, resolved.highest_frequency_hz),
-        scale=ready.scale,
-    )
-
-
-def _uncertain(settings: IdentificationSettings) -> bool:
-    """Tell whether the uncertainty of the poles is wanted, and known for this variant."""
-    variant = (settings.method, settings.weighting, settings.state_matrix)
-    return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
-
-
-def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
-    resolved = ready.settings
-    return ssi_cov(
-        covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
-        block_rows=resolved.block_rows,
-        max_order=resolved.orders[-1],
-        weighting=settings.weighting,
-        state_matrix=settings.state_matrix,
-        factors=_uncertain(settings),
-        every=_every(ready, settings),
-    )
-
-
-def _every(ready: Prepared, settings: IdentificationSettings) -> int:
-    """Return the samples between the instruments of the past: one if relaxations are sought or few left."""
-    enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
-    many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
-    return EVERY if many and not settings.real_poles else 1
-
-
-def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
-    rows, every = ready.settings.block_rows, _every(ready, settings)
-    blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
-    return propagation(subspace, block_deviations(blocks, rows, every), np.float32)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from jackettwin.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-METHODS = ("ssi-cov", "ssi-dat", "plscf", "efdd")
+Method = Literal["ssi-cov", "ssi-dat", "plscf", "efdd"]
+METHODS: tuple[str, ...] = get_args(Method)
 _CHOICES: dict[str, tuple[str, ...]] = {
     "method": METHODS,
     "weighting": ("br", "cva"),
@@ -98,7 +99,7 @@ class IdentificationSettings:
         its uncertainty only.
     """
 
-    method: Literal["ssi-cov", "ssi-dat", "plscf", "efdd"] = "ssi-cov"
+    method: Method = "ssi-cov"
     reference_channels: tuple[str, ...] | None = None
     lowest_frequency_hz: float | None = None
     highest_frequency_hz: float | None = None
