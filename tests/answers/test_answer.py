@@ -148,3 +148,19 @@ def test_without_standard_deviations_nothing_is_called_known(result: TwinResult)
     found = answer(bare)
     assert {g.verdict for g in found.ground} == {""}
     assert found.next_steps == ()
+
+
+def test_a_model_that_cannot_meet_its_data_makes_nothing_known(result: TwinResult) -> None:
+    """No ground lowers the first mode by a tenth and leaves the fourth: 1 % is far too little an error."""
+    u = result.updates[0]
+    wrong = (replace(TARGETS[0], frequency_hz=0.165, frequency_std_hz=0.0017), *TARGETS[1:])
+    bad = update(single(u.problem.model, Residuals(wrong, relative=False)), starts=2, particles=60)
+    measured = (replace(result.measured[0], frequency_hz=0.165), *result.measured[1:])
+    found = answer(replace(result, updates=(bad,), measured=measured))
+    assert answer(result).fits and answer(result).fit is not None
+    assert found.fit is not None and not found.fit.fits
+    assert found.fit.freedom == 6 + 1 - 2  # six values, one prior, two parameters
+    assert list(found.fit.off)[0] == "side_side_1" and found.fit.off["side_side_1"] > 0.03
+    assert found.fit.cover is not None and 0.01 < found.fit.cover < 0.1
+    assert {g.verdict for g in found.ground} <= {"weak", "unidentified"}
+    assert found.next_steps == ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from jackettwin.answers import Answers, Span
-from jackettwin.answers.result import Clearance, GroundAnswer, LawAnswer, ModeAnswer, NextStep
+from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
 from jackettwin.report.sentences import percent_words, sentences, span_words
 
 MODE = ModeAnswer(
@@ -50,6 +50,31 @@ def test_the_headline_tells_the_story() -> None:
 def test_where_nothing_is_identified_that_is_said() -> None:
     lost = replace(ANSWERS, ground=(replace(STIFF, verdict="unidentified"), LOSS))
     assert any(line.startswith("Nothing of the ground is known") for line in sentences(lost).headline)
+
+
+def test_a_model_that_cannot_meet_the_data_is_said_before_all_it_says() -> None:
+    fit = FitAnswer(436.0, 4, 1e-90, False, {"side_side_1": -0.05, "fore_aft_2": 0.03}, 0.031)
+    lost = replace(ANSWERS, fit=fit, ground=(replace(STIFF, verdict="weak"), LOSS))
+    said = sentences(lost)
+    assert said.headline[0] == (
+        "The model cannot meet what was measured on any ground: side-side 1 is 5.0 % low and fore-aft 2 is "
+        "3.0 % high."
+    )
+    assert not any(" known:" in line or "gives" in line for line in said.headline)
+    answers = {q.title: " ".join(q.short) for q in said.questions}
+    assert (
+        "χ² 436 at 4 degrees of freedom; of a true model less than once in a million"
+        in answers["Is the model right?"]
+    )
+    assert "of a model that does not fit" in answers["How stiff and how damped is the ground?"]
+    assert answers["What to do next?"].startswith("Mend the model first")
+    assert "3.1 % on frequencies (update.model_error) would cover this" in answers["What to do next?"]
+    met = replace(ANSWERS, fit=replace(fit, chi2=3.0, probability=0.5, fits=True, cover=None))
+    assert sentences(met).headline == sentences(ANSWERS).headline
+
+
+def test_the_ends_of_a_narrow_interval_are_told_apart() -> None:
+    assert span_words(Span(4.18e8, 4.1e8, 4.25e8), "N/m") == "418 MN/m (410 to 425 MN/m)"
 
 
 def test_a_mode_within_the_rotors_range_is_the_first_thing_said() -> None:

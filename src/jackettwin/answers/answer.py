@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.answers.fit import fit_answer
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import (
     NORMAL_90,
@@ -47,6 +48,7 @@ def answer(result: TwinResult) -> Answers:
     open_ = [g.name for g in ground if g.verdict in ("weak", "unidentified")]
     speed = result.rotor_speed_hz
     modes = _modes(result, u)
+    fit = None if u is None else fit_answer(u, result.measured, modes)
     return Answers(
         law="" if u is None else u.law,
         laws=laws,
@@ -56,12 +58,15 @@ def answer(result: TwinResult) -> Answers:
         rotor_speed_hz=speed,
         blades=result.blades,
         ground=ground,
-        next_steps=() if u is None else next_steps(u, result.measured, open_, days=days),
+        next_steps=()
+        if u is None or not (fit is None or fit.fits)  # what a wrong model would learn is not known
+        else next_steps(u, result.measured, open_, days=days),
         records=len(result.observations),
         minutes=days * 1440.0,
         records_for=records_for(result.measured, len(result.observations), PRECISION),
         precision=PRECISION,
         usable=USABLE,
+        fit=fit,
     )
 
 

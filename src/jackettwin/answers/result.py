@@ -148,6 +148,29 @@ class LawAnswer:
 
 
 @dataclass(frozen=True)
+class FitAnswer:
+    """How the best fit meets what it was fitted to.
+
+    Attributes
+    ----------
+    chi2, freedom, probability : of the fit, and how probable a larger χ² is if the model is true
+    fits : bool
+        Whether chance explains what is missed.
+    off : {mode: relative deviation of the model's frequency}
+        Of the fitted ones, the one that is most standard deviations off first.
+    cover : float or None
+        Relative error of the model that would cover what its frequencies miss, where it does not fit.
+    """
+
+    chi2: float
+    freedom: int
+    probability: float
+    fits: bool
+    off: Mapping[str, float]
+    cover: float | None
+
+
+@dataclass(frozen=True)
 class NextStep:
     """Something one could measure, and how far it would narrow what is not known of the ground.
 
@@ -192,3 +215,9 @@ class Answers:
     records_for: Mapping[str, int]
     precision: float
     usable: float
+    fit: FitAnswer | None = None
+
+    @property
+    def fits(self) -> bool:
+        """Whether nothing says that the model cannot meet the data."""
+        return self.fit is None or self.fit.fits

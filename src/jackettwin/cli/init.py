@@ -81,15 +81,10 @@ def init_command(
             record, unsaid = _read(file, unsaid)
             read.append((_beside(file, out), record))
         step("write and check")
-        draft = draft_twin(_structure_name(structure, out), assembly, read, unsaid)
-        rest = "".join(f"  - {_beside(file, out)}\n" for file in files[_MOST_READ:])
-        text = (
-            draft.text.replace("# Missing:", f"{rest}# Missing:")
-            if "# Missing:" in draft.text
-            else draft.text + rest
-        )
+        further = [_beside(file, out) for file in files[_MOST_READ:]]
+        draft = draft_twin(_structure_name(structure, out), assembly, read, unsaid, further)
         with atomic_path(out) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+            temporary.write_text(draft.text, encoding="utf-8")
         if draft.complete:
             read_twin(out)
     if as_json:

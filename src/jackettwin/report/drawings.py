@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from jackettwin.answers.result import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.report import style
-from jackettwin.report.numbers import parameter_words, quantity, words
+from jackettwin.report.numbers import digits_of, parameter_words, quantity, words
 from jackettwin.report.sentences import MARGIN
 from jackettwin.report.svg import Canvas, spread
 
@@ -196,5 +196,6 @@ def _ends(c: Canvas, g: GroundAnswer, x: Callable[[float], float], y: float) -> 
     v = g.value
     values = [v.value] if v.low is None or v.high is None else [v.low, v.value, v.high]
     places = spread([x(value) for value in values], 84.0, 40.0, _WIDTH - 40.0)
+    digits = digits_of(values[0], values[-1]) if len(values) > 1 else 2
     for value, place in zip(values, places, strict=True):
-        c.text(place, y + 23, quantity(value, g.unit), anchor="middle")
+        c.text(place, y + 23, quantity(value, g.unit, digits=digits), anchor="middle")

@@ -9,6 +9,8 @@ from jackettwin.soil.families import FAMILIES
 UNKNOWN = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _Z95 = 1.959963984540054
+_WIDE = 0.2
+"""Relative width of an interval whose ends two digits tell apart: they step by up to a tenth."""
 
 
 def known(value: float | None) -> bool:
@@ -117,13 +119,24 @@ def quantity(value: float, unit: str, *, digits: int = 2) -> str:
     return f"{float(text):g} {prefix}{unit}"
 
 
+def digits_of(low: float, high: float) -> int:
+    """Return how many significant digits tell the ends of an interval of positive numbers apart.
+
+    >>> digits_of(1.0, 2.0), digits_of(4.1e8, 4.25e8), digits_of(1.0, 1.001)
+    (2, 3, 4)
+    """
+    width = high / low - 1.0 if low > 0.0 else 1.0
+    return 2 if width > _WIDE else 3 if width > _WIDE / 10.0 else 4
+
+
 def between(low: float, high: float, unit: str) -> str:
     """Return ``low to high`` with the unit once where both have the same prefix.
 
-    >>> between(2.01e9, 1.395e10, "N/m"), between(2e8, 4.6e9, "N/m"), between(0.0073, 0.16, "-")
-    ('2 to 14 GN/m', '200 MN/m to 4.6 GN/m', '0.0073 to 0.16')
+    >>> between(2.01e9, 1.395e10, "N/m"), between(2e8, 4.6e9, "N/m"), between(4.1e8, 4.25e8, "N/m")
+    ('2 to 14 GN/m', '200 MN/m to 4.6 GN/m', '410 to 425 MN/m')
     """
-    a, b = quantity(low, unit), quantity(high, unit)
+    digits = digits_of(low, high)
+    a, b = quantity(low, unit, digits=digits), quantity(high, unit, digits=digits)
     number, _, same = a.partition(" ")
     return f"{number} to {b}" if same == b.partition(" ")[2] else f"{a} to {b}"
 

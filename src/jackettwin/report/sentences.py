@@ -6,7 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from jackettwin.answers.result import Answers, Clearance, GroundAnswer, ModeAnswer, NextStep, Span
-from jackettwin.report.numbers import UNKNOWN, between, count, listed, parameter_words, quantity, words
+from jackettwin.report.numbers import (
+    UNKNOWN,
+    between,
+    count,
+    digits_of,
+    listed,
+    parameter_words,
+    quantity,
+    words,
+)
+from jackettwin.report.sentences_fit import fit_sentence, mend, misfit_headline
 from jackettwin.soil.families import FAMILIES
 
 MARGIN = 0.10
@@ -53,7 +63,7 @@ class Said:
 def sentences(a: Answers) -> Said:
     """Return the first page in words."""
     return Said(
-        tuple(filter(None, (*_stiff_enough(a), *_ground_headline(a), _owner_headline(a), _next_headline(a)))),
+        tuple(filter(None, _headline(a))),
         (
             Question("Is the model right?", *_model(a)),
             Question("How stiff and how damped is the ground?", *_ground(a)),
@@ -64,6 +74,13 @@ def sentences(a: Answers) -> Said:
     )
 
 
+def _headline(a: Answers) -> list[str]:
+    """Return the headline; a model that cannot meet the data comes before all that it says."""
+    if misfit := misfit_headline(a):
+        return [misfit[0], *_stiff_enough(a), *misfit[1:]]
+    return [*_stiff_enough(a), *_ground_headline(a), _owner_headline(a), _next_headline(a)]
+
+
 def span_words(span: Span, unit: str) -> str:
     """Return a value with its interval.
 
@@ -72,7 +89,8 @@ def span_words(span: Span, unit: str) -> str:
     """
     if span.low is None or span.high is None:
         return quantity(span.value, unit)
-    return f"{quantity(span.value, unit)} ({between(span.low, span.high, unit)})"
+    digits = digits_of(span.low, span.high)
+    return f"{quantity(span.value, unit, digits=digits)} ({between(span.low, span.high, unit)})"
 
 
 def percent_words(span: Span, digits: int = 2) -> str:
@@ -231,6 +249,7 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         short.append(
             f"The twin states no design foundation (update.priors). Measured, and on rigid feet: {first}."
         )
+    short += [] if a.fit is None else [fit_sentence(a.fit)]
     short += _margins(a)
     misses = [
         (abs(m.model_hz.value / m.measured_hz.value - 1.0), m.label)
@@ -275,7 +294,7 @@ def _margins(a: Answers) -> list[str]:
 
 
 def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    said = [_parameter(g) for g in a.ground]
+    said = [_parameter(g, a.fits) for g in a.ground]
     if not a.ground:
         said = ["No law was fitted."]
     first, more = _firsts(a), []
@@ -285,12 +304,12 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(said[:_MOST]), (*said[_MOST:], *more)
 
 
-def _parameter(g: GroundAnswer) -> str:
+def _parameter(g: GroundAnswer, fits: bool) -> str:
     name = parameter_words(g.name).capitalize()
     before = "" if g.before is None else f"; before the data {span_words(g.before, g.unit)}"
     verdict = {
         "identified": "known",
-        "weak": "known roughly",
+        "weak": "known roughly" if fits else "the interval of a model that does not fit",
         "unidentified": "not known",
         "": "no interval",
     }[g.verdict]
@@ -388,6 +407,8 @@ def _trust(a: Answers) -> list[str]:
 
 
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    if a.fit is not None and not a.fit.fits:
+        return (f"{mend(a.fit)}. Then run again: only a model that fits tells what to measure next.",), ()
     short = [_step(a, step) for step in a.next_steps[:1]]
     open_ = [g for g in a.ground if g.verdict != "identified"]
     if a.ground and not open_:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from jackettwin.answers.result import Answers, Span
-from jackettwin.report.numbers import UNKNOWN, between, fixed, parameter_words, quantity, words
+from jackettwin.report.numbers import UNKNOWN, fixed, parameter_words, words
 from jackettwin.report.page import Table
-from jackettwin.report.sentences import step_words
+from jackettwin.report.sentences import span_words, step_words
 from jackettwin.twin import TwinResult
 from jackettwin.updating.budget import SOURCES
 
@@ -76,8 +76,9 @@ def _ranged(span: Span | None, unit: str) -> str:
     if span is None:
         return "any between its bounds"
     if span.low is None or span.high is None:
-        return quantity(span.value, unit)
-    return f"{quantity(span.value, unit)}\n({between(span.low, span.high, unit)})"
+        return span_words(span, unit)
+    value, interval = span_words(span, unit).split(" (", 1)
+    return f"{value}\n({interval}"
 
 
 def laws_table(a: Answers) -> Table:

@@ -20,6 +20,16 @@ from jackettwin.version import __version__
 
 STEEL_DAMPING = 0.005
 """Ratio of critical at the first frequency: what welded steel towers and jackets are usually given."""
+_UPDATE = (
+    "update:",
+    "  model_error:                      # by how much drawings and beams miss the modes: CHECK",
+    "    - {modes: [1, 2], frequency: 0.01}",
+    "    - {modes: [3, 4, 5], frequency: 0.03, damping: 0.2}",
+    "  # priors: {k: {median: 1.0e9, log_std: 0.7}}   # what the design says of a foot [N/m]",
+    "  # rotor: turbine.yaml             # windIO file: what a parked rotor damps in the wind",
+    "# rotor_speed_rpm: [5.0, 7.6]       # lowest and highest in operation: margins to 1P and 3P",
+)
+"""What no file says: the model's own error as models of beams have it, the rest for the user to fill in."""
 _PLAIN = re.compile(r"^[A-Za-z_][\w./\-]*$")
 
 
@@ -66,7 +76,11 @@ class Draft:
 
 
 def draft_twin(
-    source: str, assembly: Assembly, records: Sequence[tuple[str, Record]], unsaid: Unsaid
+    source: str,
+    assembly: Assembly,
+    records: Sequence[tuple[str, Record]],
+    unsaid: Unsaid,
+    further: Sequence[str] = (),
 ) -> Draft:
     """Return a commented twin file.
 
@@ -80,6 +94,8 @@ def draft_twin(
         At least one; sensors are those of the first.
     unsaid : Unsaid
         What the user said of the logger.
+    further : sequence of str
+        Records that are listed without having been read.
     """
     first = with_conditions(records[0][1])
     places = tuple(_place(channel, assembly) for channel in moving_channels(first).channels)
@@ -99,6 +115,8 @@ def draft_twin(
         *[_sensor_line(place) for place in places],
         "records:",
         *[f"  - {_text(path)}   # {_described(record)}" for path, record in records],
+        *[f"  - {_text(path)}" for path in further],
+        *_UPDATE,
         *(["# Missing:"] if missing else []),
         *[f"#   {sentence}" for sentence in missing],
     ]
@@ -187,6 +205,7 @@ def _missing(places: Sequence[Place], records: Sequence[Record], structure: Stru
             f'conditions of the records ({", ".join(lacking)}): "conditions" in the JSON beside a record, or '
             "records.json; without the yaw, fore-aft is taken along global x"
         )
+    missing.append("rotor_speed_rpm: [lowest, highest]; without it there are no margins to 1P and 3P")
     if not structure.masses:
         missing.append("the rotor–nacelle assembly: rna: {mass_kg, cg_offset_m, inertia_about_cg_kg_m2}")
     return tuple(missing)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import hypot
+from typing import Any
 
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.held import unpaired_finding
@@ -90,7 +92,7 @@ def cautions(
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]
         for seen in found.observations:
-            lines += [f"{seen.name}, {f['channel']}: {f['text']}" for f in seen.quality.get("findings", ())]
+            lines += [f"{_place(seen.name, f)}: {f['text']}" for f in seen.quality.get("findings", ())]
             lines += [f"{seen.name}: {text}" for text in seen.identification.warnings]
             lines += [f"{seen.name}: {f}" for f in seen.findings if f.code == "sensor_against_model"]
         lines += [*_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
@@ -109,6 +111,11 @@ def cautions(
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)
+
+
+def _place(record: str, finding: Mapping[str, Any]) -> str:
+    """Return where a finding was made: a record, or a channel of it."""
+    return f"{record}, {finding['channel']}" if finding["channel"] else record
 
 
 def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[MeasuredMode, ...]) -> list[str]:

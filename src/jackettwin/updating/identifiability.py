@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.updating.misfit import Misfit
 from jackettwin.updating.problem import Found, Problem
 
-Decider = Literal["data", "bounds", "prior", "no posterior"]
+Decider = Literal["data", "bounds", "prior", "misfit", "no posterior"]
 
 USABLE = 2.0
 """Longest interval of an identified parameter, upper end of the 90 % over the lower: a stiffness known to a
@@ -46,8 +47,9 @@ class Verdict:
         The same, expected from the precision of the measurements alone: the median over the prior.
     verdict_before : str
     reason : str
-    decided_by : {"data", "bounds", "prior", "no posterior"}
-        What made the interval: without convergence nobody knows.
+    decided_by : {"data", "bounds", "prior", "misfit", "no posterior"}
+        What made the interval: without convergence nobody knows, and of a model that cannot meet the data it
+        is too short.
     interval_factor : float
         Upper over lower end of the 90 % interval.
     """
@@ -83,7 +85,7 @@ def verdict_of(ratio: float, factor: float, decided_by: Decider = "data") -> str
 
 
 def identifiability(
-    problem: Problem, z: FloatArray, *, seed: int = 0, converged: bool = True
+    problem: Problem, z: FloatArray, *, seed: int = 0, converged: bool = True, misfit: Misfit | None = None
 ) -> tuple[Verdict, ...]:
     """Return the verdict on every parameter.
 
@@ -92,12 +94,16 @@ def identifiability(
     z : (n, d) draws of ln θ from the posterior
     converged : bool
         Whether they are of the posterior; else nothing is called identified.
+    misfit : Misfit, optional
+        Of the best fit; where chance does not explain it, nothing is called identified.
     """
     prior = problem.prior.std
     ratio = z.std(axis=0) / prior
     low, high = np.quantile(z, [0.05, 0.95], axis=0)
     factor = np.exp(high - low)
     deciders = _deciders(problem, z, ratio, converged)
+    if misfit is not None and not misfit.fits:
+        deciders = ["misfit" if decider == "data" else decider for decider in deciders]
     before = expected_ratio(problem, problem.prior.draw(_DESIGN_POINTS, np.random.default_rng(seed)))
     factor_before = np.exp(np.minimum(_NORMAL_90 * before * prior, _LARGEST_LOG))
     reasons = _reasons(problem, z, ratio, factor, deciders)
@@ -170,6 +176,8 @@ def _reasons(
             reasons.append(f"fixed by {data[strongest]}: {span}")
         elif deciders[j] == "no posterior":
             reasons.append("the posterior did not converge: the interval is Laplace's")
+        elif deciders[j] == "misfit":
+            reasons.append(f"the model cannot meet the data, so that its interval is too short: {span}")
         elif np.linalg.norm(J[:, j]) < _UNSEEN:
             reasons.append("no datum sees it: its prior moves them by less than half a standard deviation")
         elif abs(value) >= _TRADES:

@@ -15,6 +15,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
 from jackettwin.updating.identifiability import Verdict, identifiability
 from jackettwin.updating.laplace import laplace_draws, log_covariance
+from jackettwin.updating.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
 from jackettwin.updating.nested import sample_nested
 from jackettwin.updating.next_measurement import Measurement, next_measurements
@@ -242,7 +243,9 @@ def _uncertainty(
         status=status,
         laplace_log_std=np.sqrt(np.diag(log_covariance(problem, best.theta))),
         log_theta=z,
-        verdicts=identifiability(problem, z, seed=seed, converged=posterior is not None),
+        verdicts=identifiability(
+            problem, z, seed=seed, converged=posterior is not None, misfit=misfit(problem, best.theta)
+        ),
         next_measurements=next_measurements(problem, z),
         predictive=predict_quantities(
             model, _first(problem, _thinned(z)), (*known, *beyond), problem.states[0].relaxations

@@ -1,0 +1,50 @@
+"""Whether the updated model meets what was measured, and what error of it would cover what it misses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import log
+
+import numpy as np
+from scipy.optimize import brentq
+
+from jackettwin.answers.result import FitAnswer, ModeAnswer
+from jackettwin.twin.result import MeasuredMode
+from jackettwin.updating import Update
+from jackettwin.updating.misfit import misfit
+
+_LARGEST = 1.0
+"""Relative error up to which one that covers the misfit is sought: beyond it the model says nothing."""
+
+
+def fit_answer(u: Update, measured: Sequence[MeasuredMode], modes: Sequence[ModeAnswer]) -> FitAnswer | None:
+    """Return how the best fit meets its data; None where they carry no standard deviations."""
+    found = misfit(u.problem, u.best.theta)
+    if found is None:
+        return None
+    off, stds = {}, {}
+    for i, (m, mode) in enumerate(zip(measured, modes, strict=True)):
+        model_hz = float(u.modes.frequency_hz[i])
+        if m.fits_frequency and m.frequency_hz and m.frequency_std_hz and model_hz > 0.0:
+            off[m.label] = model_hz / m.frequency_hz - 1.0
+            stds[m.label] = float(np.hypot(m.frequency_std_hz / m.frequency_hz, mode.model_error))
+    ranked = dict(sorted(off.items(), key=lambda item: -abs(item[1]) / stds[item[0]]))
+    cover = None if found.fits else _cover([*off.values()], [*stds.values()])
+    return FitAnswer(found.chi2, found.freedom, found.probability, found.fits, ranked, cover)
+
+
+def _cover(off: Sequence[float], stds: Sequence[float]) -> float | None:
+    """Return the relative error of the model with which the frequencies deviate as chance has it.
+
+    None where they do already (it is the damping that is missed) or no error up to all of the value does.
+    """
+    squares = np.array([log(1.0 + d) ** 2 for d in off])
+    own = np.array(stds) ** 2
+    wanted = max(len(off) - 1, 1)  # at least one stiffness was fitted to them
+
+    def excess(error: float) -> float:
+        return float((squares / (own + error**2)).sum()) - wanted
+
+    if not len(off) or excess(0.0) <= 0.0 or excess(_LARGEST) >= 0.0:
+        return None
+    return float(brentq(excess, 0.0, _LARGEST))
