@@ -94,17 +94,25 @@ class Commands(click.Group):
 
 
 class _Messages(logging.Handler):
-    """Prints what the package logs among the messages."""
+    """Prints what the package logs among the messages, the same line once."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: set[str] = set()
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print one line."""
-        messages.print(record.getMessage(), soft_wrap=True, markup=False)
+        line = record.getMessage()
+        if line not in self.said:
+            messages.print(line, soft_wrap=True, markup=False)
+        self.said.add(line)
 
 
 def _hear() -> None:
     """Print what the computing part logs; a server says for itself where its log goes."""
-    log = logging.getLogger("jackettwin.response")
-    if not log.handlers:
+    for package in ("jackettwin.response", "jackettwin.structure"):
+        log = logging.getLogger(package)
+        log.handlers = [handler for handler in log.handlers if not isinstance(handler, _Messages)]
         log.addHandler(_Messages())
         log.setLevel(logging.INFO)
 

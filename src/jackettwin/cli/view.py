@@ -137,8 +137,6 @@ def view_command(
     else:
         for line in _dimensions(assembly):
             output.print(f"  {line}")
-        for remark in remarks:
-            output.print(f"  not read: {remark}", markup=False)
         output.print(f"wrote {path}")
 
 

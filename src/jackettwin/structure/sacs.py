@@ -1,13 +1,17 @@
 """SACS model files: JOINT, MEMBER, GRUP, SECT and joint LOAD cards, in the fixed columns of its manuals.
 
-Units follow the OPTIONS card: EN is feet, inches, ksi, kips and lb/ft³; MN and ME are metres, centimetres,
-kN/cm², kN (ME: kg) and t/m³. What is not understood is kept as a list, never left out silently.
+The columns agree with two public programs that read and write them (sacs2abaqus, Golden Beach) and with two
+public decks of wind turbines' jackets (OC4, INNWIND). Units follow the OPTIONS card: EN is feet, inches, ksi,
+kips and lb/ft³; MN and ME are metres, centimetres, kN/cm², kN (ME: kg) and t/m³. What is not understood is
+logged as a warning, never left out silently.
 """
 
 from __future__ import annotations
 
+import logging
+import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,13 +20,17 @@ import numpy as np
 from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, PointMass, Reaction, Section, Structure
 
+log = logging.getLogger(__name__)
 _G = 9.80665
 _SILENT = {"END", "LDOPT", "LOADLB", "LCSEL", "LCOMB", "UCPART", "LIVE", "HYDRO", "TITLE"}
 """Cards that hold no structure: combinations, code checks, titles."""
 _PINNED = (True, True, True, False, False, False)
 _HELD = {"FIXED": (True, True, True, True, True, True), "PINNED": _PINNED, "PILEHD": _PINNED}
 """Words for what holds a joint; a pile head is held by the supports that are updated."""
-_TUBE = "TUB"
+_ENVIRONMENT = {"CDM", "MGROV", "GRPOV", "GRPOVA", "WAVE", "WAVE1", "WIND", "CURR", "DEAD", "TIDE", "CENTER"}
+"""Cards of the sea, of growth on members and of the self-weight's direction."""
+_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
+"""Exponents stand without their letter: ``1.64+4`` is 16400."""
 
 
 @dataclass(frozen=True)
@@ -45,22 +53,33 @@ _METRIC = {
 
 
 @dataclass
+class _Part:
+    """A length of a group's members, None where it takes the rest; both sections are equal but for cones."""
+
+    start: Section
+    end: Section
+    material: Material
+    length: float | None
+
+
+@dataclass
 class _Deck:
     """What the cards of a deck say, in SI units."""
 
     units: _Units = _ENGLISH
     nodes: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     held: dict[str, str] = field(default_factory=dict)
-    groups: dict[str, list[tuple[Section, Material, float | None]]] = field(default_factory=dict)
-    tubes: dict[str, Section] = field(default_factory=dict)
+    groups: dict[str, list[_Part]] = field(default_factory=dict)
+    tubes: dict[str, tuple[Section, Section]] = field(default_factory=dict)
     shapes: set[str] = field(default_factory=set)
     members: list[tuple[str, str, str]] = field(default_factory=list)
-    masses: dict[str, float] = field(default_factory=dict)
+    loads: dict[str, dict[str, float]] = field(default_factory=dict)
+    condition: str = ""
     remarks: Counter[str] = field(default_factory=Counter)
 
 
 def read_sacs(path: Path) -> Structure:
-    """Read a SACS model file; ``sacs_remarks`` says what of it was not understood.
+    """Read a SACS model file; what of it is not understood is logged, as ``sacs_remarks`` returns it.
 
     Raises
     ------
@@ -69,7 +88,10 @@ def read_sacs(path: Path) -> Structure:
     """
     deck = _cards(path)
     with located(file=path):
-        return _structure(deck, path.stem)
+        structure = _structure(deck, path.stem)
+    for remark in _remarks(deck):
+        log.warning("%s: %s", path.name, remark)
+    return structure
 
 
 def is_sacs(path: Path) -> bool:
@@ -83,6 +105,10 @@ def sacs_remarks(path: Path) -> tuple[str, ...]:
     deck = _cards(path)
     with located(file=path):
         _structure(deck, path.stem)
+    return _remarks(deck)
+
+
+def _remarks(deck: _Deck) -> tuple[str, ...]:
     return tuple(f"{text} ({n} times)" if n > 1 else text for text, n in deck.remarks.items())
 
 
@@ -92,15 +118,18 @@ def _cards(path: Path) -> _Deck:
     readers = {"JOINT": _joint, "MEMBER": _member, "GRUP": _group, "SECT": _section, "LOAD": _load}
     for number, line in enumerate(lines, start=1):
         word = line[:6].split(" ")[0].strip() if line[:1].isalpha() else ""
-        word = "LOADCN" if line.startswith("LOADCN") else word
         if not word or word in _SILENT or not line[len(word) :].strip():
             continue
         if word == "OPTIONS"[:6]:
             deck.units = _units(line)
+        elif word == "LOADCN":
+            deck.condition = line[6:10].strip()
         elif word in readers:
             with located(file=path, field=f"line {number}"):
                 readers[word](deck, line)
-        elif word != "LOADCN":
+        elif word.split(".")[0] in _ENVIRONMENT:
+            deck.remarks["cards of waves, wind, current and marine growth are not read"] += 1
+        else:
             deck.remarks[f"{word} cards are not read"] += 1
     return deck
 
@@ -116,7 +145,7 @@ def _number(line: str, first: int, last: int, what: str, default: float | None =
     if not text and default is not None:
         return default
     try:
-        return float(text)
+        return float(_EXPONENT.sub(r"e\1", text))
     except ValueError:
         raise InputError(
             f"no number for {what} in columns {first} to {last}",
@@ -146,12 +175,14 @@ def _member(deck: _Deck, line: str) -> None:
         deck.remarks["member offsets are not read: members run from joint to joint"] += 1
         return
     a, b, group = line[7:11].strip(), line[11:15].strip(), line[16:19].strip()
+    if "1" in line[22:34]:
+        deck.remarks["members' end releases are not read: ends are rigid"] += 1
     if a and b and group:
         deck.members.append((a, b, group))
 
 
 def _group(deck: _Deck, line: str) -> None:
-    name, label, u = line[5:8].strip(), line[9:16].strip(), deck.units
+    name, taper, label, u = line[5:8].strip(), line[8:9].strip(), line[9:16].strip(), deck.units
     E = u.modulus * _number(line, 31, 35, "E", 29.0 if u is _ENGLISH else 20.5)
     G = u.modulus * _number(line, 36, 40, "G", 11.6 if u is _ENGLISH else 8.0)
     rho = u.density * _number(line, 71, 76, "density", 490.0 if u is _ENGLISH else 7.849)
@@ -161,34 +192,57 @@ def _group(deck: _Deck, line: str) -> None:
         deck.shapes.add(name)
         deck.remarks[f"group {name}: section {label} is no tube of this deck; its members are left out"] += 1
         return
-    section = (
-        deck.tubes[label]
-        if label
-        else Section(
+    if label:
+        start, end = deck.tubes[label]
+    else:
+        start = end = Section(
             u.short * _number(line, 18, 23, "outer diameter"),
-            u.short * _number(line, 25, 29, "wall thickness"),
+            u.short * _number(line, 24, 29, "wall thickness"),
         )
-    )
-    deck.groups.setdefault(name, []).append((section, material, length))
+    parts = deck.groups.setdefault(name, [])
+    if taper == "E" and parts:  # a pair of cards, B and E, is one cone from the one section to the other
+        parts[-1].end = end
+    else:
+        parts.append(_Part(start, end, material, length))
 
 
 def _section(deck: _Deck, line: str) -> None:
+    """Read a tube, or a cone whose far end has another diameter."""
     name, shape, u = line[5:12].strip(), line[15:18].strip(), deck.units.short
-    if shape == _TUBE:
-        deck.tubes[name] = Section(u * _number(line, 50, 55, "A"), u * _number(line, 56, 60, "B"))
-    else:
+    if shape not in ("TUB", "CON"):
         deck.remarks[f"section {name}: shape {shape or 'unknown'} is not read"] += 1
+        return
+    start = Section(u * _number(line, 50, 55, "A"), u * _number(line, 56, 60, "B"))
+    far = u * _number(line, 61, 66, "C", 0.0) if shape == "CON" else 0.0
+    deck.tubes[name] = (start, Section(far, start.thickness_m) if far else start)
 
 
 def _load(deck: _Deck, line: str) -> None:
-    """Take what a joint load pulls down as mass; loads on members are listed."""
+    """Keep what a joint load pulls down, condition by condition; loads on members are listed."""
     if "JOIN" not in line[60:72]:
-        deck.remarks["LOAD on members is not read as mass"] += 1
+        deck.remarks["loads on members are not read as mass"] += 1
         return
     down = -_number(line, 31, 37, "FZ", 0.0)
     if down > 0.0:
-        node = line[7:11].strip()
-        deck.masses[node] = deck.masses.get(node, 0.0) + down * deck.units.mass
+        of_joint = deck.loads.setdefault(line[7:11].strip(), {})
+        of_joint[deck.condition] = of_joint.get(deck.condition, 0.0) + down
+
+
+def _masses(deck: _Deck, used: set[str]) -> tuple[PointMass, ...]:
+    """Return what pulls joints down as masses.
+
+    The same weight is often repeated in the conditions of several directions: equal forces count once.
+    """
+    loads = {node: forces for node, forces in deck.loads.items() if node in used}
+    found = {node: deck.units.mass * sum(set(forces.values())) for node, forces in loads.items()}
+    if found:
+        conditions = ", ".join(dict.fromkeys(c for forces in loads.values() for c in forces))
+        tonnes = sum(found.values()) / 1000.0
+        deck.remarks[
+            f"joint loads of {conditions} are taken as {tonnes:.4g} t of mass, equal ones on a joint once: "
+            "check it"
+        ] += 1
+    return tuple(PointMass(node, mass) for node, mass in found.items())
 
 
 def _structure(deck: _Deck, name: str) -> Structure:
@@ -209,29 +263,28 @@ def _structure(deck: _Deck, name: str) -> Structure:
         name=name,
         nodes={node: at for node, at in nodes.items() if node in used},
         members=tuple(members),
-        masses=tuple(PointMass(node, mass) for node, mass in deck.masses.items() if node in used),
+        masses=_masses(deck, used),
         reactions=tuple(_reactions(deck.held, used)),
     )
 
 
 def _segments(
-    nodes: dict[str, tuple[float, float, float]], a: str, b: str, group: str,
-    parts: list[tuple[Section, Material, float | None]],
-) -> Iterable[Member]:  # fmt: skip
+    nodes: dict[str, tuple[float, float, float]], a: str, b: str, group: str, parts: Sequence[_Part]
+) -> Iterable[Member]:
     """Return a member, cut where its group changes; the segment without a length takes what is left."""
     start, end = (np.asarray(_place(nodes, node, a, b)) for node in (a, b))
     whole = float(np.linalg.norm(end - start))
-    left = whole - sum(length or 0.0 for _, _, length in parts)
-    open_ = sum(length is None for _, _, length in parts)
+    left = whole - sum(part.length or 0.0 for part in parts)
+    open_ = sum(part.length is None for part in parts)
     at, previous = 0.0, a
-    for i, (section, material, length) in enumerate(parts, start=1):
-        at += length if length is not None else left / open_
+    for i, part in enumerate(parts, start=1):
+        at += part.length if part.length is not None else left / open_
         node = b if i == len(parts) else f"{a}-{b}.{i}"
         if node != b:
             x, y, z = map(float, start + (end - start) * min(at / whole, 1.0))
             nodes[node] = (x, y, z)
         suffix = f".{i}" if len(parts) > 1 else ""
-        yield Member(f"{a}-{b}{suffix}", previous, node, section, section, material, group)
+        yield Member(f"{a}-{b}{suffix}", previous, node, part.start, part.end, part.material, group)
         previous = node
 
 
@@ -251,6 +304,6 @@ def _reactions(held: Mapping[str, str], used: set[str]) -> Iterable[Reaction]:
             continue
         if word in _HELD:
             yield Reaction(node, _HELD[word])
-        elif set(word) <= {"0", "1"}:
+        elif set(word) <= {"0", "1", "2"} and "1" in word:  # 2: kept in a dynamic analysis, not held
             x, y, z, rx, ry, rz = (c == "1" for c in word.ljust(6, "0"))
             yield Reaction(node, (x, y, z, rx, ry, rz))
