@@ -17,7 +17,7 @@ from jackettwin.loads.given_waves import Elevation, read_elevation
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.waves import peak_factor
 from jackettwin.loads.wind import Wind
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.sensors import Sensor, observation_matrix, sees
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
 from jackettwin.simulate.scenario import GRID_M, Air, Clock, Instrument, Scenario, Sea, Turbine
@@ -349,7 +349,7 @@ def _check_instruments(instruments: tuple[Instrument, ...], structure: Structure
 
 def _instrument(s: SensorSchema) -> Instrument:
     return Instrument(
-        sensor=Sensor(s.channel, s.direction, s.node, s.height_m),
+        sensor=Sensor(s.channel, s.direction, s.node, s.height_m, s.member, s.position, sees(s.quantity)),
         quantity=s.quantity,
         on_nacelle=s.frame == "nacelle",
         noise=s.noise,

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.quantities import quantity as quantity_of
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.level import beyond_comparison, levels
 from jackettwin.simulate.motion import Motion, simulate_motion
@@ -19,7 +20,6 @@ from jackettwin.simulate.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
 
-_UNITS = {"acceleration": "m/s^2", "velocity": "m/s", "displacement": "m"}
 _SIGNALS = {
     "wind_hub_x": ("wind speed", "m/s"),
     "wave_elevation": ("wave elevation", "m"),
@@ -134,7 +134,7 @@ def _channel(instrument: Instrument) -> Channel:
     return Channel(
         name=sensor.channel,
         quantity=instrument.quantity,
-        unit=_UNITS[instrument.quantity],
+        unit=quantity_of(instrument.quantity).unit,
         height_m=sensor.height_m,
         node=sensor.node,
         direction=(x, y, z),

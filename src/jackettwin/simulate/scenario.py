@@ -157,7 +157,7 @@ class Instrument:
     ----------
     sensor : Sensor
         ``direction`` is in global axes, or in the nacelle's if ``on_nacelle``.
-    quantity : ``acceleration``, ``velocity`` or ``displacement``
+    quantity : ``acceleration``, ``velocity``, ``displacement``, ``inclination`` or ``strain``
     noise : standard deviation of white noise, in SI units of the quantity
     bias : constant error
     limit : readings are clipped at ± this

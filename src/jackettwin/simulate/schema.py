@@ -136,8 +136,10 @@ class SensorSchema(Schema):
     channel: Annotated[str, Field(min_length=1)]
     node: str | None = None
     height_m: Height | None = None
+    member: str | None = None
+    position: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
     direction: tuple[Part, Part, Part]
-    quantity: Literal["acceleration", "velocity", "displacement"] = "acceleration"
+    quantity: Literal["acceleration", "velocity", "displacement", "inclination", "strain"] = "acceleration"
     frame: Literal["global", "nacelle"] = "global"
     noise: Annotated[float, Field(ge=0.0, le=1e3)] = 0.0
     bias: Annotated[float, Field(ge=-1e6, le=1e6)] = 0.0

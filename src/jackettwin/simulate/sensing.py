@@ -66,7 +66,7 @@ def _observation(motion: Motion, instruments: tuple[Instrument, ...]) -> tuple[F
     rows = np.asarray(observation_matrix(motion.model.assembly, sensors) @ motion.model.reduced.basis)
     C, D = np.zeros((rows.shape[0], space.A.shape[0])), np.zeros((rows.shape[0], n))
     for k, (row, instrument) in enumerate(zip(rows, instruments, strict=True)):
-        if instrument.quantity == "displacement":
+        if instrument.quantity in ("displacement", "inclination", "strain"):
             C[k, :n] = row
         elif instrument.quantity == "velocity":
             C[k, n : 2 * n] = row

@@ -132,6 +132,33 @@ def translation_shape(xi: float, L: float, Phi: float = 0.0) -> FloatArray:
     return N
 
 
+def rotation_shape(xi: float, L: float, Phi: float = 0.0) -> FloatArray:
+    """Return (3, 12): the local rotation of the section at ``xi`` = x/L from the end displacements."""
+    N = np.zeros((3, 12))
+    N[0, [3, 9]] = 1.0 - xi, xi
+    sway = 6.0 * (xi**2 - xi) / L
+    first = 1.0 - 4.0 * xi + 3.0 * xi**2 + Phi * (1.0 - xi)
+    second = -2.0 * xi + 3.0 * xi**2 + Phi * xi
+    plane = np.array([sway, first, -sway, second]) / (1.0 + Phi)
+    N[2, BENDING_XY] = plane
+    N[1, BENDING_XZ] = -plane * _REVERSED
+    return N
+
+
+def strain_shape(xi: float, L: float, y: float, z: float, Phi: float = 0.0) -> FloatArray:
+    """Return (12,): the axial strain at ``xi`` = x/L and the point (y, z) of the section, u' − y θz' + z θy'.
+
+    The curvatures are the derivatives of :func:`rotation_shape`.
+    """
+    B = np.zeros(12)
+    B[[0, 6]] = -1.0 / L, 1.0 / L
+    sway = 6.0 * (2.0 * xi - 1.0) / L
+    plane = np.array([sway, -4.0 + 6.0 * xi - Phi, -sway, -2.0 + 6.0 * xi + Phi]) / (L * (1.0 + Phi))
+    B[list(BENDING_XY)] = -y * plane
+    B[list(BENDING_XZ)] = -z * plane * _REVERSED
+    return B
+
+
 def axial_force(p: BeamProperties, R: FloatArray, u: FloatArray) -> FloatArray:
     """Return the mean axial force [N] of each element from its end displacements.
 

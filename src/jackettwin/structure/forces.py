@@ -70,6 +70,11 @@ def element_weight(assembly: Assembly) -> FloatArray:
     return np.asarray(np.einsum("eij,ej->ei", beam.mass(mesh.properties), lifted))
 
 
+def tube_radius(p: beam.BeamProperties) -> FloatArray:
+    """Return the outer radii [m] of tubes, from R² + r² = 4I/A and R² − r² = A/π."""
+    return np.asarray(0.5 * np.sqrt(2.0 * (p.A / np.pi + 4.0 * p.I / p.A)))
+
+
 def von_mises_stress(assembly: Assembly, forces: SectionForces) -> FloatArray:
     """Return the largest von Mises stress [Pa] at both ends of every element, (..., n_elements, 2).
 
@@ -77,7 +82,7 @@ def von_mises_stress(assembly: Assembly, forces: SectionForces) -> FloatArray:
     side: √(σ² + 3τ²).
     """
     p = assembly.mesh.properties
-    R = 0.5 * np.sqrt(2.0 * (p.A / np.pi + 4.0 * p.I / p.A))[:, None]
+    R = tube_radius(p)[:, None]
     A, W, J = p.A[:, None], p.I[:, None] / R, p.J[:, None]
     sigma = np.abs(forces.axial) / A + forces.bending / W
     tau = np.abs(forces.torsion) * R / J + 2.0 * forces.shear / A

@@ -13,7 +13,7 @@ from jackettwin.identification.picks import Pick
 from jackettwin.records import Record
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import UndampedModes
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response.sensors import Sensor, observation_matrix, sees
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.calibration import Calibrations, sensors_at
@@ -158,7 +158,7 @@ def placed_sensors(given: tuple[Sensor, ...], record: Record) -> tuple[Sensor, .
     return tuple(
         replace(by_channel[c.name], direction=c.direction)
         if given
-        else Sensor(c.name, c.direction, c.node, None if c.node else c.height_m)
+        else Sensor(c.name, c.direction, c.node, None if c.node else c.height_m, quantity=sees(c.quantity))
         for c in record.channels
     )
 

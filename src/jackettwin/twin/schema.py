@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +15,7 @@ from jackettwin.files import Schema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
-from jackettwin.response.sensors import Sensor
+from jackettwin.response.sensors import Seen, Sensor
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import RnaSchema
@@ -102,8 +103,9 @@ class CalibrationSchema(Schema):
     def build(self, sensor: Sensor) -> Calibration:
         """Return it, of a sensor that sits there otherwise."""
         moved = self.node is not None or self.height_m is not None
-        node, height = (self.node, self.height_m) if moved else (sensor.node, sensor.height_m)
-        then = Sensor(sensor.channel, self.direction or sensor.direction, node, height)
+        then = replace(sensor, direction=self.direction or sensor.direction)
+        if moved:
+            then = replace(then, node=self.node, height_m=self.height_m, member=None)
         return Calibration(then, self.gain * self.sign, self.from_utc, self.to_utc)
 
 
@@ -140,17 +142,20 @@ class OperationSchema(Schema):
 
 
 class SensorSchema(Schema):
-    """A sensor: where a channel of the record sits in the structure."""
+    """A sensor: where a channel of the record sits in the structure, and what it sees there."""
 
     channel: str
     node: str | None = None
     height_m: float | None = None
+    member: str | None = None
+    position: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
     direction: Vector
+    quantity: Seen = "motion"
     calibrations: list[CalibrationSchema] = []
 
     def build(self) -> Sensor:
         """Return where it sits."""
-        return Sensor(self.channel, self.direction, self.node, self.height_m)
+        return Sensor(**self.model_dump(exclude={"calibrations"}))
 
     def history(self) -> Calibrations:
         """Return what held of it from when to when.
