@@ -171,8 +171,11 @@ def test_a_new_version_observes_everything_beside_the_old_and_waits_for_a_person
         (2, False, 1),
     ]
     assert client.get("/api/v1/assets/wtg/twin").json() == old
+    turn(service, 4)
     client.post("/api/v1/assets/wtg/versions/2/adopt")
     assert client.get("/api/v1/assets/wtg/twin").json()["version"] == 2
+    asked = client.get("/api/v1/jobs?state=queued").json()["items"]
+    assert [(job["kind"], job["version"]) for job in asked] == [("know", 2)]  # what its days say, anew
 
 
 def test_a_twin_that_cannot_be_read_is_no_version(client: TestClient) -> None:

@@ -102,10 +102,9 @@ def show(name: str, as_json: bool, store: Path, database: str | None) -> None:
 def adopt(name: str, version: int, as_json: bool, store: Path, database: str | None) -> None:
     """Make a VERSION of the turbine NAME the one whose answers count."""
     engine = opened(store, database)
-    from jackettwin.store import assets, writing
+    from jackettwin.service import adopt_version
 
-    with writing(engine) as connection:
-        assets.adopt(connection, name, version)
+    adopt_version(engine, store, name, version)
     if as_json:
         print_json({"asset": name, "adopted_version": version})
     else:

@@ -2,7 +2,7 @@
 
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.demonstration import demonstrate
-from jackettwin.service.desk import add_conditions, add_twin, rebuild, take_here
+from jackettwin.service.desk import add_conditions, add_twin, adopt_version, rebuild, take_here
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import record_files, watch_folders
 from jackettwin.service.server import running, serve
@@ -14,6 +14,7 @@ __all__ = [
     "ServiceSettings",
     "add_conditions",
     "add_twin",
+    "adopt_version",
     "demonstrate",
     "open_service",
     "rebuild",

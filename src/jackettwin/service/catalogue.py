@@ -8,14 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.service import engine
+from jackettwin.service.consequences import ask_known
 from jackettwin.service.intake.files import queue
 from jackettwin.service.schemas import AssetOut, VersionOut
 from jackettwin.store import assets, journal, people, records, results
-from jackettwin.store.tables import observations
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
@@ -80,6 +80,20 @@ def add_version(
     return version
 
 
+def adopt(connection: Connection, service: Place, name: str, version: int, by: str) -> None:
+    """Make a version the one whose answers count, and ask what its days say of the supports.
+
+    Raises
+    ------
+    InputError
+        If there is no such version.
+    """
+    assets.adopt(connection, name, version)
+    ask_known(connection, service, assets.found_version(connection, name, version))
+    people.note_down(connection, by, "adopt", f"{name}/{version}", "ok", service.now())
+    journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
+
+
 def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
         for path, content in contents.items():
@@ -111,21 +125,22 @@ def one(connection: Connection, name: str) -> AssetOut:
     return _asset_out(row, counts.get(name, {}), said.get(name, {}), unseen)
 
 
+def versions_out(connection: Connection, asset: str) -> list[VersionOut]:
+    """Return every version of an asset as the API speaks of it, oldest first."""
+    seen, adopted = results.count_observations(connection, asset), assets.found_version(connection, asset)
+    return [
+        VersionOut(
+            **{name: getattr(version, name) for name in VersionOut.model_fields if hasattr(version, name)},
+            adopted=version.version == adopted.version,
+            observations=seen.get(version.model_hash, 0),
+        )
+        for version in assets.all_versions(connection, asset)
+    ]
+
+
 def version_out(connection: Connection, version: assets.Version) -> VersionOut:
     """Return a version as the API speaks of it."""
-    same = (observations.c.asset == version.asset, observations.c.model_hash == version.model_hash)
-    seen = connection.scalar(select(func.count()).select_from(observations).where(*same))
-    adopted = assets.found_version(connection, version.asset).version
-    return VersionOut(
-        version=version.version,
-        model_hash=version.model_hash,
-        settings_hash=version.settings_hash,
-        created_utc=version.created_utc,
-        created_by=version.created_by,
-        comment=version.comment,
-        adopted=version.version == adopted,
-        observations=seen or 0,
-    )
+    return next(v for v in versions_out(connection, version.asset) if v.version == version.version)
 
 
 def _asset_out(row: assets.Summary, counts: dict[str, int], said: dict[str, int], unseen: int) -> AssetOut:

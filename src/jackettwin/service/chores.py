@@ -49,6 +49,8 @@ def prune(service: Service) -> int:
         old = records.with_samples_before(connection, now - timedelta(days=float(days)))
         for record in old:
             records.forget_samples(connection, record)
+        for asset in {record.asset for record in old}:
+            journal.tell(connection, "record", asset, {"samples_forgotten": True}, now)
     for record in old:
         (service.settings.store / str(record.waveform)).unlink(missing_ok=True)
     return len(old)

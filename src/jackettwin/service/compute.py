@@ -18,6 +18,8 @@ from jackettwin.service.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
 
+_NICE = 10
+"""Of workers of our own: readers are answered first, records are observed with what is left of the cores."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -27,6 +29,7 @@ _DASK = {
     "distributed.scheduler.work-stealing": False,
     "distributed.admin.tick.limit": "60s",
     "distributed.worker.daemon": True,
+    "distributed.worker.preload": [f"import os; os.nice({_NICE})"],
 }
 """A worker over its memory is ended, not paused.
 

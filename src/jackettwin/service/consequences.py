@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection, select
 
 from jackettwin.service import engine
+from jackettwin.service.intake.files import queue
 from jackettwin.service.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
@@ -91,21 +92,14 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
 
 
-def ask_known(connection: Connection, service: Place, job: work.Job) -> None:
-    """Queue the question what the state says now, behind everything that is observed."""
-    number = work.enqueue(
-        connection,
-        kind=work.KNOW,
-        asset=job.asset,
-        record_id="",
-        version=job.version,
-        model_hash=job.model_hash,
-        settings_hash=job.settings_hash,
-        code_version=job.code_version,
-        now=service.now(),
-        priority=-10,
-    )
-    work.try_again(connection, number)
+def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
+    """Queue the question what the state says now, behind everything that is observed.
+
+    An answer that is on its way knows less, and is not accepted.
+    """
+    number = queue(connection, version, "", service.now(), kind=work.KNOW, priority=-10)
+    if not work.try_again(connection, number):
+        work.renew(connection, number)
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
@@ -160,7 +154,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
     )
     for finding in [f for f in outcome.findings if f["severity"] != "info"]:
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
-    ask_known(connection, service, job)
+    ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
     journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
 
 
@@ -189,6 +183,7 @@ def supersede(connection: Connection, service: Place, asset: str, old: str, new:
         if gone is not None:
             results.drop_observation(connection, asset, version.model_hash, old)
             fold(connection, service, asset, version.version, gone, anew=True)
+    journal.tell(connection, "record", asset, {"record_id": old, "status": "set_aside"}, service.now())
 
 
 def fold(

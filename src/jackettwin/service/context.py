@@ -17,6 +17,7 @@ from jackettwin.service.auth import Guesses
 from jackettwin.service.compute import Compute
 from jackettwin.service.feed import Feed
 from jackettwin.service.remembered import Remembered
+from jackettwin.service.rendered import Rendered
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
 from jackettwin.version import __version__
@@ -69,6 +70,7 @@ class Service:
     now: Callable[[], datetime] = _now
     guesses: Guesses = field(default_factory=Guesses)
     remembered: Remembered = field(default_factory=Remembered)
+    rendered: Rendered = field(default_factory=Rendered)
     chores: list[Chore] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True

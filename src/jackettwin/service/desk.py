@@ -11,12 +11,12 @@ from sqlalchemy import Engine, select
 
 from jackettwin.service import conditions, consequences
 from jackettwin.service.bundles import bundle
-from jackettwin.service.catalogue import add_version
+from jackettwin.service.catalogue import add_version, adopt
 from jackettwin.service.context import Desk
 from jackettwin.service.intake.files import Accepted, queue, take_file
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.service.tasks import Parsed, read_file
-from jackettwin.store import assets, reading, records, work, writing
+from jackettwin.store import assets, journal, reading, records, work, writing
 from jackettwin.store.results import StoredObservation
 from jackettwin.store.tables import observations
 
@@ -41,6 +41,18 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
         "settings_hash": version.settings_hash,
         "files": sorted(contents),
     }
+
+
+def adopt_version(database: Engine, store: Path, name: str, version: int) -> None:
+    """Make a version of an asset the one whose answers count.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset or version.
+    """
+    with writing(database) as connection:
+        adopt(connection, Desk(ServiceSettings(store), database), name, version, "command line")
 
 
 def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
@@ -103,6 +115,7 @@ def rebuild(
                     days += 1
                 if observe:
                     queued += _queue_all(connection, desk, version, start)
+            journal.tell(connection, "state", name, {"rebuilt": True}, desk.now())
     return {"assets": names, "days": days, "queued": queued}
 
 

@@ -17,7 +17,7 @@ from jackettwin.service.problems import ApiError
 from jackettwin.service.routes.common import known_asset
 from jackettwin.service.schemas import PicksIn, Taken
 from jackettwin.service.tasks import read_conditions
-from jackettwin.store import assets, people, reading, records, work, writing
+from jackettwin.store import assets, journal, people, reading, records, work, writing
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
@@ -65,6 +65,8 @@ def pick(
     for version in assets.all_versions(connection, record.asset):
         number = queue(connection, version, record.record_id, service.now(), priority=20)
         work.renew(connection, number)
+    told = {"record_id": record.record_id, "status": record.status, "picks": len(body.picks)}
+    journal.tell(connection, "record", record.asset, told, service.now())
     return number
 
 

@@ -44,11 +44,14 @@ def events_after(connection: Connection, last: int, limit: int = 500) -> list[Ev
     return [Event(**row._mapping) for row in rows]
 
 
-def last_event(connection: Connection) -> int:
-    """Return the number of the newest event, 0 before the first."""
-    return connection.scalar(select(func.max(events.c.id))) or 0
+def last_event(connection: Connection, asset: str | None = None) -> int:
+    """Return the number of the newest event, of all assets or of one, 0 before the first."""
+    query = select(func.max(events.c.id))
+    return connection.scalar(query if asset is None else query.where(events.c.asset == asset)) or 0
 
 
 def forget_events(connection: Connection, now: datetime) -> None:
-    """Delete what no reader can be waiting for."""
-    connection.execute(delete(events).where(events.c.time_utc < now - KEPT))
+    """Delete what no reader can be waiting for; the newest of each asset stays: its answers' version."""
+    newest = select(func.max(events.c.id)).group_by(events.c.asset)
+    old = (events.c.time_utc < now - KEPT, events.c.id.not_in(newest))
+    connection.execute(delete(events).where(*old))

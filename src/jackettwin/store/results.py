@@ -101,6 +101,12 @@ def find_observation(
     return None if row is None else StoredObservation(**row._mapping)
 
 
+def count_observations(connection: Connection, asset: str) -> dict[str, int]:
+    """Return how many records of an asset every model observed, {model hash: number}."""
+    query = select(observations.c.model_hash, func.count()).where(observations.c.asset == asset)
+    return {model: n for model, n in connection.execute(query.group_by(observations.c.model_hash))}
+
+
 def put_state(connection: Connection, state: StoredState) -> None:
     """Keep the state of a day in place of the one before."""
     same = and_(

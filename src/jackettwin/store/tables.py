@@ -29,7 +29,7 @@ from sqlalchemy import (
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
-SCHEMA_VERSION = "0002"
+SCHEMA_VERSION = "0003"
 """Newest migration; a database of an older one is migrated when it is opened, a newer one is refused."""
 
 
@@ -315,7 +315,10 @@ events = Table(
     Column("kind", String(16), nullable=False),
     Column("asset", String(64), nullable=False),
     Column("payload", JSON, nullable=False),
+    Index("ix_events_asset", "asset", "id"),
 )
+"""What happened, in the order of commits. Whatever changes an answer about an asset adds one: its newest is
+the version of all that can be asked of it."""
 
 settings = Table(
     "settings",

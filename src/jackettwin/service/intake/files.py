@@ -129,12 +129,18 @@ def living(connection: Connection, asset: str, adopted: assets.Version) -> list[
 
 
 def queue(
-    connection: Connection, version: assets.Version, record_id: str, now: datetime, *, priority: int = 0
+    connection: Connection,
+    version: assets.Version,
+    record_id: str,
+    now: datetime,
+    *,
+    kind: str = work.OBSERVE,
+    priority: int = 0,
 ) -> int:
-    """Ask for a record to be observed by a version of a twin."""
+    """Ask for a record to be observed by a version of a twin, or for other work of it."""
     return work.enqueue(
         connection,
-        kind=work.OBSERVE,
+        kind=kind,
         asset=version.asset,
         record_id=record_id,
         version=version.version,

@@ -12,20 +12,21 @@ from jackettwin.service.routes.common import (
     Asker,
     AssetName,
     Parts,
-    Reads,
+    Told,
     Transaction,
     Writes,
     known_asset,
+    known_version,
     waits,
 )
 from jackettwin.service.schemas import AssetOut, ConditionsIn, NewAsset, NewVersion, Page, Taken, VersionOut
-from jackettwin.store import assets, people
+from jackettwin.store import assets
 
 router = APIRouter(tags=["assets"], route_class=Transaction)
 
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401))
-def list_assets(connection: Reads) -> Page[AssetOut]:
+def list_assets(connection: Told) -> Page[AssetOut]:
     """List the assets with their status, last data and findings."""
     return Page(items=catalogue.overview(connection))
 
@@ -42,7 +43,7 @@ def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> A
 
 
 @router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_asset(asset: AssetName, connection: Reads) -> AssetOut:
+def get_asset(asset: AssetName, connection: Told) -> AssetOut:
     """Return one asset."""
     known_asset(connection, asset)
     return catalogue.one(connection, asset)
@@ -59,10 +60,10 @@ def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, conn
 
 
 @router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def versions(asset: AssetName, connection: Reads) -> Page[VersionOut]:
+def versions(asset: AssetName, connection: Told) -> Page[VersionOut]:
     """List the versions of an asset's twin, oldest first."""
     known_asset(connection, asset)
-    return Page(items=[catalogue.version_out(connection, v) for v in assets.all_versions(connection, asset)])
+    return Page(items=catalogue.versions_out(connection, asset))
 
 
 @router.post(
@@ -78,12 +79,9 @@ def adopt(
     connection: Writes,
 ) -> VersionOut:
     """Make a version the one whose answers count."""
-    known_asset(connection, asset)
-    if version not in [v.version for v in assets.all_versions(connection, asset)]:
-        raise ApiError(404, "no such version", field="version", value=str(version))
-    assets.adopt(connection, asset, version)
-    people.note_down(connection, who.name, "adopt", f"{asset}/{version}", "ok", parts.now())
-    return catalogue.version_out(connection, assets.found_version(connection, asset, version))
+    found = known_version(connection, asset, version)
+    catalogue.adopt(connection, parts, asset, version, who.name)
+    return catalogue.version_out(connection, found)
 
 
 @router.post(

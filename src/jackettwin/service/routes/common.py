@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import inspect
 from collections.abc import Callable
 from functools import partial, wraps
@@ -19,7 +18,8 @@ from jackettwin.errors import InputError
 from jackettwin.service.auth import Who
 from jackettwin.service.context import Service
 from jackettwin.service.problems import ApiError
-from jackettwin.store import assets, reading, records, writing
+from jackettwin.service.rendered import compressed, content_tag, has_tag
+from jackettwin.store import assets, journal, reading, records, writing
 
 _ANSWERING = CapacityLimiter(12)
 """Threads that answer questions: more only wait for each other."""
@@ -43,6 +43,8 @@ def asker(request: Request) -> Who:
 
 Parts = Annotated[Service, Depends(get_service)]
 Reads = Annotated[Connection, reading]
+Told = Annotated[Connection, reading, "told"]
+"""A connection that reads what changes with an event only: its newest number is the answer's version."""
 Writes = Annotated[Connection, writing]
 """A connection in a transaction, kept if the route succeeds."""
 Asker = Annotated[Who, Depends(asker)]
@@ -71,19 +73,19 @@ def waits(route: Callable[..., Any]) -> Callable[..., Any]:
 
 def _in_one_thread(route: Callable[..., Any], tagged: bool) -> Callable[..., Any]:
     hints = get_type_hints(route, include_extras=True)
-    names = [name for name, hint in hints.items() if hint in (Reads, Writes)]
-    opening = hints[names[0]].__metadata__[0] if names else None
+    names = [name for name, hint in hints.items() if hint in (Reads, Told, Writes)]
+    kind = hints[names[0]] if names else None
     asked = next((name for name, hint in hints.items() if hint is Request), None)
     limiter = _WAITING if getattr(route, "waits", False) else _ANSWERING
 
     def work(request: Request, values: dict[str, Any]) -> Any:
-        if opening is None:
-            found = route(**values)
-        else:
-            with opening(get_service(request).database) as connection:
-                found = route(**values, **{names[0]: connection})
-        plain = tagged and "response" not in values and isinstance(found, BaseModel)
-        return _answer(request, found) if plain else found
+        if kind is None:
+            return route(**values)
+        with kind.__metadata__[0](get_service(request).database) as connection:
+            answer = partial(route, **values, **{names[0]: connection})
+            if kind == Told:
+                return _by_version(request, connection, values.get("asset"), answer)
+            return _by_content(request, answer()) if tagged else answer()
 
     @wraps(route)
     async def endpoint(**values: Any) -> Any:
@@ -98,22 +100,59 @@ def _in_one_thread(route: Callable[..., Any], tagged: bool) -> Callable[..., Any
     return endpoint
 
 
-def _answer(request: Request, found: BaseModel) -> Response:
+def _by_content(request: Request, found: Any) -> Any:
     """Return an answer with a tag of its content; one the reader has already is not sent again."""
+    if not isinstance(found, BaseModel):
+        return found
     body = found.model_dump_json().encode()
-    tag = f'"{hashlib.sha256(body).hexdigest()[:32]}"'
-    headers = {"ETag": tag, "Cache-Control": "private, no-cache"}
-    if request.headers.get("if-none-match") == tag:
+    headers = _tagged(content_tag(body))
+    if has_tag(request.headers.get("if-none-match"), headers["ETag"]):
         return Response(status_code=304, headers=headers)
     return Response(body, headers=headers, media_type="application/json")
 
 
+def _by_version(
+    request: Request, connection: Connection, asset: str | None, answer: Callable[[], Any]
+) -> Any:
+    """Return an answer about an asset, or about all, which is made only if something happened since the last.
+
+    The version is read before the answer: what happens between them makes a new version, and a new answer.
+    """
+    service = get_service(request)
+    version = journal.last_event(connection, asset)
+    headers = _tagged(f'W/"{service.server_id}-{version}"')
+    if has_tag(request.headers.get("if-none-match"), headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    question = f"{request.url.path}?{request.url.query}"
+    known = service.rendered.find(question, version)
+    if known is None:
+        found = answer()
+        if isinstance(found, Response):
+            found.headers.update(headers)
+            return found
+        known = compressed(version, found.model_dump_json().encode())
+        service.rendered.keep(question, known)
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(known.body, headers=headers, media_type="application/json")
+    headers["Content-Encoding"] = "gzip"
+    return Response(known.compressed, headers=headers, media_type="application/json")
+
+
+def _tagged(tag: str) -> dict[str, str]:
+    return {"ETag": tag, "Cache-Control": "private, no-cache", "Vary": "Accept-Encoding"}
+
+
 def known_asset(connection: Connection, name: str) -> assets.Version:
     """Return the adopted version of an asset; answers 404 if there is none."""
+    return known_version(connection, name, None)
+
+
+def known_version(connection: Connection, name: str, version: int | None) -> assets.Version:
+    """Return a version of an asset, by default the adopted one; answers 404 if there is none."""
     try:
-        return assets.found_version(connection, name)
+        return assets.found_version(connection, name, version)
     except InputError as error:
-        raise ApiError(404, error.problem, field="asset", value=name) from None
+        raise ApiError(404, error.problem, field=error.field, value=str(error.value)) from None
 
 
 def known_record(connection: Connection, record_id: str) -> records.StoredRecord:

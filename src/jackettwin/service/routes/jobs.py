@@ -58,6 +58,7 @@ def retry(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut
         raise ApiError(409, f"this work is {job.state} already")
     records.set_status(connection, job.asset, job.record_id, "received")
     people.note_down(connection, who.name, "retry", str(job_id), "ok", parts.now())
+    journal.tell(connection, "job", job.asset, {"job_id": job_id, "state": "queued"}, parts.now())
     parts.wake()
     return _out(_found(work.find_job(connection, job_id), job_id))
 

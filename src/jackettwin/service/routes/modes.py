@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Response
 from jackettwin.service import answers as said
 from jackettwin.service import auth, signals
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, AssetName, Parts, Reads, Transaction, Writes, known_asset
+from jackettwin.service.routes.common import Asker, AssetName, Parts, Told, Transaction, Writes, known_asset
 from jackettwin.service.schemas import Acknowledgement, AlarmOut, FindingOut, ModeOut, Page, TwinOut
 from jackettwin.store import journal, people, results
 
@@ -24,7 +24,7 @@ When = Annotated[datetime | None, Query(description="The state as it was then; d
 @router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def modes(
     asset: AssetName,
-    connection: Reads,
+    connection: Told,
     label: Annotated[str | None, Query(max_length=64)] = None,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
@@ -38,14 +38,14 @@ def modes(
 
 
 @router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def twin(asset: AssetName, parts: Parts, connection: Reads, at: When = None) -> TwinOut:
+def twin(asset: AssetName, parts: Parts, connection: Told, at: When = None) -> TwinOut:
     """Return what the twin knows at a time: mean modes and parameters with their intervals."""
     return said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
 
 
 @router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def damping_budget(
-    asset: AssetName, parts: Parts, connection: Reads, at: When = None
+    asset: AssetName, parts: Parts, connection: Told, at: When = None
 ) -> Page[dict[str, object]]:
     """Return whose damping it is, mode by mode."""
     found = said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
@@ -53,7 +53,7 @@ def damping_budget(
 
 
 @router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def life(asset: AssetName, connection: Reads) -> Page[dict[str, object]]:
+def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
     """Return the life at every joint; empty until the twin computes fatigue."""
     known_asset(connection, asset)
     return Page(items=[])
@@ -62,7 +62,7 @@ def life(asset: AssetName, connection: Reads) -> Page[dict[str, object]]:
 @router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def findings(
     asset: AssetName,
-    connection: Reads,
+    connection: Told,
     severity: Literal["info", "warning", "alarm"] | None = None,
     cursor: Cursor = None,
     limit: Limit = 100,
@@ -72,7 +72,7 @@ def findings(
 
 
 @router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def alarms(asset: AssetName, connection: Reads, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
+def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
     """List the findings that ask for a person, newest first, and who took note."""
     return said.alarms(connection, known_asset(connection, asset), cursor, limit)
 
@@ -106,6 +106,6 @@ def acknowledge(
     response_class=Response,
     responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
 )
-def export(connection: Reads, table: Literal["modes", "findings", "records"] = "modes") -> Response:
+def export(connection: Told, table: Literal["modes", "findings", "records"] = "modes") -> Response:
     """Return a whole table as Parquet."""
     return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")

@@ -15,6 +15,7 @@ from jackettwin.service.routes.common import (
     Parts,
     Reads,
     RecordId,
+    Told,
     Transaction,
     Writes,
     known_asset,
@@ -59,7 +60,7 @@ def add_record(
 @router.get("/assets/{asset}/records", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def list_records(
     asset: AssetName,
-    connection: Reads,
+    connection: Told,
     since: Annotated[datetime | None, Query(alias="from")] = None,
     until: Annotated[datetime | None, Query(alias="to")] = None,
     status: Status | None = None,
@@ -81,7 +82,7 @@ def list_records(
 
 
 @router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def get_record(record_id: RecordId, connection: Reads) -> RecordOut:
+def get_record(record_id: RecordId, connection: Told) -> RecordOut:
     """Return a record and how far it got."""
     return signals.record_out(known_record(connection, record_id))
 
