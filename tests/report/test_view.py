@@ -9,6 +9,7 @@ import pytest
 
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.report.view import Quantity, View, thickness_quantities, view_document, write_view
+from jackettwin.report.view_dimensions import dimensions
 from jackettwin.report.view_motions import damped_motion, record_motion, undamped_motion, wave_motion
 from jackettwin.response.modal import damped_modes, undamped_modes
 from jackettwin.response.passage import wave_passage
@@ -141,3 +142,30 @@ def test_what_is_no_tube_is_drawn_as_a_line(tmp_path: Path) -> None:
     page = write_view(view, tmp_path / "mast.html").read_text(encoding="utf-8")
     assert 'class="key cable"' in page
     assert 'class="key rigid-link"' in page
+
+
+def test_dimensions_are_those_of_the_parameters() -> None:
+    """39.39 m at the mud line and 10 m at the top are the reference jacket's B0 and B1; sea level at 72 m."""
+    found = dimensions(assemble(read_structure("jacket15")))
+    assert found["levels"] == [-72.0, 22.0, 28.0, 144.0]
+    by_level = {round(width["a"][2], 2): width for width in found["widths"]}
+    assert by_level[-72.0]["text"] == "39.39 m" and by_level[22.0]["text"] == "10.00 m"
+    for width in found["widths"]:
+        length = np.linalg.norm(np.subtract(width["a"], width["b"]))
+        assert width["text"] == f"{length:.2f} m"
+    assert [d["at"][2] for d in found["diameters"]] == [28.0, 144.0]  # the column, thicker than the tower
+
+
+def test_a_leg_measures_to_its_neighbour_not_across_nor_to_the_middle() -> None:
+    corners = [(5.0, 0.0, -10.0), (-2.5, 4.33, -10.0), (-2.5, -4.33, -10.0)]
+    names = ("a", "b", "c")
+    tube = Section(1.0, 0.05)
+    structure = Structure(
+        "tripod",
+        dict(zip(names, corners, strict=True)) | {"middle": (0.0, 0.0, -10.0), "top": (0.0, 0.0, 30.0)},
+        tuple(Member(n, n, "top", tube, tube, STEEL, "legs") for n in names)
+        + (Member("m", "a", "middle", tube, tube, STEEL, "legs"),),
+        reactions=tuple(Reaction(n) for n in names),
+    )
+    (width,) = dimensions(assemble(structure))["widths"]
+    assert width["text"] == "8.66 m"

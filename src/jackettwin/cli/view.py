@@ -36,6 +36,10 @@ _MOST_USED = 1.5
 """Members used more than this are drawn alike: they have failed, and others should still be told apart."""
 
 
+_MOST_PARTS = 8
+"""Parts whose dimensions are told one by one; the groups of a SACS deck are dozens."""
+
+
 @click.command("view")
 @click.argument("structure")
 @click.option(
@@ -155,7 +159,11 @@ def _dimensions(assembly: Assembly) -> tuple[str, ...]:
     lines.append(f"z {z.min():+.2f} to {z.max():+.2f} m about the sea level")
     if feet:
         lines.append(f"{len(feet)} feet at z {points[feet, 2].min():+.2f} m, {_footprint(points[feet])}")
-    for part in dict.fromkeys(m.part for m in structure.members if m.part):
+    parts = dict.fromkeys(m.part for m in structure.members if m.part)
+    if len(parts) > _MOST_PARTS:
+        tubes = [s.outer_diameter_m for m in structure.members for s in (m.section_start, m.section_end)]
+        return (*lines, f"{len(parts)} parts, tubes {min(tubes):.2f} to {max(tubes):.2f} m")
+    for part in parts:
         own = [m for m in structure.members if m.part == part]
         ends = points[[assembly.mesh.node_names.index(n) for m in own for n in (m.start, m.end)]]
         diameters = [s.outer_diameter_m for m in own for s in (m.section_start, m.section_end)]

@@ -21,6 +21,7 @@ from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.report.figures_structure import member_text, sensor_points
+from jackettwin.report.view_dimensions import dimensions
 from jackettwin.report.view_motions import Motion
 from jackettwin.response.sensors import Sensor
 from jackettwin.structure import Assembly
@@ -126,6 +127,7 @@ def view_document(view: View) -> dict[str, Any]:
             for m in structure.masses
         ],
         "others": _others(assembly),
+        "dimensions": dimensions(assembly),
         "mud_z": float(
             min(
                 (points[mesh.node_names.index(n), 2] for n in structure.reaction_nodes),
