@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gallery.figures_landscape import Curve, Locus
+from gallery.landscape import cost_surface, sensitivity_curve
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.updating import Problem, SupportModel, Update
-from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 
 _STRIDE, _REFINEMENTS = 0.06, 3
 """A root locus is refined where a pole moves by more than this share of its path; so many times."""

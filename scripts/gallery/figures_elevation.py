@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from gallery.structure_3d import MUD, segments
 from jackettwin.report import style
-from jackettwin.report.figures_structure import MUD, member_text, segments
+from jackettwin.report.view import member_text
 from jackettwin.structure import Assembly
 
 

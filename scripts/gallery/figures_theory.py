@@ -11,7 +11,6 @@ from plotly.subplots import make_subplots
 from gallery import schematics
 from jackettwin.arrays import FloatArray
 from jackettwin.report import style
-from jackettwin.response.sdof import free_vibration
 from jackettwin.soil.viscoelastic import Law, hysteresis
 
 
@@ -127,3 +126,19 @@ def free_decay(
 
 
 _DASHES = ("solid", "dash", "dot")
+
+
+def free_vibration(
+    zeta: float, omega: float, t: FloatArray, *, x0: float = 1.0, v0: float = 0.0
+) -> FloatArray:
+    """Return x(t) of ẍ + 2ζω ẋ + ω² x = 0: under-, critically and overdamped, thesis (3.6)–(3.8)."""
+    decay = np.exp(-zeta * omega * t)
+    if zeta < 1.0:
+        wd = omega * np.sqrt(1.0 - zeta**2)
+        return np.asarray(decay * (x0 * np.cos(wd * t) + (v0 + zeta * omega * x0) / wd * np.sin(wd * t)))
+    if zeta == 1.0:
+        return np.asarray(decay * (x0 + (v0 + omega * x0) * t))
+    root = omega * np.sqrt(zeta**2 - 1.0)
+    slow, fast = -zeta * omega + root, -zeta * omega - root
+    a = (v0 - fast * x0) / (slow - fast)
+    return np.asarray(a * np.exp(slow * t) + (x0 - a) * np.exp(fast * t))

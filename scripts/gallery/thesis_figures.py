@@ -11,11 +11,12 @@ import plotly.graph_objects as go
 
 from gallery import explore, figures_landscape, figures_theory, schematics
 from gallery.figures_elevation import elevation
+from gallery.landscape import cost_surface
+from gallery.modes_3d import Shape, mode_shapes_3d
+from gallery.structure_3d import structure_3d
 from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
 from jackettwin.report import figures_identification, figures_record
-from jackettwin.report.figures_modes import Shape, mode_shapes_3d
-from jackettwin.report.figures_structure import structure_3d
 from jackettwin.report.numbers import frequency, scientific, words
 from jackettwin.report.page import Plot, Section
 from jackettwin.response.labels import mode_kinds, mode_labels
@@ -27,7 +28,6 @@ from jackettwin.soil import on_translations
 from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
 from jackettwin.updating import SupportModel, family, numbered_modes, single, support_model
-from jackettwin.updating.landscape import cost_surface
 from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
 

@@ -5,14 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.rotor_closed_form import added_damping_ratio, parked_closed_form
 
 from jackettwin.errors import InputError
 from jackettwin.loads.files import read_rotor
 from jackettwin.loads.rotor import (
-    added_damping_ratio,
     in_global_axes,
     linearise,
-    parked_closed_form,
     rotor_loads,
 )
 

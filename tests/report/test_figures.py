@@ -6,12 +6,12 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from gallery.modes_3d import Shape, mode_shapes_3d
+from gallery.structure_3d import structure_3d
 from jackettwin.records import Record
 from jackettwin.report import Plot
 from jackettwin.report.build import report_sections
-from jackettwin.report.figures_modes import Shape, mode_shapes_3d
 from jackettwin.report.figures_record import envelope, time_series
-from jackettwin.report.figures_structure import structure_3d
 from jackettwin.report.style import direction_colour, law_look, mode_look
 from jackettwin.twin import TwinResult
 

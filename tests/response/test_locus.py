@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from gallery.locus import damping_ratio, frequency_hz, root_locus
 from jackettwin.response.condensed import condense
-from jackettwin.response.locus import damping_ratio, frequency_hz, root_locus
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import on_translations
 from jackettwin.soil.viscoelastic import Prony, kelvin_voigt

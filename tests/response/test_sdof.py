@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from gallery.figures_theory import free_vibration
 from jackettwin.errors import InputError
-from jackettwin.response.sdof import free_vibration, poles, sdof
+from jackettwin.response.sdof import poles, sdof
 from jackettwin.response.state import state_matrix
 from jackettwin.response.time import free_decay
 from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, zener

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.support.rotor_closed_form import added_damping_ratio
 
 from jackettwin.errors import InputError
-from jackettwin.loads.rotor import added_damping_ratio
 from jackettwin.response.time import free_decay
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.model import (

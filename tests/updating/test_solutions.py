@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gallery.landscape import cost_surface, sensitivity_curve
 from jackettwin.errors import InputError
 from jackettwin.progress import Told
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
 from jackettwin.updating.descent import descend
-from jackettwin.updating.landscape import cost_surface, sensitivity_curve
 from jackettwin.updating.solution_clusters import gather
 from jackettwin.updating.solutions import search
 

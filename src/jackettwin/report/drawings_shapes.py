@@ -9,10 +9,9 @@ import numpy.typing as npt
 from markupsafe import Markup
 
 from jackettwin.report import style
-from jackettwin.report.figures_structure import sensor_points
 from jackettwin.report.numbers import fixed, words
 from jackettwin.report.svg import Canvas
-from jackettwin.response.sensors import observation_matrix
+from jackettwin.response.sensors import observation_matrix, sensor_positions
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Update
@@ -95,10 +94,10 @@ def _arrows(
     model = np.asarray(observation_matrix(result.assembly, result.sensors) @ shape)
     scale = (seen.conj() @ model) / (seen.conj() @ seen)
     fitted = np.real(seen * scale)
-    points = sensor_points(result.assembly, result.sensors)
+    points = sensor_positions(result.assembly, result.sensors)
     for sensor, at, value in zip(result.sensors, points, fitted, strict=True):
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
-        if np.abs(along[axes]).max() < 0.5:
+        if sensor.quantity != "motion" or np.abs(along[axes]).max() < 0.5:
             continue
         tail, tip = place(at[axes]), place(at[axes] + sway * value * along[axes])
         c.line(tail[0], tail[1], tip[0], tip[1], width=2.2)

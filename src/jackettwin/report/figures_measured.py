@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -12,7 +13,6 @@ from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification import ModalEstimate
 from jackettwin.records import Channel
 from jackettwin.report import style
-from jackettwin.report.figures_modes import animated
 from jackettwin.report.numbers import frequency, percent, words
 
 _FRAMES = 24
@@ -144,3 +144,49 @@ def _lay_out(
             }
         )
     return animated(figure, height=110 + 380 * n_rows, annotations=notes, **scenes)
+
+
+def animated(figure: go.Figure, *, height: int, **layout: Any) -> go.Figure:
+    """Give a figure with frames, one a phase in degrees, its button and slider, and the house style."""
+    turning = {"frame": {"duration": 60, "redraw": True}, "transition": {"duration": 0}, "fromcurrent": True}
+    still = {"frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
+    slider = {
+        "active": 0,
+        "x": 0.2,
+        "len": 0.8,
+        "y": 0.0,
+        "pad": {"t": 10},
+        "currentvalue": {"prefix": "phase [°]: ", "font": {"size": 12}},
+        "font": {"size": 11},
+        "steps": [
+            {"method": "animate", "label": frame.name, "args": [[frame.name], still]}
+            for frame in figure.frames
+        ],
+    }
+    play = {
+        "type": "buttons",
+        "direction": "right",
+        "x": 0.0,
+        "xanchor": "left",
+        "y": 0.0,
+        "yanchor": "top",
+        "pad": {"t": 28},
+        "showactive": False,
+        "buttons": [
+            {
+                "label": "▶ play",
+                "method": "animate",
+                "args": [[f.name for f in figure.frames] * 5, {**turning, "mode": "immediate"}],
+            },
+            {"label": "❚❚ stop", "method": "animate", "args": [[None], still]},
+        ],
+    }
+    return style.finish(
+        figure,
+        height=height,
+        updatemenus=[play],
+        sliders=[slider],
+        margin={"l": 0, "r": 0, "t": 60, "b": 84},
+        legend={"orientation": "h", "x": 0.0, "y": 1.03, "yanchor": "bottom"},
+        **layout,
+    )

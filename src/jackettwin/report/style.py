@@ -39,7 +39,6 @@ _LAWS = dict(
     )
 )
 """Of the support laws in their order; one that comes after these is grey."""
-MEASURED = Look(INK, "circle", "solid")
 _KINDS = {
     "fore_aft": (BLUE, "circle"),
     "side_side": (VERMILLION, "square"),

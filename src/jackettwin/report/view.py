@@ -20,10 +20,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.report.figures_structure import member_text, sensor_points
 from jackettwin.report.view_dimensions import dimensions
 from jackettwin.report.view_motions import Motion
-from jackettwin.response.sensors import Sensor
+from jackettwin.response.sensors import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 
 _LINES = ("cable", "spring", "beam")
@@ -103,7 +102,7 @@ def view_document(view: View) -> dict[str, Any]:
         "diameter": _rounded(_diameter(assembly), 4),
         "growth": _rounded(_growth(assembly, points, view.coefficients), 4),
         "flooded": np.array(flooded, dtype=int)[mesh.member],
-        "text": member_text(assembly).tolist(),
+        "text": member_text(assembly),
         "quantities": [
             {
                 "name": q.name,
@@ -174,7 +173,7 @@ def _others(assembly: Assembly) -> list[dict[str, Any]]:
 def _sensors(assembly: Assembly, sensors: Sequence[Sensor]) -> list[dict[str, Any]]:
     sea = assembly.structure.sea_level_z_m
     nodes = assembly.mesh.coordinates - [0.0, 0.0, sea]
-    places = sensor_points(assembly, sensors)
+    places = sensor_positions(assembly, sensors)
     return [
         {
             "name": s.channel,
@@ -193,3 +192,18 @@ def _rounded(values: FloatArray, decimals: int) -> list[Any]:
 
 def _digits(values: FloatArray) -> list[float]:
     return [float(f"{value:.5g}") for value in values]
+
+
+def member_text(assembly: Assembly) -> list[str]:
+    """Return what is said of each element on hovering: name, section, material."""
+    p = assembly.mesh.properties
+    texts = []
+    for e, member in enumerate(assembly.mesh.member):
+        m = assembly.structure.members[member]
+        section = m.section_start
+        texts.append(
+            f"{m.name} ({m.part.replace('_', ' ') or 'structure'})<br>"
+            f"D {section.outer_diameter_m:.3f} m, t {1e3 * section.thickness_m:.1f} mm, L {p.L[e]:.2f} m<br>"
+            f"E {p.E[e] / 1e9:.0f} GPa, ρ {p.rho[e]:.0f} kg/m³"
+        )
+    return texts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -65,6 +66,26 @@ def observation_matrix(assembly: Assembly, sensors: tuple[Sensor, ...]) -> sp.cs
     """
     rows = [_row(assembly, sensor) for sensor in sensors]
     return sp.csr_array(sp.vstack(rows)) if rows else sp.csr_array((0, assembly.n_dof))
+
+
+def sensor_positions(assembly: Assembly, sensors: Sequence[Sensor]) -> FloatArray:
+    """Return where sensors sit, (n_sensors, 3) [m], z above the mean sea level.
+
+    Raises
+    ------
+    InputError
+        If a sensor names a place that the structure does not have.
+    """
+    mesh, structure = assembly.mesh, assembly.structure
+    places = []
+    for sensor in sensors:
+        if sensor.node is not None:
+            places.append(np.asarray(structure.nodes[sensor.node], dtype=np.float64))
+            continue
+        e, xi = _on_member(assembly, sensor) if sensor.member is not None else _on_axis(assembly, sensor)
+        a, b = mesh.coordinates[mesh.start[e]], mesh.coordinates[mesh.end[e]]
+        places.append(a + xi * (b - a))
+    return np.array(places).reshape(-1, 3) - [0.0, 0.0, structure.sea_level_z_m]
 
 
 def _row(assembly: Assembly, sensor: Sensor) -> sp.csr_array:

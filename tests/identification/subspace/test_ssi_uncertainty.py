@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+from tests.support.stacked_hankel import stacked_hankel
 
 from jackettwin.identification.mac import normalised
 from jackettwin.identification.subspace.covariances import block_covariances, covariances
@@ -19,7 +20,6 @@ from jackettwin.identification.subspace.ssi_uncertainty import (
     block_deviations,
     order_poles_with_uncertainty,
     propagation,
-    stacked_hankel,
 )
 from jackettwin.identification.subspace.stabilisation import log_deviations
 from jackettwin.identification.synthetic import simulate

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 
 from jackettwin.arrays import FloatArray
 from jackettwin.report import style
-from jackettwin.response.sensors import Sensor
+from jackettwin.report.view import member_text
+from jackettwin.response.sensors import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 
 QUANTITIES = ("wall thickness", "outer diameter", "Young's modulus", "density")
@@ -85,19 +85,6 @@ def structure_3d(
     ).update_layout({f"coloraxis_{key.replace('.', '_')}": value for key, value in bars[colour].items()})
 
 
-def sensor_points(assembly: Assembly, sensors: Sequence[Sensor]) -> FloatArray:
-    """Return (n_sensors, 3) positions [m], z above the sea level."""
-    structure = assembly.structure
-    x, y, _ = structure.nodes[structure.top_node]
-    places = [
-        np.subtract(structure.nodes[s.node], [0.0, 0.0, structure.sea_level_z_m])
-        if s.node is not None
-        else np.array([x, y, float(s.height_m or 0.0)])
-        for s in sensors
-    ]
-    return np.array(places).reshape(-1, 3)
-
-
 def segments(assembly: Assembly, points: FloatArray) -> FloatArray:
     """Return (3·n_elements, 3): start, end and a gap of every element."""
     mesh = assembly.mesh
@@ -163,21 +150,6 @@ def _colour_bar(assembly: Assembly, name: str) -> dict[str, Any]:
     }
 
 
-def member_text(assembly: Assembly) -> npt.NDArray[Any]:
-    """Return what is said of each element on hovering: name, section, material."""
-    p = assembly.mesh.properties
-    texts = []
-    for e, member in enumerate(assembly.mesh.member):
-        m = assembly.structure.members[member]
-        section = m.section_start
-        texts.append(
-            f"{m.name} ({m.part.replace('_', ' ') or 'structure'})<br>"
-            f"D {section.outer_diameter_m:.3f} m, t {1e3 * section.thickness_m:.1f} mm, L {p.L[e]:.2f} m<br>"
-            f"E {p.E[e] / 1e9:.0f} GPa, ρ {p.rho[e]:.0f} kg/m³"
-        )
-    return np.array(texts)
-
-
 def _masses(assembly: Assembly) -> go.Scatter3d:
     structure = assembly.structure
     at = np.array(
@@ -199,7 +171,7 @@ def _masses(assembly: Assembly) -> go.Scatter3d:
 def _sensor_traces(assembly: Assembly, sensors: Sequence[Sensor]) -> list[go.Scatter3d]:
     if not sensors:
         return []
-    at = sensor_points(assembly, sensors)
+    at = sensor_positions(assembly, sensors)
     reach = 0.06 * float(np.ptp(assembly.mesh.coordinates[:, 2]))
     directions = np.array([np.asarray(s.direction) / np.linalg.norm(s.direction) for s in sensors])
     lines = np.stack([at, at + reach * directions, np.full_like(at, np.nan)], axis=1).reshape(-1, 3)

@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import plotly.graph_objects as go
 
+from gallery.structure_3d import scene_of, segments
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report import style
-from jackettwin.report.figures_structure import scene_of, segments, sensor_points
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.report.figures_measured import animated
+from jackettwin.response.sensors import Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
 
 _FRAMES = 24
@@ -50,7 +51,7 @@ def mode_shapes_3d(assembly: Assembly, shapes: Sequence[Shape], sensors: Sequenc
     points = assembly.mesh.coordinates - [0.0, 0.0, sea]
     height = float(np.ptp(points[:, 2]))
     H = observation_matrix(assembly, tuple(sensors))
-    places = sensor_points(assembly, sensors)
+    places = sensor_positions(assembly, sensors)
     drawn = [_Drawn.of(assembly, shape, H, _SWAY * height) for shape in shapes]
     figure = go.Figure()
     for i, (shape, motion) in enumerate(zip(shapes, drawn, strict=True)):
@@ -224,49 +225,3 @@ def _lay_out(figure: go.Figure, shapes: Sequence[Shape], points: FloatArray) -> 
             }
         )
     return animated(figure, height=680, annotations=notes, **scenes)
-
-
-def animated(figure: go.Figure, *, height: int, **layout: Any) -> go.Figure:
-    """Give a figure with frames, one a phase in degrees, its button and slider, and the house style."""
-    turning = {"frame": {"duration": 60, "redraw": True}, "transition": {"duration": 0}, "fromcurrent": True}
-    still = {"frame": {"duration": 0, "redraw": True}, "transition": {"duration": 0}, "mode": "immediate"}
-    slider = {
-        "active": 0,
-        "x": 0.2,
-        "len": 0.8,
-        "y": 0.0,
-        "pad": {"t": 10},
-        "currentvalue": {"prefix": "phase [°]: ", "font": {"size": 12}},
-        "font": {"size": 11},
-        "steps": [
-            {"method": "animate", "label": frame.name, "args": [[frame.name], still]}
-            for frame in figure.frames
-        ],
-    }
-    play = {
-        "type": "buttons",
-        "direction": "right",
-        "x": 0.0,
-        "xanchor": "left",
-        "y": 0.0,
-        "yanchor": "top",
-        "pad": {"t": 28},
-        "showactive": False,
-        "buttons": [
-            {
-                "label": "▶ play",
-                "method": "animate",
-                "args": [[f.name for f in figure.frames] * 5, {**turning, "mode": "immediate"}],
-            },
-            {"label": "❚❚ stop", "method": "animate", "args": [[None], still]},
-        ],
-    }
-    return style.finish(
-        figure,
-        height=height,
-        updatemenus=[play],
-        sliders=[slider],
-        margin={"l": 0, "r": 0, "t": 60, "b": 84},
-        legend={"orientation": "h", "x": 0.0, "y": 1.03, "yanchor": "bottom"},
-        **layout,
-    )
