@@ -1,10 +1,12 @@
 """Memory learnt from series whose memory is known, and what a year cannot know."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jackettwin.watching.hours import Hours
-from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, learn
+from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
 
 
 def series(rng: np.random.Generator, days: tuple[float, ...]) -> Hours:
@@ -54,4 +56,36 @@ def test_few_values_leave_room_for_larger_processes() -> None:
     drawn = np.sqrt(9.0 / np.random.default_rng(0).chisquare(9.0, 400_000))
     edges = [0.0, *np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1])), np.inf]
     expected = np.histogram(drawn, edges)[0] / drawn.size
-    np.testing.assert_allclose(_larger(9.0, (0.0, 0.0, 0.0)), expected, atol=2e-3)  # of the draws
+    np.testing.assert_allclose(_larger(9.0), expected, atol=2e-3)  # of the draws
+
+
+def test_a_size_that_is_hardly_known_leans_on_the_others() -> None:
+    """Three sizes known to 1 % hold their own; a fourth that is known to a factor e moves to them."""
+    sizes, variance = np.array([0.0, 0.1, -0.1, 2.0]), np.array([1e-4, 1e-4, 1e-4, 1.0])
+    shift, spread = _pooled(sizes, variance)
+    assert np.abs(shift[:3]).max() < 1e-2
+    assert 2.0 + shift[3] == pytest.approx(0.0, abs=0.2)  # the scatter of sizes that is granted
+    assert spread[3] == pytest.approx(0.2, abs=0.05) and spread[:3] == pytest.approx(0.01, rel=0.01)
+
+
+def test_sizes_that_differ_stay_as_they_are() -> None:
+    """DerSimonian and Laird's estimate with equal weights: the sample's variance less σ²."""
+    sizes, noise = np.array([-1.0, 0.0, 1.0]), 0.04
+    between = np.var(sizes, ddof=1) - noise
+    shift, _ = _pooled(sizes, np.full(3, noise))
+    np.testing.assert_allclose(shift, -sizes * noise / (noise + between))
+
+
+def test_quantities_that_drown_in_noise_are_taken_as_independent(rng: np.random.Generator) -> None:
+    loud = series(rng, (2.0,))
+    loud = replace(loud, values=loud.values + 15.0 * rng.standard_normal(loud.values.shape),
+                   noise=loud.noise + 225.0)  # fmt: skip
+    # their data tell nothing of 0.6: the prior's mean is 0, to the grid it is summed on
+    assert abs(learn(loud, np.full((2, 1), 5.0)).memories[0].correlation[0, 1]) < 0.35
+
+
+def test_one_quantity_may_be_larger_than_it_seemed(rng: np.random.Generator) -> None:
+    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    raised = [memory.std / learnt.memories[0].std for memory in learnt.memories]
+    for q in range(2):
+        assert any(r[q] > 1.2 and r[1 - q] == pytest.approx(1.0) for r in raised)

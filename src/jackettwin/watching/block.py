@@ -215,12 +215,26 @@ def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, F
     variance = _variance(relative, block.usual_std)
     variance = variance * block.louder**2
     memory = block.memories[0]
-    moving = variance * memory.scale**2 + memory.std**2
-    apart, doubt, tail = outliers(y - x @ block.reference.T, moving, block.tail)
+    mean, cov = _coefficients(block)
+    moving = variance * memory.scale**2 + memory.std**2 + _unsure(cov, x - x.mean(axis=0))
+    apart, doubt, tail = outliers(y - x @ mean.T, moving, block.tail)
     told = _told(apart, y)
     y[apart] = np.nan
     hours = by_hour(history.days, history.states, x, y, variance * doubt, WINDOW_DAYS)
     return hours, told, replace(block, tail=tail)
+
+
+def _coefficients(block: Block) -> tuple[FloatArray, FloatArray]:
+    """Return the coefficients as they are known by now, (m, p), and their covariances (m, p, p)."""
+    m, p = block.reference.shape
+    belief = block.beliefs[0]
+    own = np.stack([belief.cov[q * p : (q + 1) * p, q * p : (q + 1) * p] for q in range(m)])
+    return belief.mean[: m * p].reshape(m, p), own
+
+
+def _unsure(cov: FloatArray, x: FloatArray) -> FloatArray:
+    """Return the variances of what conditions explain, (n, m): unknown beyond those of the baseline."""
+    return np.asarray(np.einsum("np,qpr,nr->nq", x, cov, x))
 
 
 def _told(apart: BoolArray, values: FloatArray) -> FloatArray:
@@ -261,7 +275,7 @@ def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Sp
     total = weight.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(total > 0.0, np.nansum(weight * np.nan_to_num(rest), axis=0) / total, np.nan)
-        std = np.sqrt(1.0 / total + memory.std**2)
+        std = np.sqrt(1.0 / total + memory.std**2 + _unsure(_coefficients(block)[1], hours.rows).mean(axis=0))
     z = done.innovation / np.sqrt(done.spread)
     # hours' means tell of the noise, too, by its share of what was not foreseen, but for what all of a day
     # share: a step is no scatter

@@ -41,22 +41,26 @@ AGREEMENT = (1.0, 0.7)
 """Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
-MOST_SPECTRA, MOST_TRIED = 4, 10
+_BELIEVED = np.gradient(CORRELATIONS) * (1.0 - CORRELATIONS**2)
+"""What is believed of them before the baseline (Lewandowski, Kurowicka & Joe 2009): quantities whose
+processes drown in noise are taken as nearly independent."""
+MOST_SPECTRA, MOST_TRIED = 3, 10
 _HANDICAP = 1.5
 """In ln of the likelihood: models should differ in what they expect."""
-LARGER = (1.0, 1.2, 1.45, 1.8)
-"""Factors on the slow processes' standard deviations that a baseline may have missed."""
-LEAST_LARGER = (0.1, 0.04, 0.015)
-"""Weights that they have at least: the next year need not be like the last."""
+LARGER = (1.0, 1.3, 1.7)
+"""Factors on the slow processes' standard deviations, of all quantities alike, that a baseline may miss."""
 _LEAST_FREEDOM = 4.0
+ONE_LARGER = (2.0, 0.1)
+"""Standard deviations of its ln by which one quantity's slow processes may be larger, and its chance."""
+_LEAST_APART = 0.25
+"""The least of that difference: a model that predicts the same is of no use."""
+_MOST_APART = 4
+"""Quantities that have such a model, the least certain first."""
+_USUAL_APART = 0.2
+"""Standard deviation of ln size from quantity to quantity that is granted; more, if they show it."""
 _APART = 0.3
 _LIKELY = 7.0
 """Spectra whose likelihood falls short of the best one's by more than so much in ln are not followed up."""
-GUARD = (3.0, 0.05)
-"""Factor on the variance of the long processes, and weight, of a model that the future may want although the
-baseline does not: a year cannot show what a season does only now and then."""
-_SEASON = 10.0
-"""Time constants from which a process is long [days]."""
 _FIRST_STEPS, _MORE_STEPS = 40, 16
 
 
@@ -243,16 +247,11 @@ def learn(hours: Hours, coefficient_std: FloatArray, told: tuple[Spectrum, ...] 
         for spectrum in sorted(total, key=lambda one: -total[one])
         if total[spectrum] > max(total.values()) - _LIKELY
     ]  # fmt: skip
-    return _weighed(bases[:MOST_TRIED], hours, coefficient_std, doubted=not told)
+    return _weighed(bases[:MOST_TRIED], hours, coefficient_std)
 
 
-def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, *, doubted: bool) -> Learnt:
-    """Return models with the quantities' correlation, weighed by all quantities together.
-
-    Parameters
-    ----------
-    doubted : whether the future may want what the baseline does not
-    """
+def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray) -> Learnt:
+    """Return models with the quantities' correlation, weighed by all quantities together."""
     m = coefficient_std.shape[0]
     correlation = _correlation(hours, bases[0], coefficient_std)
     scored: list[tuple[float, Memory]] = []
@@ -264,16 +263,44 @@ def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, *, 
         found = [_end(memory, coefficient_std, hours).log_likelihood for memory in each]
         scored.append((float(np.logaddexp.reduce(found)), each[int(np.argmax(found))]))
     kept = _different(scored)
-    first = kept[0][1]
-    freedom = np.median([_freedom(hours, q, first, coefficient_std[q]) for q in range(m)]) - m + 1.0
-    larger = _larger(max(float(freedom), _LEAST_FREEDOM), LEAST_LARGER if doubted else (0.0, 0.0, 0.0))
-    guard = GUARD[1] if doubted else 1e-12
-    memories = [memory for _, memory in kept]
-    memories += [_guarded(first)] + [replace(first, std=g * first.std) for g in LARGER[1:]]
+    freedom = np.array([_freedom(hours, q, kept[0][1], coefficient_std[q]) for q in range(m)])
+    shift, spread = _pooled(np.log(kept[0][1].std), 0.5 / np.maximum(freedom, _LEAST_FREEDOM))
+    memories = [replace(memory, std=memory.std * np.exp(shift)) for _, memory in kept]
+    first = memories[0]
+    larger = _larger(max(float(np.median(freedom)) - m + 1.0, _LEAST_FREEDOM))
+    apart = np.argsort(-spread)[: _MOST_APART if m > 1 else 0]
+    one = ONE_LARGER[1] * (1.0 - ONE_LARGER[1]) ** max(len(apart) - 1, 0)
+    memories += [replace(first, std=g * first.std) for g in LARGER[1:]]
+    memories += [_one_larger(first, q, spread[q]) for q in apart]
     weights = np.exp([score - kept[0][0] for score, _ in kept])
-    weights = weights / weights.sum() * (1.0 - guard) * larger[0]
+    weights = weights / weights.sum() * (1.0 - one * len(apart)) * larger[0]
     beliefs = tuple(_end(memory, coefficient_std, hours).belief for memory in memories)
-    return Learnt(tuple(memories), beliefs, np.log([*weights, guard * larger[0], *larger[1:]]))
+    return Learnt(
+        tuple(memories), beliefs, np.log([*weights, *larger[1:], *[one * larger[0] for _ in apart]])
+    )
+
+
+def _pooled(log_std: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return by how much ln size of each quantity moves towards that of all, and how uncertain it stays.
+
+    Sizes are taken as drawn about a common one; how far they differ is estimated by moments (DerSimonian &
+    Laird 1986), so that a quantity whose size the baseline hardly tells leans on the others.
+    """
+    weight = 1.0 / variance
+    middle = weight @ log_std / weight.sum()
+    excess = float(weight @ (log_std - middle) ** 2) - (len(log_std) - 1)
+    between = max(excess / max(float(weight.sum() - weight @ weight / weight.sum()), 1e-12), _USUAL_APART**2)
+    if len(log_std) == 1:
+        return np.zeros(1), np.sqrt(variance)
+    common = (log_std / (variance + between)).sum() / (1.0 / (variance + between)).sum()
+    return (common - log_std) * variance / (variance + between), np.sqrt(1.0 / (weight + 1.0 / between))
+
+
+def _one_larger(memory: Memory, q: int, spread: float) -> Memory:
+    """Return a model in which the slow processes of one quantity are larger."""
+    std = memory.std.copy()
+    std[q] *= np.exp(max(ONE_LARGER[0] * spread, _LEAST_APART))
+    return replace(memory, std=std)
 
 
 def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
@@ -288,7 +315,7 @@ def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]
     return sorted(kept, key=lambda one: -one[0])
 
 
-def _larger(freedom: float, least: tuple[float, ...]) -> FloatArray:
+def _larger(freedom: float) -> FloatArray:
     """Return the probabilities that slow processes are by so much larger than estimated, of ``LARGER``.
 
     An excursion of processes whose covariance is known by ν independent values is one of Student's t with ν
@@ -297,8 +324,7 @@ def _larger(freedom: float, least: tuple[float, ...]) -> FloatArray:
     between = np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1]))
     above = np.append(chi2.cdf(freedom / between**2, freedom), 0.0)
     share = np.concatenate([[1.0 - above[0]], above[:-1] - above[1:]])
-    share = np.maximum(share, [0.0, *least])
-    return np.asarray(np.maximum(share / share.sum(), 1e-12))
+    return np.asarray(np.maximum(share, 1e-12))
 
 
 def _freedom(hours: Hours, q: int, memory: Memory, coefficient_std: FloatArray) -> float:
@@ -312,13 +338,6 @@ def _freedom(hours: Hours, q: int, memory: Memory, coefficient_std: FloatArray) 
         for x in (-_APART, 0.0, _APART)
     ]
     return float(0.5 * (2.0 * at[1] - at[0] - at[2]) / _APART**2)
-
-
-def _guarded(memory: Memory) -> Memory:
-    """Return a model whose long processes are larger."""
-    days, shares = memory.days, memory.shares.copy()
-    shares[days > _SEASON] *= GUARD[0]
-    return replace(memory, std=memory.std * np.sqrt(shares.sum()), shares=shares / shares.sum())
 
 
 def _end(memory: Memory, coefficient_std: FloatArray, hours: Hours) -> Filtered:
@@ -376,7 +395,7 @@ def _correlation(hours: Hours, memory: Memory, coefficient_std: FloatArray) -> F
                      own).log_likelihood
                 for rho in CORRELATIONS
             ])  # fmt: skip
-            weight = np.exp(likelihood - likelihood.max())
+            weight = np.exp(likelihood - likelihood.max()) * _BELIEVED
             result[i, j] = result[j, i] = float(weight @ CORRELATIONS / weight.sum())
     return _positive(result)
 

@@ -39,9 +39,9 @@ from jackettwin.watching.history import History, Kind
 from jackettwin.watching.scatter import STRONGER
 
 YEAR_DAYS = 365.25
-MOST_BEGINS = 32
+MOST_BEGINS = 26
 """Begins that are kept; the day's cost grows with them."""
-_RECENT = 10
+_RECENT = 8
 """The last begins, which are never merged."""
 RECONSIDERED_DAYS, STEADY_DAYS = 10.0, 90.0
 """How often the models' weights are reconsidered, and for how long what is unexplained stays as it is."""
