@@ -24,9 +24,8 @@ def updated(folder: Path, *, bending: bool) -> TwinResult:
     path = folder / "twin.yaml"
     path.write_text(text, encoding="utf-8")
     config = read_twin(path)
-    return run_twin(
-        replace(config, update=replace(config.update, laws=("maxwell-3",), particles=40, starts=3))
-    )
+    quick = {"laws": ("maxwell-3",), "particles": 40, "starts": 3}
+    return run_twin(replace(config, update=config.update.model_copy(update=quick)))
 
 
 @pytest.mark.parametrize("bending", [True, False])

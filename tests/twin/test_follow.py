@@ -29,14 +29,14 @@ NOON = datetime(2025, 1, 1, 12, tzinfo=UTC)
 @pytest.fixture(scope="module")
 def config() -> TwinConfig:
     twin = read_twin("thesis_table_6_1")
-    settings = replace(
-        twin.update,
-        laws=("maxwell-3",),
-        particles=40,
-        bounds={"k": (5e8, 2e10), "loss_factor": (0.01, 0.5)},
-        damping_of="all",
-        weighting="auto",
-    )
+    changed = {
+        "laws": ("maxwell-3",),
+        "particles": 40,
+        "bounds": {"k": (5e8, 2e10), "loss_factor": (0.01, 0.5)},
+        "damping_of": "all",
+        "weighting": "auto",
+    }
+    settings = twin.update.model_copy(update=changed)
     return replace(twin, targets=(), update=settings)
 
 
@@ -161,7 +161,7 @@ def test_what_cannot_be_followed(
         follow_twin(config)
     with pytest.raises(InputError, match="without a start"):
         follow_observations(config, model, [replace(records[0], start_utc=None)])
-    relative = replace(config, update=replace(config.update, weighting="relative"))
+    relative = replace(config, update=config.update.model_copy(update={"weighting": "relative"}))
     with pytest.raises(InputError, match="needs a standard deviation"):
         follow_observations(relative, model, records)
 
@@ -230,7 +230,9 @@ def test_shapes_and_real_poles_are_followed_and_kept(
         return np.zeros((3, len(problem.parameters))), "ok"
 
     monkeypatch.setattr(follow, "_draws", drawn)
-    with_shapes = replace(config, update=replace(config.update, mac_std=0.02, model_errors=()))
+    with_shapes = replace(
+        config, update=config.update.model_copy(update={"mac_std": 0.02, "model_errors": ()})
+    )
     keeping = replace(model, with_shapes=True)
     shaped = [replace(one, model_hash=keeping.model_hash) for one in shaped]
     first = follow_observations(with_shapes, keeping, shaped[:1], each="record")

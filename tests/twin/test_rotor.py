@@ -64,7 +64,7 @@ def test_without_winds_or_dashpots_everything_is_one_state(config: TwinConfig) -
     unknown = tuple((zeta, None) for zeta, _ in WINDS)
     assert mean_wind(config, found(unknown)) is None
     assert list(operating_states(config, MODES, found(unknown), RESIDUALS, None)) == [""]
-    still = replace(config, update=replace(config.update, dashpots=()))
+    still = replace(config, update=config.update.model_copy(update={"dashpots": ()}))
     assert list(operating_states(still, MODES, found(WINDS), RESIDUALS, 12.0)) == [""]
 
 
@@ -87,7 +87,7 @@ def test_a_free_shaft_takes_less_across_the_wind(config: TwinConfig) -> None:
     """Closed form and OpenFAST: 1.68 % free, 3.43 % locked at 15 m/s."""
     assembly = assemble(config.structure, gravity=True)
     numbered = numbered_modes(assembly, 2)
-    free = replace(config, update=replace(config.update, shaft="free"))
+    free = replace(config, update=config.update.model_copy(update={"shaft": "free"}))
     c = [rotor_damping(x, assembly, numbered, 15.0).priors["c_side_side"][0] for x in (free, config)]
     assert c[0] / c[1] == pytest.approx(1.68 / 3.43, rel=0.05)
 

@@ -37,7 +37,10 @@ def steps() -> list[str]:
 def quick(name: str) -> TwinConfig:
     """Return a shipped twin with fewer laws and draws than it asks for."""
     config = read_twin(name)
-    return replace(config, update=replace(config.update, laws=("maxwell-3", "kelvin-voigt"), particles=60))
+    return replace(
+        config,
+        update=config.update.model_copy(update={"laws": ("maxwell-3", "kelvin-voigt"), "particles": 60}),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -222,7 +225,7 @@ def test_records_without_a_standard_deviation_take_the_information_limit() -> No
 
 def test_the_models_error_adds_to_variances_and_not_to_the_covariance() -> None:
     mode = MeasuredMode(1, "fore_aft_1", 0.2, 0.002, 0.01, 0.002, None, None, True, True, correlation=0.5)
-    settings = UpdateSettings(model_errors=(ModelError((1,), frequency=0.01, damping=0.2),))
+    settings = UpdateSettings(model_errors=(ModelError(modes=(1,), frequency=0.01, damping=0.2),))
     config = replace(read_twin("thesis_table_6_1"), update=settings)
     target = residuals(config, (mode,)).targets[0]
     assert target.log_stds == pytest.approx((0.01 * np.sqrt(2.0), 0.2 * np.sqrt(2.0)))
@@ -236,9 +239,8 @@ def test_nacelle_dashpots_explain_what_feet_cannot() -> None:
         replace(t, damping_ratio=zeta)
         for t, zeta in zip(config.targets, (0.0127, 0.059, *[None] * 9), strict=False)
     )
-    settings = replace(
-        config.update, dashpots=("c_fore_aft", "c_side_side"), damping_of="all", laws=("maxwell-3",)
-    )
+    free = {"dashpots": ("c_fore_aft", "c_side_side"), "damping_of": "all", "laws": ("maxwell-3",)}
+    settings = config.update.model_copy(update=free)
     result = run_twin(replace(config, targets=targets, update=settings))
     update = result.updates[0]
     np.testing.assert_allclose(update.modes.damping_ratio[:2], [0.0127, 0.059], rtol=0.05)
@@ -261,6 +263,6 @@ def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None
     windy = observation({2: sighting(0.178, 0.0108)}, None, conditions={"mean_wind_speed_m_s": 12.0})
     found = Measured((windy,), TwinState("model"))
     fitted = tuple(m for m in pile.measured if m.label == "fore_aft_1")
-    bare = replace(config, update=replace(config.update, dashpots=(), rotor=None))
+    bare = replace(config, update=config.update.model_copy(update={"dashpots": (), "rotor": None}))
     assert any("upper value" in line for line in cautions(bare, found, fitted, ()))
     assert not any("upper value" in line for line in cautions(config, found, fitted, ()))

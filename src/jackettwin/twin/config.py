@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import hypot
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
+from pydantic import Field
+
+from jackettwin.files import Schema
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records.readers.channels import Unsaid
@@ -19,18 +22,28 @@ from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Target
 from jackettwin.updating.solutions import MOST_EVALUATIONS
 
+Positive = Annotated[float, Field(gt=0.0)]
+Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 PAIRED_MODES = 12
 """Modes of the model that measured modes may be paired with."""
+USUAL_MODES = (1, 2, 3, 4, 5)
+"""Both bending pairs and torsion."""
 
 
-@dataclass(frozen=True)
-class ModelError:
+class ModelError(Schema):
     """Relative standard deviation by which the model itself may miss some modes, or rates of relaxations."""
 
-    modes: tuple[int, ...] = ()
-    frequency: float = 0.0
-    damping: float = 0.0
-    rate: float = 0.0
+    modes: tuple[Annotated[int, Field(ge=1, le=50)], ...] = ()
+    frequency: Ratio = 0.0
+    damping: Ratio = 0.0
+    rate: Ratio = 0.0
+
+
+class LognormalPrior(Schema):
+    """What is known of a parameter beforehand; the standard deviation is that of its logarithm."""
+
+    median: Positive
+    log_std: Positive
 
 
 @dataclass(frozen=True)
@@ -51,42 +64,42 @@ class GivenRelaxation:
     shape: Mapping[str, complex] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class UpdateSettings:
-    """How the supports are updated.
+class UpdateSettings(Schema):
+    """``update`` of a twin file: how the supports are updated.
 
     ``damping_of`` names the modes whose damping the supports must explain: ``fore_aft``, ``all``, ``none``,
-    or labels. ``modes`` are the numbers of the fitted modes; by default both bending pairs and torsion:
-    beyond those, blades and brace details matter more than supports.
+    or labels; by default that of all targets, of records ``fore_aft``. ``modes`` are the numbers of the
+    fitted modes; by default both bending pairs and torsion, beyond which blades and brace details matter
+    more than supports, and all targets.
     """
 
-    laws: tuple[str, ...] = DEFAULT_LAWS
+    laws: Annotated[tuple[str, ...], Field(min_length=1)] = DEFAULT_LAWS
     method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: int = 32
-    most_evaluations: int = MOST_EVALUATIONS
+    starts: Annotated[int, Field(ge=1, le=10000)] = 32
+    most_evaluations: Annotated[int, Field(ge=1, le=10**9)] = MOST_EVALUATIONS
     """Of the model, after which the search adds no further starts."""
-    seed: int = 0
-    particles: int = 150
+    seed: Annotated[int, Field(ge=0)] = 0
+    particles: Annotated[int, Field(ge=20, le=100000)] = 150
     sampler: Literal["smc", "nested"] = "smc"
-    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    priors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """Lognormal priors: median and standard deviation of ln θ by parameter name; the others are flat."""
+    bounds: dict[str, tuple[float, float]] = {}
+    priors: dict[str, LognormalPrior] = {}
+    """By parameter name; the others are flat in ln θ."""
     weighting: Literal["auto", "relative", "covariance"] = "auto"
-    modes: tuple[int, ...] = (1, 2, 3, 4, 5)
-    damping_of: str | tuple[str, ...] = "fore_aft"
-    model_errors: tuple[ModelError, ...] = ()
-    mac_std: float | None = None
+    modes: tuple[Annotated[int, Field(ge=1)], ...] = USUAL_MODES
+    damping_of: Literal["fore_aft", "all", "none"] | tuple[str, ...] = "fore_aft"
+    model_errors: Annotated[tuple[ModelError, ...], Field(alias="model_error")] = ()
+    mac_std: Positive | None = None
     """Standard deviation of 1 − MAC; None leaves mode shapes out of the fit."""
-    dashpots: tuple[str, ...] = ()
-    """Nacelle dashpots to update as well: ``c_fore_aft``, ``c_side_side``, at the mean wind speed."""
+    dashpots: tuple[Literal["c_fore_aft", "c_side_side"], ...] = ()
+    """Nacelle dashpots to update as well, at the mean wind speed."""
     rotor: str | None = None
     """A windIO file or shipped rotor from which the dashpots' priors and patterns follow."""
     shaft: Literal["locked", "free"] = "locked"
     """Whether the parked rotor turns with the nacelle."""
-    wind_speed_m_s: float | None = None
+    wind_speed_m_s: Positive | None = None
     """Instead of the mean over the records' conditions."""
-    water: tuple[str, ...] = ()
-    """Factors on the water to update as well: ``water_mass``, ``water_damping``."""
+    water: tuple[Literal["water_mass", "water_damping"], ...] = ()
+    """Factors on the water to update as well."""
     steel_damping: Literal["fixed", "free"] = "fixed"
     """Whether ratio and frequency of the steel's least damping are updated as well."""
 
@@ -102,7 +115,7 @@ class UpdateSettings:
         for error in self.model_errors:
             if mode in error.modes:
                 frequency, damping = hypot(frequency, error.frequency), hypot(damping, error.damping)
-        return ModelError((mode,), frequency, damping)
+        return ModelError(modes=(mode,), frequency=frequency, damping=damping)
 
     @property
     def rate_error(self) -> float:
@@ -110,18 +123,13 @@ class UpdateSettings:
         return hypot(*(error.rate for error in self.model_errors))
 
 
-@dataclass(frozen=True)
-class WatchSettings:
-    """What is learnt from and promised when the days of a twin are watched for change.
+class WatchSettings(Schema):
+    """``watch`` of a twin file: what is learnt from and promised when its days are watched for change."""
 
-    Attributes
-    ----------
-    baseline_days : days from the first record that tell what is normal; a year has a round of seasons
-    arl_years : a false alarm once in so many years, or more rarely, of all quantities together
-    """
-
-    baseline_days: float = 365.0
-    arl_years: float = 10.0
+    baseline_days: Annotated[float, Field(ge=30.0, le=3653.0)] = 365.0
+    """Days from the first record that tell what is normal; a year has a round of seasons."""
+    arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
+    """A false alarm once in so many years, or more rarely, of all quantities together."""
 
 
 @dataclass(frozen=True)

@@ -25,13 +25,12 @@ from jackettwin.twin.assembled import assembled
 from jackettwin.twin.assigned import assigned_modes
 from jackettwin.twin.config import (
     PAIRED_MODES,
+    USUAL_MODES,
     GivenRelaxation,
-    ModelError,
     TwinConfig,
     UpdateSettings,
-    WatchSettings,
 )
-from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema, UpdateSchema
+from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family, numbered_modes
@@ -81,7 +80,7 @@ def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
     unnamed = [i for i, target in enumerate(schema.targets) if target.is_unnamed]
     if not unnamed and not any(isinstance(target.mode, str) for target in schema.targets):
         return schema
-    assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSchema()}), path))
+    assembly = assembled(_build(schema.model_copy(update={"targets": [], "update": UpdateSettings()}), path))
     numbered = numbered_modes(assembly, PAIRED_MODES)
     labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
     targets = []
@@ -150,7 +149,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         sensors=tuple(sensor.build() for sensor in schema.sensors),
         calibrations=tuple(c for sensor in schema.sensors for c in sensor.history()),
         operation=schema.operation.build(),
-        watch=WatchSettings(**schema.watch.model_dump()),
+        watch=schema.watch,
         records=tuple(path.parent / record for record in schema.records),
         unsaid=_unsaid(schema),
         targets=targets,
@@ -255,7 +254,7 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
         return picks
 
 
-def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
+def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
     sides = ("", *SIDES) if support.tie == SPLIT_LEGS else ("",)
     laws = (*DEFAULT_LAWS, *update.laws)
     known = sorted({p.name + side for law in laws for p in family(law).parameters for side in sides})
@@ -281,7 +280,7 @@ def _check_ties(support: SupportSchema, update: UpdateSchema) -> None:
         raise InputError("a parameter is shared or scatters, not both", field="scatter", value=sorted(both))
 
 
-def _check_update(update: UpdateSchema, given_modes: Container[int | None]) -> None:
+def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
     """Refuse unknown bounds and priors now, not after the records have been identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
     known |= {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters} | set(
@@ -299,7 +298,7 @@ def _check_update(update: UpdateSchema, given_modes: Container[int | None]) -> N
                 )
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
-    beyond = [mode for mode in update.modes or () if mode > PAIRED_MODES and mode not in given_modes]
+    beyond = [mode for mode in update.modes if mode > PAIRED_MODES and mode not in given_modes]
     if beyond:
         raise InputError(
             f"measured modes are paired with the model's first {PAIRED_MODES} on pinned feet",
@@ -310,7 +309,7 @@ def _check_update(update: UpdateSchema, given_modes: Container[int | None]) -> N
         )
 
 
-def _dashpots(update: UpdateSchema) -> tuple[str, ...]:
+def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
     """Return the dashpots of the rotor: those asked for, all where a rotor is given without."""
     return tuple(dict.fromkeys(update.dashpots or (DASHPOTS if update.rotor else ())))
 
@@ -347,45 +346,19 @@ def _beside(name: str, folder: Path) -> str:
     return str(folder / name) if Path(name).suffix else name
 
 
-def _fitted_modes(schema: TwinSchema) -> tuple[int, ...]:
-    """Return the modes that are fitted: those asked for; by default the usual ones and all targets."""
-    if schema.update.modes is not None:
-        return tuple(schema.update.modes)
-    return tuple(
-        sorted({*UpdateSettings().modes, *(t.number for t in schema.targets if t.number is not None)})
-    )
-
-
-def _damping_of(schema: TwinSchema) -> str | tuple[str, ...]:
-    """Return whose damping is fitted: as asked for; by default that of all targets, of records fore-aft."""
-    wanted = schema.update.damping_of
-    if wanted is None:
-        return "all" if schema.targets else UpdateSettings().damping_of
-    return wanted if isinstance(wanted, str) else tuple(wanted)
-
-
 def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
+    """Return the settings with what follows from the rest of the file."""
     u = schema.update
     first = [schema.support.law] if schema.support.law else []
-    return UpdateSettings(
-        laws=tuple(dict.fromkeys([*first, *u.laws])),
-        method=u.method,
-        starts=u.starts,
-        most_evaluations=u.most_evaluations,
-        seed=u.seed,
-        particles=u.particles,
-        sampler=u.sampler,
-        bounds=dict(u.bounds),
-        priors={name: (p.median, p.log_std) for name, p in u.priors.items()},
-        weighting=u.weighting,
-        modes=_fitted_modes(schema),
-        damping_of=_damping_of(schema),
-        model_errors=tuple(ModelError(tuple(e.modes), e.frequency, e.damping, e.rate) for e in u.model_error),
-        mac_std=u.mac_std,
-        dashpots=_dashpots(u),
-        rotor=None if u.rotor is None else _beside(u.rotor, folder),
-        shaft=u.shaft,
-        wind_speed_m_s=u.wind_speed_m_s,
-        water=tuple(dict.fromkeys(u.water)),
-        steel_damping=u.steel_damping,
-    )
+    said: dict[str, Any] = {
+        "laws": tuple(dict.fromkeys([*first, *u.laws])),
+        "dashpots": _dashpots(u),
+        "rotor": None if u.rotor is None else _beside(u.rotor, folder),
+        "water": tuple(dict.fromkeys(u.water)),
+    }
+    if "modes" not in u.model_fields_set:
+        targets = (t.number for t in schema.targets if t.number is not None)
+        said["modes"] = tuple(sorted({*USUAL_MODES, *targets}))
+    if "damping_of" not in u.model_fields_set and schema.targets:
+        said["damping_of"] = "all"
+    return u.model_copy(update=said)

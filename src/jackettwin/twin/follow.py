@@ -307,7 +307,7 @@ class _Question:
         if len(days) < FEWEST_DAYS:
             return None
         config = self.config
-        exact = replace(config, update=replace(config.update, model_errors=()))
+        exact = replace(config, update=config.update.model_copy(update={"model_errors": ()}))
         states: States = {}
         times: dict[str, float] = {}
         for i, span in enumerate(_spans(state)):

@@ -27,6 +27,7 @@ from jackettwin.watching import History, Watch, start, step
 from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
+_USUAL = WatchSettings()
 
 
 @dataclass(frozen=True)
@@ -62,8 +63,8 @@ def judge(
     state: TwinState,
     kept: Judged | None = None,
     *,
-    baseline_days: float = WatchSettings.baseline_days,
-    arl_years: float = WatchSettings.arl_years,
+    baseline_days: float = _USUAL.baseline_days,
+    arl_years: float = _USUAL.arl_years,
 ) -> tuple[Judged, tuple[Finding, ...]]:
     """Return what the days of a state say of a change, and what is worth saying that was not said before.
 

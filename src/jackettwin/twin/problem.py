@@ -105,6 +105,7 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
         If bounds, priors, ties or pile heads do not fit the law.
     """
     chosen, given, states = family(law), config.update, evidence.states
+    said = {name: (prior.median, prior.log_std) for name, prior in given.priors.items()}
     with located(file=config.path):
         waves = None if evidence.state is None else evidence.state.totals[ALL].conditions.waves
         water = water_effects(in_the_records_sea(config.water, waves), evidence.assembly, given.water)
@@ -120,7 +121,7 @@ def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
             rayleigh=config.rayleigh,
             tie=config.tie,
             bounds=_of_law(given.bounds, own),
-            priors=_of_law({**evidence.rotor.priors, **given.priors}, own),
+            priors=_of_law({**evidence.rotor.priors, **said}, own),
             highest_mode=max(mode for residuals, _ in states.values() for mode in residuals.modes),
             fastest_rate=max((r.rate_rad_s for r in evidence.relaxations), default=0.0),
             nuisance=nuisance,

@@ -85,7 +85,8 @@ def rotor_damping(
     with located(file=config.path, field="update"):
         per_wind = _per_wind(read_rotor(config.update.rotor)[0], config.update.shaft)
     top = numbered.shapes[assembly.dofs(assembly.structure.top_node)]
-    patterns, priors = {}, {}
+    patterns: dict[str, FloatArray] = {}
+    priors: dict[str, tuple[float, float]] = {}
     for name in config.update.dashpots:
         axis, dofs = DASHPOTS[name], np.ix_(_SIDES[name], _SIDES[name])
         C = np.zeros((6, 6))
@@ -142,7 +143,7 @@ def operating_states(
             if mode in total.modes
         ]
         if targets and v is not None:
-            factors = {dashpot: v / wind for dashpot in config.update.dashpots}
+            factors: dict[str, float] = dict.fromkeys(config.update.dashpots, v / wind)
             states[name] = (Residuals(tuple(targets), relative=False), factors)
     return states
 

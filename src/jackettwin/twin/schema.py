@@ -20,13 +20,10 @@ from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import RnaSchema
 from jackettwin.twin.calibration import Calibration, Calibrations
-from jackettwin.twin.config import GivenRelaxation
+from jackettwin.twin.config import GivenRelaxation, Positive, Ratio, UpdateSettings, WatchSettings
 from jackettwin.twin.operation import UNKNOWN, OperationRule
-from jackettwin.updating import DEFAULT_LAWS, Target
-from jackettwin.updating.solutions import MOST_EVALUATIONS
+from jackettwin.updating import Target
 
-Positive = Annotated[float, Field(gt=0.0)]
-Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
 Vector = tuple[float, float, float]
 
 _OF_RELAXATIONS = {"rate_rad_s", "rate_std_rad_s"}
@@ -274,54 +271,6 @@ class TargetSchema(Schema):
             )
 
 
-class ModelErrorSchema(Schema):
-    """How well the model itself can be expected to meet some modes, or the rates of relaxations."""
-
-    modes: list[Annotated[int, Field(ge=1, le=50)]] = []
-    frequency: Ratio = 0.0
-    damping: Ratio = 0.0
-    rate: Ratio = 0.0
-
-
-class PriorSchema(Schema):
-    """A lognormal prior."""
-
-    median: Positive
-    log_std: Positive
-
-
-class UpdateSchema(Schema):
-    """``update``."""
-
-    laws: list[str] = Field(default=list(DEFAULT_LAWS), min_length=1)
-    method: Literal["least-squares", "nelder-mead"] = "least-squares"
-    starts: Annotated[int, Field(ge=1, le=10000)] = 32
-    most_evaluations: Annotated[int, Field(ge=1, le=10**9)] = MOST_EVALUATIONS
-    seed: Annotated[int, Field(ge=0)] = 0
-    particles: Annotated[int, Field(ge=20, le=100000)] = 150
-    sampler: Literal["smc", "nested"] = "smc"
-    bounds: dict[str, tuple[float, float]] = {}
-    priors: dict[str, PriorSchema] = {}
-    weighting: Literal["auto", "relative", "covariance"] = "auto"
-    modes: list[Annotated[int, Field(ge=1)]] | None = None
-    damping_of: Literal["fore_aft", "all", "none"] | list[str] | None = None
-    model_error: list[ModelErrorSchema] = []
-    mac_std: Positive | None = None
-    dashpots: list[Literal["c_fore_aft", "c_side_side"]] = []
-    rotor: str | None = None
-    shaft: Literal["locked", "free"] = "locked"
-    wind_speed_m_s: Positive | None = None
-    water: list[Literal["water_mass", "water_damping"]] = []
-    steel_damping: Literal["fixed", "free"] = "fixed"
-
-
-class WatchSchema(Schema):
-    """``watch``: days to learn from, and years in which one false alarm is allowed."""
-
-    baseline_days: Annotated[float, Field(ge=30.0, le=3653.0)] = 365.0
-    arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
-
-
 class SeaSchema(Schema):
     """``sea``: the mean sea of the records, a JONSWAP spectrum."""
 
@@ -349,6 +298,6 @@ class TwinSchema(Schema):
     targets: list[TargetSchema] = []
     rotor_speed_rpm: tuple[Positive, Positive] | None = None
     identification: dict[str, Any] = {}
-    update: UpdateSchema = UpdateSchema()
+    update: UpdateSettings = UpdateSettings()
     operation: OperationSchema = OperationSchema()
-    watch: WatchSchema = WatchSchema()
+    watch: WatchSettings = WatchSettings()
