@@ -65,22 +65,20 @@ class _Work:
     keep: Keep
     known: Collection[str]
 
-    def begun(self, file: Path) -> tuple[Record, Seen | None]:
-        """Return a record, and what is known of it."""
+    def see(self, file: Path, *, make: bool = True) -> Seen | None:
+        """Return what a file shows; unless ``make``, None if nothing is known of it yet."""
         record = read_record(file, self.unsaid)
         if record_id(record) in self.known:
-            return record, Seen("", None)
+            return Seen("", None)
         key = observation_key(record, self.model)
-        kept = self.keep.get(OBSERVATION, key)
-        return record, None if kept is None else Seen(key, kept)
-
-    def done(self, record: Record, file: Path) -> Seen:
-        """Observe a record of which nothing is known."""
-        with located(file=file):
-            observation = observe(record, self.model)
-        key = observation_key(record, self.model)
-        self.keep.put(OBSERVATION, key, observation)
-        return Seen(key, observation)
+        seen = self.keep.get(OBSERVATION, key)
+        if seen is None and not make:
+            return None
+        if seen is None:
+            with located(file=file):
+                seen = observe(record, self.model)
+            self.keep.put(OBSERVATION, key, seen)
+        return Seen(key, seen)
 
 
 def observe_files(
@@ -116,10 +114,10 @@ def observe_files(
         few = wanted < 2 or len(left) < FEWEST_FOR_PROCESSES
         progress(f"identify {file.name}")
         try:
-            record, seen = work.begun(file)
-            if seen is None and not few:
+            seen = work.see(file, make=few)
+            if seen is None:
                 break
-            yield i, seen or work.done(record, file)
+            yield i, seen
         except Exception as error:  # of many records, one that fails must not stop the others
             yield i, error
     else:
@@ -130,11 +128,10 @@ def observe_files(
         yield left[k], NumericalError(f"{files[left[k]]}: {DIED}") if result is None else result
 
 
-def _one(work: _Work, file: Path) -> Seen | Exception:
+def _one(work: _Work, file: Path) -> Seen | Exception | None:
     """Return what one file shows, or the error, which is for the other process to raise or to list."""
     try:
-        record, seen = work.begun(file)
-        return seen or work.done(record, file)
+        return work.see(file)
     except Exception as error:
         return error
 
