@@ -68,6 +68,9 @@ class Here:
     def end(self, future: Any) -> None:
         self.restarts += 1
 
+    def mend(self) -> None:
+        """Nothing to mend."""
+
     def close(self) -> None:
         """Nothing to stop."""
 

@@ -98,6 +98,7 @@ class Database:
             subprocess.run([*self._as_user, initdb, *arguments], check=True, capture_output=True, cwd="/")
         (self.data / "postmaster.pid").unlink(missing_ok=True)
         arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
+        arguments += ["-c", "fsync=off"]  # we kill it, not the machine it runs on
         with self.log.open("ab") as log:
             self._process = subprocess.Popen(
                 [server, *arguments], stdout=log, stderr=log, cwd="/", user=self._user()

@@ -2,12 +2,14 @@
 
 import io
 import json
+from collections.abc import Callable
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from fastapi.testclient import TestClient
-from tests.service.conftest import description, hour, record_file, turn, upload
+from tests.service.conftest import Done, description, hour, record_file, turn, upload
 
 from jackettwin.service.context import Service
 
@@ -231,3 +233,23 @@ def test_pages_list_the_assets(client: TestClient) -> None:
 def _model_hash(client: TestClient) -> str:
     found: str = client.get("/api/v1/assets/wtg").json()["model_hash"]
     return found
+
+
+class KilledWorker(Exception):
+    """As Dask calls it."""
+
+
+@pytest.mark.parametrize(("deaths", "status"), [(2, 202), (3, 422)])
+def test_a_file_is_read_again_when_its_reader_was_killed(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch, deaths: int, status: int
+) -> None:
+    tried = 0
+
+    def submit(task: Callable[..., Any], *args: Any, **_: Any) -> Done:
+        nonlocal tried
+        tried += 1
+        return Done(error=KilledWorker()) if tried <= deaths else Done(task(*args))
+
+    monkeypatch.setattr(service.compute, "submit", submit)
+    assert upload(client, 1).status_code == status
+    assert tried == 3

@@ -13,6 +13,7 @@ from typing import Any
 
 import dask
 from distributed import Client, Future, LocalCluster
+from distributed.core import Status
 
 from jackettwin.service.settings import ServiceSettings
 
@@ -43,6 +44,7 @@ class Compute:
     def __init__(self, settings: ServiceSettings) -> None:
         dask.config.set(_DASK)
         self._lock = Lock()
+        self._wanted = settings.workers
         self._cluster: LocalCluster | None = None
         if settings.scheduler is None:
             self._cluster = LocalCluster(
@@ -61,6 +63,20 @@ class Compute:
     def workers(self) -> int:
         """How many workers there are now."""
         return len(self.client.scheduler_info(n_workers=-1).get("workers", {}))
+
+    def mend(self) -> None:
+        """Start workers of our own that are gone for good.
+
+        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
+        """
+        if self._cluster is not None:
+            self._cluster.loop.add_callback(self._replace_lost, self._cluster)
+
+    def _replace_lost(self, cluster: LocalCluster) -> None:
+        for name, nanny in list(cluster.workers.items()):
+            if nanny.status in (Status.closed, Status.failed):
+                del cluster.workers[name]
+        cluster.scale(self._wanted)
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
         """Start a task; urgent ones overtake."""

@@ -16,7 +16,7 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service import consequences
-from jackettwin.service.tasks import Outcome, Question, Task, know, observe_stored
+from jackettwin.service.tasks import LOST_WORKER, Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 
 if TYPE_CHECKING:
@@ -100,6 +100,7 @@ class Dispatcher(Thread):
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
+        self.service.compute.mend()
         me, now = self.service.server_id, self.service.now()
         with writing(self.service.database) as connection:
             if not work.beat(connection, me):
@@ -191,6 +192,6 @@ def _reason(future: Future) -> str:
     except Exception as lost:
         error = lost
     name = type(error).__name__
-    if name in ("KilledWorker", "CancelledError", "FutureCancelledError"):
+    if name in LOST_WORKER:
         return "the worker that observed it ended, out of memory or killed"
     return f"{name}: {error}"[:500]

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from jackettwin.records import Record
 
 
+LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
+"""Errors that say that a worker ended over a task, whatever of."""
+
+
 @dataclass(frozen=True)
 class Task:
     """A stored record to observe, by a version of an asset's twin."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.tasks import Parsed, read_file
+from jackettwin.service.tasks import LOST_WORKER, Parsed, read_file
 from jackettwin.store import assets, journal, records, work, writing
 from jackettwin.version import __version__
 
@@ -66,23 +66,29 @@ def discard(path: Path) -> None:
 
 
 def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
-    """Return the reader that uses the server's workers; one that takes too long is ended."""
+    """Return the reader that uses the server's workers.
+
+    One that takes too long is ended. A worker that dies may have been killed: the file is read again, as
+    often as a record is tried.
+    """
+    settings = service.settings
 
     def parse(path: Path, asset: str) -> Parsed:
-        settings = service.settings
         arguments = (str(path), asset, str(settings.store), settings.samples_limit)
-        future = service.compute.submit(read_file, *arguments, priority=100)
-        try:
-            found: Parsed = future.result(timeout=settings.parse_limit_s)
-        except TimeoutError:
-            service.compute.end(future)
-            return Parsed("", problem={"detail": "the file could not be read in time", "field": "file"})
-        except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
-            detail = f"the file could not be read ({type(error).__name__})"
-            return Parsed(
-                "", problem={"detail": detail, "field": "file", "remedy": "see which program wrote it"}
-            )
-        return found
+        for _ in range(work.MOST_TRIES):
+            future = service.compute.submit(read_file, *arguments, priority=100)
+            try:
+                found: Parsed = future.result(timeout=settings.parse_limit_s)
+                return found
+            except TimeoutError:
+                service.compute.end(future)
+                return Parsed("", problem={"detail": "the file could not be read in time", "field": "file"})
+            except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
+                name = type(error).__name__
+                if name not in LOST_WORKER:
+                    break
+        detail = f"the file could not be read ({name})"
+        return Parsed("", problem={"detail": detail, "field": "file", "remedy": "see which program wrote it"})
 
     return parse
 
