@@ -26,6 +26,7 @@ def posterior() -> Posterior:
 
 
 def test_a_posterior_is_chains_of_parameters(posterior: Posterior) -> None:
+    assert repr(posterior).startswith("Posterior(") and "90 %: " in repr(posterior)
     tree = to_arviz(posterior)
     # two runs of three draws, one after the other
     np.testing.assert_allclose(tree["posterior"]["k"].values, [[1.0, 3.0, 5.0], [7.0, 9.0, 11.0]])
@@ -36,6 +37,7 @@ def test_observations_and_states_are_tables() -> None:
     seen = observation({2: estimate(0.18, 0.01)}, NOON)
     assert to_dataframe(seen).loc[0, ["label", "frequency_hz"]].tolist() == ["mode_2", 0.18]
     state, _ = advance(TwinState("model"), seen)
+    assert "days to " in repr(state) and len(repr(state)) + len(repr(seen)) < 400
     table = to_dataframe(state)
     assert table["mode"].tolist() == [2] and table["records"].tolist() == [1]
     # whole numbers of 2^-24 keep nine digits

@@ -1,11 +1,15 @@
 """The names users may rely on; a change here is a change of the public interface."""
 
 import pkgutil
+import re
 import subprocess
 import sys
 from importlib import import_module
+from inspect import isfunction
+from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 import jackettwin
@@ -15,6 +19,8 @@ PACKAGES = {
     "report": "Plot Section Table Text build_report",
     "structure": "Assembly Material Rayleigh Section Structure assemble check jacket read_structure",
 }
+OF_OTHERS = {"None", "Any", "Path", "DataFrame", "DataArray"}
+"""What public functions return that is documented elsewhere."""
 
 
 @pytest.mark.parametrize("name", jackettwin.__all__)
@@ -59,3 +65,34 @@ def test_doors_give_what_they_promise_and_a_function_rather_than_its_module() ->
 
 def names_of(package: ModuleType) -> list[str]:
     return list(getattr(package, "__all__", []))
+
+
+def test_the_api_page_has_every_name_and_what_functions_return() -> None:
+    page = (Path(__file__).parent.parent / "docs" / "api" / "index.md").read_text(encoding="utf-8")
+    shown = {line.rsplit(".", 1)[-1] for line in page.splitlines() if line.startswith(":::")}
+    assert set(jackettwin.__all__) <= shown
+    for name in jackettwin.__all__:
+        public = getattr(jackettwin, name)
+        if isfunction(public):
+            returned = set(re.findall(r"\w+", public.__annotations__["return"]))
+            assert returned & (shown | OF_OTHERS), f"{name} returns {returned}, which the page does not show"
+
+
+def test_results_print_as_a_line_or_two_and_not_as_arrays() -> None:
+    """A notebook shows the last value of a cell: numbers that name themselves, no dump of samples."""
+    structure = jackettwin.read_structure("jacket15")
+    assembly = jackettwin.assemble(structure)
+    system = jackettwin.build_system(assembly, jackettwin.read_support("pinned", structure))
+    t = np.arange(6000) / 20.0
+    decay = np.exp(-0.02 * 2.0 * np.pi * t) * np.sin(2.0 * np.pi * t)
+    y = np.convolve(np.random.default_rng(1).normal(size=t.size), decay)[: t.size]
+    record = jackettwin.Record(y[None], 20.0, (jackettwin.Channel("a"),))
+    results = (
+        structure, assembly, system, jackettwin.undamped_modes(system, 2),
+        jackettwin.damped_modes(system, below_hz=0.3), jackettwin.Rayleigh.minimum(0.01, 0.2), record,
+        jackettwin.identify(record), jackettwin.read_twin("thesis_table_6_1"),
+    )  # fmt: skip
+    for value in results:
+        text = repr(value)
+        assert len(text) < 400, f"{type(value).__name__}: {text[:200]}"
+        assert "array(" not in text and type(value).__name__ in text

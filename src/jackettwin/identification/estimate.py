@@ -201,6 +201,10 @@ class ResolvedSettings:
     lag_window_s: float
 
 
+_SHOWN = 8
+"""Modes and records that a result names when it is printed."""
+
+
 @dataclass(frozen=True)
 class Identification:
     """Modes of a record, sorted by frequency, with all that is needed to judge them."""
@@ -223,6 +227,11 @@ class Identification:
     """Relaxations, if they were asked for."""
     picks: tuple[Pick, ...] = ()
     """The candidates that were considered; ``identify(…, picks=…)`` considers the same again."""
+
+    def __repr__(self) -> str:
+        shown = (f"{m.frequency_hz:.4g} Hz {100 * m.damping_ratio:.2g} %" for m in self.modes[:_SHOWN])
+        records = ", ".join(self.records[:_SHOWN])
+        return f"Identification({records}; {len(self.modes)} modes: {', '.join(shown)})"
 
     @property
     def without_figures(self) -> Identification:

@@ -14,6 +14,9 @@ from jackettwin.response.poles import REAL, poles_below
 from jackettwin.response.system import System
 from jackettwin.structure.eigen import AT_REST, below_zero, lowest_modes
 
+_SHOWN = 6
+"""Modes that a result names when it is printed."""
+
 
 @dataclass(frozen=True)
 class UndampedModes:
@@ -27,6 +30,10 @@ class UndampedModes:
 
     omega: FloatArray
     shapes: FloatArray
+
+    def __repr__(self) -> str:
+        shown = ", ".join(f"{f:.4f}" for f in self.frequency_hz[:_SHOWN])
+        return f"UndampedModes({self.omega.size} modes: {shown} Hz)"
 
     @property
     def frequency_hz(self) -> FloatArray:
@@ -53,6 +60,11 @@ class DampedModes:
     eigenvalues: ComplexArray
     shapes: ComplexArray
     real_poles: FloatArray
+
+    def __repr__(self) -> str:
+        pairs = zip(self.frequency_hz[:_SHOWN], np.round(self.damping_ratio, 4) + 0.0, strict=False)
+        modes = ", ".join(f"{f:.4f} Hz {100 * zeta:.2f} %" for f, zeta in pairs)
+        return f"DampedModes({self.eigenvalues.size} modes: {modes}; {self.real_poles.size} real poles)"
 
     @property
     def frequency_hz(self) -> FloatArray:

@@ -101,6 +101,9 @@ class System:
     pencil: Pencil
     free: IntArray
 
+    def __repr__(self) -> str:
+        return f"System({self.assembly!r} on {self.support!r}, {self.free.size} free DOFs)"
+
     def expand(self, x: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """Return shapes (assembly.n_dof, ...) from shapes on the free DOFs; held DOFs are zero."""
         full = np.zeros((self.assembly.n_dof, *x.shape[1:]), dtype=x.dtype)

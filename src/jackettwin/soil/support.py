@@ -42,6 +42,11 @@ class Support:
     notes: tuple[str, ...] = ()
     """What was assumed to get it."""
 
+    def __repr__(self) -> str:
+        held = ", ".join(node for node, _ in self.fixed) or "nothing"
+        laws = ", ".join(dict.fromkeys(str(spring.law) for spring in self.springs)) or "none"
+        return f"Support(held: {held}; {len(self.springs)} springs: {laws})"
+
 
 def pinned(structure: Structure) -> Support:
     """Return all reaction nodes with their translations held."""

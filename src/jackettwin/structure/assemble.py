@@ -44,6 +44,10 @@ class Assembly:
     independent: IntArray
     weight: WeightForces | None
 
+    def __repr__(self) -> str:
+        gravity = "with" if self.gravity else "without"
+        return f"Assembly({self.structure.name!r}, {self.stiffness.shape[0]} DOFs, {gravity} gravity)"
+
     @property
     def gravity(self) -> bool:
         """Whether ``stiffness`` holds the geometric part of the self-weight."""

@@ -178,6 +178,12 @@ class Structure:
     elements: tuple[TwoNodeElement, ...] = ()
     """Cables, springs and beams that are no tubes, from SubDyn decks."""
 
+    def __repr__(self) -> str:
+        return (
+            f"Structure({self.name!r}, {len(self.nodes)} nodes, {len(self.members)} members, "
+            f"{len(self.masses)} masses, {len(self.reactions)} feet)"
+        )
+
     def __post_init__(self) -> None:
         for name, point in self.nodes.items():
             for value in point:

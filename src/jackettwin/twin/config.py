@@ -176,3 +176,7 @@ class TwinConfig:
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     assigned: tuple[int, ...] = ()
     """Modes that were found for targets that give a frequency and no mode."""
+
+    def __repr__(self) -> str:
+        data = f"{len(self.targets)} targets" if self.targets else f"{len(self.records)} records"
+        return f"TwinConfig({self.name!r}, {self.structure!r}, {data}, laws {', '.join(self.update.laws)})"

@@ -79,6 +79,10 @@ class Followed:
     state: TwinState
     warnings: tuple[str, ...] = field(default=())
 
+    def __repr__(self) -> str:
+        last = "" if not self.days else ", ".join(f"{k} {v:.3g}" for k, v in self.days[-1].median.items())
+        return f"Followed({self.name!r}, {self.law}, {len(self.days)} days; last: {last})"
+
     @property
     def stiffness(self) -> tuple[str, ...]:
         """Names of the stiffness parameters: those that may drift."""

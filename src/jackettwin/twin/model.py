@@ -69,6 +69,10 @@ class TwinModel:
     calibrations: Calibrations = ()
     operation: OperationRule = OperationRule()
 
+    def __repr__(self) -> str:
+        modes = ", ".join(self.labels)
+        return f"TwinModel({self.name!r}, {self.assembly!r}, {len(self.sensors)} sensors; modes {modes})"
+
     @cached_property
     def model_hash(self) -> str:
         """Identity of the structure, its sensors and what a state keeps: states of another are not merged."""

@@ -78,6 +78,11 @@ class Observation:
     held: tuple[Held, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        labels = ", ".join(filter(None, self.labels)) or "none"
+        found = len(self.identification.modes)
+        return f"Observation({self.name!r}, {found} modes, of the model: {labels})"
+
     @property
     def labels(self) -> tuple[str, ...]:
         """For each identified mode, which of the model's it is; empty if none."""

@@ -210,6 +210,11 @@ class TwinState:
     totals: Mapping[str, OperationTotal] = field(default_factory=dict)
     clearest: Mapping[str, ClearShape] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        until = f" to {self.last_date}" if self.days else ""
+        states = ", ".join(self.totals) or "none"
+        return f"TwinState({len(self.days)} days{until}; states of operation: {states})"
+
     @property
     def state_hash(self) -> str:
         """Identity of the state by its content."""

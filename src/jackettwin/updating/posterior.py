@@ -66,6 +66,11 @@ class Posterior:
     names: tuple[str, ...] = ()
     runs: int = 1
 
+    def __repr__(self) -> str:
+        ends = zip(self.names, self.interval(), strict=False)
+        known = ", ".join(f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in ends)
+        return f"Posterior({len(self.log_theta)} draws; 90 %: {known})"
+
     def interval(self, level: float = 0.9) -> FloatArray:
         """Return the central interval of every parameter, (n_parameters, 2)."""
         tail = 0.5 * (1.0 - level)
