@@ -145,3 +145,43 @@ def test_limits_are_said(wide: Columns, tmp_path: Path) -> None:
     done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1", "--baseline-days", "90")
     assert done.exit_code == 0, done.stderr
     assert "one mode only" in done.stdout and "left out: humidity" in done.stdout
+
+
+def still(c: Columns) -> None:
+    c["f1"][:] = 0.3
+
+
+def without_temperature(c: Columns) -> None:
+    c["temperature"][200:] = np.nan
+
+
+def another_state(c: Columns) -> None:
+    c["state"] = np.where(np.arange(len(c["time"])) < 220, "parked", "idling")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (still, "always the same: f1"),
+        (without_temperature, "temperature is missing in 86 % of the rows watched"),
+        (another_state, "not judged: idling (100 rows)"),
+    ],
+    ids=lambda x: getattr(x, "__name__", "said"),
+)
+def test_what_cannot_be_judged_is_said(wide: Columns, tmp_path: Path, spoil, said: str) -> None:  # type: ignore[no-untyped-def]
+    spoil(wide)
+    done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1,f2", "--baseline-days", "90")
+    assert done.exit_code == 0, (done.stdout, done.stderr)
+    assert said in done.stdout
+
+
+def test_an_alarm_can_be_replayed(wide: Columns, tmp_path: Path) -> None:
+    path = written(wide, tmp_path / "a.csv")
+    first, again = (invoke(path, "--columns", "f1,f2", "--baseline-days", "90", "--json") for _ in range(2))
+    assert json.loads(first.stdout)["alarms"] and first.stdout == again.stdout
+    # rows after the alarm change nothing of it
+    alarm = json.loads(first.stdout)["alarms"][0]
+    kept = np.array([str(t) <= alarm["time_utc"][:10] + "T23" for t in wide["time"]])
+    short = written({name: x[kept] for name, x in wide.items()}, tmp_path / "short.csv")
+    cut = invoke(short, "--columns", "f1,f2", "--baseline-days", "90", "--json")
+    assert json.loads(cut.stdout)["alarms"] == [alarm]

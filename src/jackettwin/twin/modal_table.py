@@ -19,6 +19,7 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.records.readers.description import parse_time
 from jackettwin.watching import History
+from jackettwin.watching.history import typical
 
 Columns = dict[str, npt.NDArray[Any]]
 
@@ -321,7 +322,7 @@ def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tup
         x = _number(stored, name, days.size)
         good = np.isfinite(x)
         beside[row[good], k] = x[good]
-    order = np.argsort(np.nanmedian(np.where(frequency > 0.0, frequency, np.nan), axis=0))
+    order = np.argsort(typical(frequency))
     frequency, std, damping, damping_std = (a[:, order] for a in (frequency, std, damping, damping_std))
     names = tuple(str(labels[i]) for i in order)
     states = states[first_row]

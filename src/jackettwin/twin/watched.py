@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.twin.causes import SeenCauses, model_causes, next_measurements, seen_causes
@@ -25,6 +24,10 @@ from jackettwin.watching import (
 )
 from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
+from jackettwin.watching.history import typical
+
+_MISSING = 0.1
+"""Share of missing values of a condition from which it is said."""
 
 
 @dataclass(frozen=True)
@@ -100,13 +103,16 @@ def watch_table(
         )
     progress("baseline")
     watch = start(baseline, arl_years=arl_years)
-    limits += _limits(watch, baseline)
+    limits += _limits(watch, baseline, rest)
     explained, unexplained = _explained(watch, baseline)
     if structure is not None:
         progress("causes")
     seen = None if structure is None else structure_causes(structure, gravity, watch, baseline)
     if seen is not None:
         limits.append(f"leaves no trace in these quantities: {', '.join(seen.model.traceless)}")
+        strange = [label for label in watch.labels if label not in seen.model.labels]
+        if strange:
+            limits.append(f"no mode of the structure, left out of the causes: {', '.join(strange)}")
     looks, alarms = [], []
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
@@ -123,7 +129,7 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
     """Return a change with its causes: the structure's own, or patterns over modes."""
     kinds = [kind for kind, _ in watch.quantities]
     if seen is None:
-        general = general_causes(watch.quantities, watch.labels, _typical(baseline.frequency))
+        general = general_causes(watch.quantities, watch.labels, typical(baseline.frequency))
         return Alarm(change, diagnose(change, general, kinds))
     own = [kind for kind, good in zip(kinds, seen.known, strict=True) if good]
     diagnosis = diagnose(change.restricted(seen.known), seen.causes, own)
@@ -134,34 +140,48 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
 def structure_causes(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
     """Return what may happen to a structure with these modes, over the watched quantities."""
     model = model_causes(
-        structure, watch.labels, _typical(baseline.frequency), _typical(baseline.damping), gravity=gravity
+        structure, watch.labels, typical(baseline.frequency), typical(baseline.damping), gravity=gravity
     )
     return seen_causes(model, watch.quantities, watch.labels)
 
 
-def _typical(values: FloatArray) -> FloatArray:
-    seen = [f[np.isfinite(f) & (f > 0.0)] for f in values.T]
-    return np.array([np.median(f) if f.size else np.nan for f in seen])
-
-
-def _limits(watch: Watch, baseline: History) -> list[str]:
+def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
     said = []
     kept = {mode for kind, mode in watch.quantities if kind == "frequency"}
     left = [label for q, label in enumerate(watch.labels) if q not in kept]
     if left:
-        said.append(f"too few values in the baseline to be watched: {', '.join(left)}")
+        said.append(f"too few values in the baseline to be watched, or always the same: {', '.join(left)}")
     if len(kept) == 1:
         said.append("one mode only: what it shares with others cannot be told from a change of its own")
     used = {column.source for column in watch.design.columns}
     constant = [name for k, name in enumerate(baseline.condition_names) if k not in used]
     if constant:
         said.append(f"constant over the baseline or nearly empty, left out: {', '.join(constant)}")
+    said += _gaps(watch, rest)
     span = float(np.ptp(baseline.days))
     if span < 330.0:
         said.append(
             f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
             "counts as a change"
         )
+    return said
+
+
+def _gaps(watch: Watch, rest: History) -> list[str]:
+    """Return what is not known of the rows that are watched."""
+    if not rest.days.size:
+        return []
+    share = {c.name: np.mean(~np.isfinite(rest.conditions[:, c.source])) for c in watch.design.columns
+             if c.source >= 0}  # fmt: skip
+    said = [
+        f"{name} is missing in {100.0 * x:.0f} % of the rows watched: there it counts as its mean"
+        for name, x in share.items()
+        if x > _MISSING
+    ]
+    unknown = ~np.isin(rest.states, watch.design.states)
+    if unknown.any():
+        names = ", ".join(rest.state_names[k] for k in np.unique(rest.states[unknown]))
+        said.append(f"too little of it in the baseline, not judged: {names} ({int(unknown.sum())} rows)")
     return said
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design
 from jackettwin.watching.directions import Directions, log_bayes_factors
-from jackettwin.watching.history import History, Kind, logarithms, std_power
+from jackettwin.watching.history import History, Kind, logarithms, std_power, typical
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
@@ -23,8 +23,9 @@ _BROAD = {"frequency": 0.03, "damping": 0.5}
 _MAD = 1.4826
 _NEGLIGIBLE = -20.0
 """Ln of the weight below which a model is not asked."""
-_FEWEST = 30
-"""Values of a quantity in the baseline from which it is watched."""
+_FEWEST, _STILL = 30, 1e-9
+"""Values of a quantity in the baseline from which it is watched, and their relative range: what always reads
+the same is no measurement."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,10 @@ class Spoken:
 
 
 def watched(baseline: History, kind: Kind) -> IntArray:
-    """Return which columns have enough values to be watched."""
-    value = getattr(baseline, kind)
-    return np.flatnonzero((np.isfinite(value) & (value > 0.0)).sum(axis=0) >= _FEWEST)
+    """Return which columns have enough values to be watched, and do not stand still."""
+    columns = [x[np.isfinite(x) & (x > 0.0)] for x in getattr(baseline, kind).T]
+    alive = [x.size >= _FEWEST and np.ptp(x) > _STILL * np.max(x) for x in columns]
+    return np.flatnonzero(np.array(alive, dtype=np.bool_))
 
 
 def begin(
@@ -101,10 +103,10 @@ def begin(
 ) -> tuple[Block, Hours]:
     """Return what a baseline teaches of one kind of quantity, and its hours."""
     value = getattr(baseline, kind)[:, kept]
-    typical = np.asarray(np.nanmedian(np.where(value > 0.0, value, np.nan), axis=0))
+    middle = typical(value)
     # a frequency's noise is far too small for its power to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
-    y, relative = logarithms(baseline, kind, kept, typical, power)
+    y, relative = logarithms(baseline, kind, kept, middle, power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
     usual, rest = _usual_std(baseline.days, x, y, relative, design)
@@ -120,7 +122,7 @@ def begin(
     block = Block(
         kind=kind,
         kept=kept,
-        typical=typical,
+        typical=middle,
         std_power=power,
         usual_std=usual,
         spread=spread,

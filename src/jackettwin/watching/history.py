@@ -16,6 +16,12 @@ _NEAR_DAYS = 0.25
 _FEWEST_PAIRS = 30
 
 
+def typical(values: FloatArray) -> FloatArray:
+    """Return the median of the positive values of each column, (m,); NaN where there is none."""
+    columns = [column[np.isfinite(column) & (column > 0.0)] for column in values.T]
+    return np.array([np.median(x) if x.size else np.nan for x in columns])
+
+
 @dataclass(frozen=True)
 class History:
     """Modes through time.

@@ -35,7 +35,7 @@ from jackettwin.watching.block import (
 )
 from jackettwin.watching.design import Design, Lagged, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, directions_of
-from jackettwin.watching.history import History, Kind
+from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.scatter import STRONGER
 
 YEAR_DAYS = 365.25
@@ -45,7 +45,7 @@ _RECENT = 8
 """The last begins, which are never merged."""
 RECONSIDERED_DAYS, STEADY_DAYS = 10.0, 90.0
 """How often the models' weights are reconsidered, and for how long what is unexplained stays as it is."""
-FEWEST_DAYS = 10
+FEWEST_DAYS = 7
 """Days with records that a baseline needs."""
 _LOOSE = 1.0
 """Precision of what other quantities do while some are judged: they may change by anything."""
@@ -211,7 +211,7 @@ def start(
         )
     design = design_of(baseline)
     rows, lagged = regressors(design, baseline, fresh(design))
-    frequency = np.nanmedian(np.where(np.isfinite(baseline.frequency), baseline.frequency, np.nan), axis=0)
+    frequency = typical(baseline.frequency)
     blocks = []
     for kind, columns in kept.items():
         if not len(columns):
