@@ -12,22 +12,18 @@ springpot has no real poles but a branch cut; the contour goes around it.
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass, replace
-from functools import cache
 from math import pi
-from typing import Any
 
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
+from jackettwin.response.refined import kernels, refined
 from jackettwin.response.state import state_matrix
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, law_stiffness
 from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
 from jackettwin.structure.damping import Rayleigh
-
-log = logging.getLogger(__name__)
 
 _INNER = 0.9
 """The disc ends between this share of the band and the band's end, where there is most room."""
@@ -40,8 +36,6 @@ _EDGE = 1e-10
 """Relative distance to a law's own pole at which the inertia is taken on either side of it."""
 REAL = 1e-9
 """A pole with |Im λ| below this share of |λ| is real."""
-STEP = 1e-6
-"""Newton converges cubically: a last step this small leaves an error at rounding level."""
 SAME = 1e-8
 """Poles nearer than this (relative) with parallel shapes are one."""
 _TOGETHER = 1e-3
@@ -107,16 +101,6 @@ def real_poles(model: Condensed, rows: FloatArray, rayleigh: FloatArray, found: 
     return np.array(sorted(result, key=abs))
 
 
-@cache
-def kernels() -> Any:
-    """Return the compiled part, imported when first needed: it brings a compiler along."""
-    from jackettwin.response import condensed_kernels
-
-    if not condensed_kernels.compiled_before():
-        log.info("the numerical kernels are compiled, once after an installation: half a minute")
-    return condensed_kernels
-
-
 def _attempt(
     model: Condensed, rows: FloatArray, rayleigh: FloatArray, *, exact: bool, together: bool = False
 ) -> AllModes:
@@ -124,11 +108,9 @@ def _attempt(
     starts = np.ascontiguousarray(vectors.T)
     oscillating = (values.imag > REAL * np.abs(values)) & (np.abs(values) <= 1.3 * model.radius)
     poles, shapes = values[oscillating], starts[oscillating]
-    done = kernels().refine(
-        model.arrays(), rows[None], np.ascontiguousarray(rayleigh)[None],
-        np.arange(poles.size) if not together else np.zeros(poles.size, dtype=np.intp),
-        poles[None], shapes[None], _TOGETHER, STEP,
-    )[0]  # fmt: skip
+    family = np.zeros(poles.size, dtype=np.intp) if together else np.arange(poles.size)
+    start = (rows[None], np.ascontiguousarray(rayleigh)[None], family, poles[None], shapes[None])
+    done = refined(model, *start, _TOGETHER)[0]
     done &= poles.imag > REAL * np.abs(poles)
     poles, shapes = _distinct(poles[done], shapes[done])
     real = values[np.abs(values.imag) <= _NEARLY_REAL * np.abs(values)].real

@@ -25,10 +25,13 @@ from numba import njit
 _HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
 compiled = njit(cache=True, **_HOW)
 """For what Python calls."""
-inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
+making = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
 """For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
+inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, **_HOW)
+"""For what makes no array either: a tenth of the compiling is counting who still holds one."""
 
 _MAX_STEPS = 30
+_TINY = 1e-300
 _MAX_DEPTH = 24
 _NEAR = 0.05
 """A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
@@ -163,11 +166,18 @@ def fill(model, rows, a, b, s, F, dF, s0, s1):
 
 
 @inner
-def _copy(A, B):
-    """Fill the corner of B that is as large as A with A."""
-    for i in range(A.shape[0]):
-        for j in range(A.shape[1]):
+def _copy(A, n, B):
+    """Fill the leading n × n of B with that of A."""
+    for i in range(n):
+        for j in range(n):
             B[i, j] = A[i, j]
+
+
+@inner
+def _assign(x, y):
+    """Fill y with x."""
+    for i in range(x.size):
+        y[i] = x[i]
 
 
 @inner
@@ -199,10 +209,10 @@ def eliminate(F, w2, place, G):
     for i in range(1, nr):
         for j in range(i):
             if F[nb + i, nb + j] != 0.0:
-                _copy(F, G)
+                _copy(F, F.shape[0], G)
                 _count_from(nb, place)
                 return nb + nr, phase
-    _copy(F[:nb, :nb], G)
+    _copy(F, nb, G)
     for j in range(nr):
         pivot = F[nb + j, nb + j]
         if abs(pivot) < _NEAR * w2[j]:
@@ -316,7 +326,7 @@ def _product(x, y):
     return total
 
 
-@inner
+@making
 def _matrices(n):
     """Return room for F, dF/ds and what elimination leaves of F."""
     shape = (n, n)
@@ -341,52 +351,12 @@ def _bounded(step, s):
 
 
 @inner
-def _room(model, size):
-    """Return what refining ``size`` poles together works with."""
-    n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
-    F, dF, G = _matrices(n)
-    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
-    pivot, place = np.empty(n, np.int64), np.empty(n_retained, np.int64)
-    U, W = np.empty((size, n), np.complex128), np.empty((size, n), np.complex128)
-    return F, dF, G, s0, s1, pivot, place, U, W, np.empty(n, np.complex128)
-
-
-@inner
-def _refine_one(model, laws, a, b, s, x, tolerance, room, fresh):
-    """Refine one start by inverse iteration with the Rayleigh functional (cubic: F is symmetric); x in place.
-
-    A ``fresh`` start's shape knows its pole better than its value does. Return the pole and whether it came
-    to rest.
-    """
-    F, dF, G, s0, s1, pivot, place, U, W, z = room
-    w2, u, y = model[4], U[0], W[0]
-    _normalise(x)
-    if fresh:
-        fill(model, laws, a, b, s, F, dF, s0, s1)
-        step = times(F, x, y) / times(dF, x, y)
-        if np.isfinite(abs(step)):
-            s -= _bounded(step, s)
-    for _ in range(_MAX_STEPS):
-        fill(model, laws, a, b, s, F, dF, s0, s1)
-        times(dF, x, y)
-        left, _ = eliminate(F, w2, place, G)
-        if factor(G, left, pivot) == 0.0:
-            return s, True
-        for i in range(y.size):
-            u[i] = y[i]
-        solve_eliminated(F, place, G, left, pivot, u, z)
-        top = _product(u, y)
-        step = top / times(dF, u, y)
-        _normalise(u)
-        for i in range(u.size):
-            x[i] = u[i]
-        if not np.isfinite(abs(step)):
-            return s, False
-        step = _bounded(step, s)
-        s -= step
-        if abs(step) <= tolerance * abs(s):
-            return s, True
-    return s, False
+def _likeness(x, y):
+    """Return xᴴy."""
+    total = 0.0j
+    for i in range(x.size):
+        total += np.conj(x[i]) * y[i]
+    return total
 
 
 @inner
@@ -398,132 +368,106 @@ def _mean(values):
     return total / values.size
 
 
+@making
+def _room(model):
+    """Return what refining one pole or two works with."""
+    n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
+    F, dF, G = _matrices(n)
+    s0, s1, z = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128), np.empty(n, np.complex128)
+    U, W, small = np.empty((2, n), np.complex128), np.empty((2, n), np.complex128), np.empty(8, np.complex128)
+    return F, dF, G, s0, s1, np.empty(n, np.int64), np.empty(n_retained, np.int64), U, W, z, small
+
+
 @inner
-def _orthonormalise(U, W):
-    """Make the rows of U orthonormal, the rows of W following."""
-    for j in range(U.shape[0]):
-        for _ in range(2):  # twice is enough: nearly parallel rows lose their digits once
-            for i in range(j):
-                c = 0.0j
-                for k in range(U.shape[1]):
-                    c += np.conj(U[i, k]) * U[j, k]
-                for k in range(U.shape[1]):
-                    U[j, k] -= c * U[i, k]
-                    W[j, k] -= c * W[i, k]
-        size = 0.0
-        for k in range(U.shape[1]):
-            size += U[j, k].real ** 2 + U[j, k].imag ** 2
-        size = 1.0 / np.sqrt(size)
+def _orthonormalise(U, W, m):
+    """Make the first rows of U, one or two, orthonormal, those of W following."""
+    for j in range(m):
+        for _ in range(2 * j):  # twice is enough: nearly parallel rows lose their digits once
+            c = _likeness(U[0], U[1])
+            for k in range(U.shape[1]):
+                U[1, k] -= c * U[0, k]
+                W[1, k] -= c * W[0, k]
+        size = 1.0 / np.sqrt(_likeness(U[j], U[j]).real)
         for k in range(U.shape[1]):
             U[j, k] *= size
             W[j, k] *= size
 
 
 @inner
-def _small_eigen(A, B):
-    """Return δ and Y of A y = δ B y; NaN if B is singular. Two by two, as most are, in closed form."""
-    m = A.shape[0]
-    if m > 2:
-        pivot, column = np.empty(m, np.int64), np.empty(m, np.complex128)
-        finite = factor(B, m, pivot) != 0.0
-        for j in range(m):
-            for i in range(m):
-                column[i] = A[i, j]
-            solve(B, m, pivot, column)
-            for i in range(m):
-                A[i, j] = column[i]
-                finite &= np.isfinite(abs(column[i]))
-        if not finite:
-            for i in range(m):
-                column[i] = complex(np.nan, 0.0)
-            return column, A
-        return np.linalg.eig(A)
-    inverse = 1.0 / (B[0, 0] * B[1, 1] - B[0, 1] * B[1, 0])
-    c00 = (B[1, 1] * A[0, 0] - B[0, 1] * A[1, 0]) * inverse
-    c01 = (B[1, 1] * A[0, 1] - B[0, 1] * A[1, 1]) * inverse
-    c10 = (B[0, 0] * A[1, 0] - B[1, 0] * A[0, 0]) * inverse
-    c11 = (B[0, 0] * A[1, 1] - B[1, 0] * A[0, 1]) * inverse
+def _small_eigen(A, B, Y):
+    """Return the two δ of A y = δ B y, filling Y with y; the matrices (4,) are row by row."""
+    inverse = 1.0 / (B[0] * B[3] - B[1] * B[2])
+    c00, c01 = (B[3] * A[0] - B[1] * A[2]) * inverse, (B[3] * A[1] - B[1] * A[3]) * inverse
+    c10, c11 = (B[0] * A[2] - B[2] * A[0]) * inverse, (B[0] * A[3] - B[2] * A[1]) * inverse
     middle, half = 0.5 * (c00 + c11), 0.5 * (c00 - c11)
     root = np.sqrt(half * half + c01 * c10)
     # of the two roots the one that adds to half, so that no digits are lost
     top = half + root if abs(half + root) > abs(half - root) else half - root
-    delta, Y = np.empty(2, np.complex128), np.empty((2, 2), np.complex128)
-    delta[0], delta[1] = middle + (top - half), middle - (top - half)
-    Y[0, 0], Y[1, 0], Y[0, 1], Y[1, 1] = top, c10, -c01, top
-    return delta, Y
+    Y[0], Y[1], Y[2], Y[3] = top, -c01, c10, top
+    return middle + (top - half), middle - (top - half)
 
 
 @inner
-def _mix(U, Y, vectors):
-    """Fill the rows of ``vectors`` with YᵀU, each of unit norm."""
-    m, n = U.shape
-    for j in range(m):
-        for k in range(n):
-            total = 0.0j
-            for i in range(m):
-                total += Y[i, j] * U[i, k]
-            vectors[j, k] = total
-        _normalise(vectors[j])
-
-
-@inner
-def _ritz(dF, U, W, y, s, values, vectors):
+def _ritz(room, s, values, vectors):
     """Fill the Rayleigh–Ritz values and vectors about s in the span of U (W is F U); return their step."""
-    m = values.size
-    A, B = np.empty((m, m), np.complex128), np.empty((m, m), np.complex128)
-    _orthonormalise(U, W)
+    F, dF, G, s0, s1, pivot, place, U, W, y, small = room
+    m, A, B = values.size, small[:4], small[4:]
+    _orthonormalise(U, W, m)
     for j in range(m):
         times(dF, U[j], y)
         for i in range(m):
-            A[i, j] = 0.0j
-            B[i, j] = 0.0j
-            for k in range(y.size):
-                A[i, j] -= U[i, k] * W[j, k]
-                B[i, j] += U[i, k] * y[k]
-    delta, Y = _small_eigen(A, B)
-    step, spread = _mean(delta), 0.0
-    for j in range(m):
-        spread = max(spread, abs(delta[j] - step))
+            A[2 * i + j] = -_product(U[i], W[j])
+            B[2 * i + j] = _product(U[i], y)
+    if m == 1:
+        step = A[0] / B[0]
+        if np.isfinite(abs(step)):
+            values[0] = s + _bounded(step, s)
+            _assign(U[0], vectors[0])
+        return _bounded(step, s)
+    one, other = _small_eigen(A, B, A)
+    middle, half = 0.5 * (one + other), 0.5 * (one - other)
+    spread = abs(half)
     if not np.isfinite(spread):
-        return complex(np.nan, 0.0)
-    middle, step = step, _bounded(step, s)
-    shrunk = 0.3 * abs(s) / spread if spread > 0.3 * abs(s) else 1.0
-    for j in range(m):
-        values[j] = s + step + shrunk * (delta[j] - middle)
-        vectors[j] = U[j]
-    if spread > _EQUAL * abs(s):
-        # vectors of equal values would be rounding's, and might be parallel
-        _mix(U, Y, vectors)
+        return middle
+    step = _bounded(middle, s)
+    half *= min(1.0, 0.3 * abs(s) / max(spread, _TINY))
+    values[0], values[1] = s + step + half, s + step - half
+    for j in range(2):
+        _assign(U[j], vectors[j])
+        if spread > _EQUAL * abs(s):
+            # vectors of equal values would be rounding's, and might be parallel
+            for k in range(y.size):
+                vectors[j, k] = A[j] * U[0, k] + A[2 + j] * U[1, k]
+            _normalise(vectors[j])
     return step
 
 
 @inner
-def _refine_together(model, laws, a, b, values, vectors, tolerance, room, fresh):
-    """Refine nearly equal poles by block inverse iteration about their mean; return whether it came to rest.
+def _iterate(model, laws, a, b, values, vectors, tolerance, room):
+    """Refine one pole, or two nearly equal ones about their mean, by inverse iteration and Rayleigh–Ritz.
 
-    What is left is the square of their distance from each other. The shapes of ``fresh`` starts know the
-    poles better than their values do.
+    One pole converges cubically: F is symmetric. Two are known to the square of their distance. The starts'
+    shapes know the poles better than their values do. Return whether the mean came to rest.
     """
-    F, dF, G, s0, s1, pivot, place, every_U, every_W, z = room
-    m, w2 = values.size, model[4]
-    U, W, y = every_U[:m], every_W[:m], np.empty(z.size, np.complex128)
-    for round_ in range(0 if fresh else 1, _MAX_STEPS):
+    F, dF, G, s0, s1, pivot, place, U, W, z, small = room
+    m = values.size
+    for round_ in range(_MAX_STEPS):
         s = _mean(values)
         fill(model, laws, a, b, s, F, dF, s0, s1)
-        if round_ == 0:
-            for j in range(m):
-                U[j] = vectors[j]
-                times(F, U[j], W[j])
-        else:
-            for j in range(m):
-                times(dF, vectors[j], W[j])
-            left, _ = eliminate(F, w2, place, G)
+        left, phase = 0, 1.0 + 0.0j
+        if round_ > 0:
+            left, phase = eliminate(F, model[4], place, G)
             if factor(G, left, pivot) == 0.0:
                 return True
-            for j in range(m):
-                U[j] = W[j]
+        for j in range(m):
+            if round_ == 0:
+                _assign(vectors[j], U[j])
+                times(F, U[j], W[j])
+            else:
+                times(dF, vectors[j], W[j])
+                _assign(W[j], U[j])
                 solve_eliminated(F, place, G, left, pivot, U[j], z)
-        step = _ritz(dF, U, W, y, s, values, vectors)
+        step = _ritz(room, s, values, vectors)
         if not np.isfinite(abs(step)):
             return False
         if round_ > 0 and abs(step) <= tolerance * abs(s):
@@ -548,49 +492,34 @@ def _take(values, shapes, i, other_values, other_shapes, j):
 
 
 @inner
-def _next_cluster(values, start, stop, near):
-    """Return where the poles that follow ``start``, each within ``near`` (relative) of the last, end."""
-    end = start + 1
-    while end < stop and abs(values[end] - values[end - 1]) <= near * abs(values[end]):
-        end += 1
-    return end
-
-
-@inner
 def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
-    """Refine poles of one cluster: first together, then those that stand clear of the others alone.
+    """Refine one pole, or two that are near each other: together, then alone where they stand clear.
 
-    Values and vectors end in the order of |λ|, not in that of the starts.
+    Two end in the order of |λ|, not in that of the starts.
     """
-    m = values.size
-    if m == 1:
-        values[0], done = _refine_one(model, laws, a, b, values[0], vectors[0], tolerance, room, True)
-        return done
-    if not _refine_together(model, laws, a, b, values, vectors, _COARSE, room, True):
+    if values.size == 1:
+        return _iterate(model, laws, a, b, values, vectors, tolerance, room)
+    if not _iterate(model, laws, a, b, values, vectors, _COARSE, room):
         return False
-    for i in range(1, m):
-        for j in range(i, 0, -1):
-            if abs(values[j]) < abs(values[j - 1]):
-                _exchange(values, vectors, j, j - 1)
-    i = 0
-    while i < m:
-        j = _next_cluster(values, i, m, _INSEPARABLE)
-        if j == i + 1:
-            values[i], done = _refine_one(model, laws, a, b, values[i], vectors[i], tolerance, room, False)
-        else:
-            done = _refine_together(model, laws, a, b, values[i:j], vectors[i:j], tolerance, room, False)
-        if not done:
-            return False
-        i = j
-    return True
+    if abs(values[1]) < abs(values[0]):
+        _exchange(values, vectors, 0, 1)
+    if abs(values[1] - values[0]) <= _INSEPARABLE * abs(values[1]):
+        return _iterate(model, laws, a, b, values, vectors, tolerance, room)
+    done = True
+    for i in range(2):
+        done &= _iterate(model, laws, a, b, values[i : i + 1], vectors[i : i + 1], tolerance, room)
+    return done
 
 
 @inner
-def _known(values, first, last, at):
-    """Fill ``at`` with the places of what is finite, in the order of its size; return how many there are."""
+def _known(values, family, first, at):
+    """Fill ``at`` with the places of a family's finite values, in the order of their size.
+
+    Return how many there are.
+    """
     m = 0
-    for i in range(first, last):
-        if np.isfinite(abs(values[i])):
+    for i in range(first, values.size):
+        if family[i] == family[first] and np.isfinite(values[i].real):
             j = m
             while j > 0 and abs(values[at[j - 1]]) > abs(values[i]):
                 at[j] = at[j - 1]
@@ -602,37 +531,39 @@ def _known(values, first, last, at):
 
 @compiled
 def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
-    """Refine starts of every set in place; those of one family that are near each other go together.
+    """Refine starts of every set in place; two of one family that are near each other go together.
 
-    ``family`` (n_modes,) ascends; a mode without a start is NaN. A family ends in the order of |λ|.
-    Returns (n_sets, n_modes) booleans: converged.
+    ``family`` (n_modes,) ascends; a mode without a start is NaN. Returns (n_sets, n_modes) numbers: 1 where
+    a mode converged, 0 where it did not, and for modes of a cluster of more than two, which are left as they
+    are, one less than minus the place of its first.
     """
     n_sets, n_modes = values.shape
-    room = _room(model, n_modes)
-    done = np.zeros((n_sets, n_modes), np.bool_)
-    own, at = np.empty(n_modes, np.complex128), np.empty(n_modes, np.int64)
-    x = np.empty((n_modes, vectors.shape[2]), np.complex128)
+    room = _room(model)
+    done = np.zeros((n_sets, n_modes), np.int64)
+    own, at = np.empty(2, np.complex128), np.empty(n_modes, np.int64)
+    x = np.empty((2, vectors.shape[2]), np.complex128)
     for k in range(n_sets):
-        first = 0
-        while first < n_modes:
-            last = first + 1
-            while last < n_modes and family[last] == family[first]:
-                last += 1
-            m = _known(values[k], first, last, at)
-            for i in range(m):
-                _take(values[k], vectors[k], at[i], own, x, i)
-            i = 0
-            while i < m:
-                j = _next_cluster(own, i, m, near)
-                ok = _refine_cluster(
-                    model, rows[k], rayleigh[k, 0], rayleigh[k, 1], own[i:j], x[i:j], tolerance, room
-                )
-                for n in range(i, j):
-                    done[k, at[n]] = ok
-                i = j
-            for i in range(m):
-                _take(own, x, i, values[k], vectors[k], at[i])
-            first = last
+        a, b = rayleigh[k]
+        for first in range(n_modes):
+            if first > 0 and family[first] == family[first - 1]:
+                continue
+            m, start = _known(values[k], family, first, at), 0
+            for end in range(1, m + 1):
+                before, last = at[end - 1], at[min(end, m - 1)]
+                if end < m and abs(values[k, last] - values[k, before]) <= near * abs(values[k, last]):
+                    continue
+                size = end - start
+                for i in range(size):
+                    if size > 2:
+                        done[k, at[start + i]] = -1 - at[start]
+                    else:
+                        _take(values[k], vectors[k], at[start + i], own, x, i)
+                if size <= 2:
+                    ok = _refine_cluster(model, rows[k], a, b, own[:size], x[:size], tolerance, room)
+                    for i in range(size):
+                        _take(own, x, i, values[k], vectors[k], at[start + i])
+                        done[k, at[start + i]] = 1 if ok else 0
+                start = end
     return done
 
 
@@ -644,15 +575,6 @@ def _weighed(M, x, y):
         for j in range(x.size):
             total += M[i, j] * x[j]
         y[i] = total
-
-
-@inner
-def _likeness(x, y):
-    """Return xᴴy."""
-    total = 0.0j
-    for i in range(x.size):
-        total += np.conj(x[i]) * y[i]
-    return total
 
 
 @inner
@@ -754,7 +676,7 @@ def _name(like, own, m, values, shapes, likeness):
                     better = True
 
 
-@inner
+@making
 def _turn(like, own, m, values, shapes):
     """Mix m modes of a multiple pole until each has a part of its own pinned mode and none of the others'.
 
@@ -772,8 +694,8 @@ def _turn(like, own, m, values, shapes):
     if factor(part, m, pivot) == 0.0:
         return
     for i in range(m):
-        column[:] = 0.0
-        column[i] = largest
+        for j in range(m):
+            column[j] = largest if i == j else 0.0
         solve(part, m, pivot, column)
         for j in range(m):
             if not abs(column[j]) < _SKEWED:
@@ -783,7 +705,7 @@ def _turn(like, own, m, values, shapes):
     for i in range(m):
         _normalise(mixed[i])
         values[own[i]] = mean
-        shapes[own[i]] = mixed[i]
+        _assign(mixed[i], shapes[own[i]])
 
 
 @compiled
@@ -876,7 +798,7 @@ def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
 def _border(F, Y, X, bordered, pivot):
     """Factor [F, F′X; Xᴴ, 0] with Y = F′X, rows of Y and X being modes of one multiple pole."""
     m, n = X.shape
-    _copy(F, bordered)
+    _copy(F, n, bordered)
     for j in range(m):
         for i in range(m):
             bordered[n + i, n + j] = 0.0
@@ -931,9 +853,11 @@ def slopes(
                 solve(B, m, small, g)
                 dvalues[first + j, z] = g[j]
                 if dvectors.size:
-                    full[:n], full[n:] = loads[z], 0.0
+                    for i in range(n + m):
+                        full[i] = loads[z, i] if i < n else 0.0
                     solve(bordered, n + m, pivot, full)
-                    dvectors[first + j, z] = full[:n]
+                    for i in range(n):
+                        dvectors[first + j, z, i] = full[i]
         first = last
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.response.certified import REAL, SAME, STEP, kernels
+from jackettwin.response.certified import REAL, SAME
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.mode_tracking import near_degenerate
+from jackettwin.response.refined import kernels, refined
 
 _KIN = 0.8
 """Share of a mode, by mass, in the space of its family at the neighbour, by which a warm start is known."""
@@ -107,7 +108,7 @@ class Families:
     ) -> BoolArray:
         """Fill the sets in whose modes the neighbour's are recognised; return which these are."""
         values, x = start.poles.copy(), start.shapes.copy()
-        done = kernels().refine(model.arrays(), rows, rayleigh, self.of, values, x, _TOGETHER, STEP)
+        done = refined(model, rows, rayleigh, self.of, values, x, _TOGETHER)
         started = ~np.isnan(start.poles)
         sound = done & (values.imag > REAL * np.abs(values)) & (np.abs(values) <= model.radius)
         good: BoolArray = (sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1)

@@ -20,10 +20,11 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.response.certified import AllModes, all_modes, kernels
+from jackettwin.response.certified import AllModes, all_modes
 from jackettwin.response.condensed import Condensed, check_rayleigh
 from jackettwin.response.families import Start, families_of
 from jackettwin.response.mode_tracking import track_modes
+from jackettwin.response.refined import kernels
 from jackettwin.soil.coefficients import static_rows
 from jackettwin.structure.damping import Rayleigh
 

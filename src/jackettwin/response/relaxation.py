@@ -23,9 +23,10 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.identification.mac import mac
-from jackettwin.response.certified import REAL, STEP, kernels
+from jackettwin.response.certified import REAL
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points
+from jackettwin.response.refined import kernels, refined
 from jackettwin.soil.coefficients import BRANCHES, K0, K_ALPHA, MASS, C
 
 _NEAR = 0.3
@@ -192,10 +193,8 @@ def _refined(model: Condensed, points: Points, start: Relaxation) -> Relaxation:
     rate, shapes, slopes = start.rate.copy(), start.shapes.copy(), start.slopes.copy()
     values = (-start.rate[inside, None]).astype(np.complex128)
     vectors = np.ascontiguousarray(start.shapes[inside, None]).astype(np.complex128)
-    arrays, alone = model.arrays(), np.zeros(1, dtype=np.intp)
-    done = kernels().refine(
-        arrays, points.rows[inside], points.rayleigh[inside], alone, values, vectors, 0.0, STEP
-    )[:, 0]
+    alone = np.zeros(1, dtype=np.intp)
+    done = refined(model, points.rows[inside], points.rayleigh[inside], alone, values, vectors, 0.0)[:, 0]
     poles, x = values[:, 0], vectors[:, 0]
     with np.errstate(invalid="ignore", divide="ignore"):
         done &= np.abs(poles.imag) <= REAL * np.abs(poles)
@@ -206,7 +205,7 @@ def _refined(model: Condensed, points: Points, start: Relaxation) -> Relaxation:
         exact = np.empty((known.size, slopes.shape[1]), np.complex128)
         no_shapes = np.empty((0, slopes.shape[1], model.n), np.complex128)
         kernels().slopes(
-            arrays, points.rows, points.rayleigh, known, np.arange(known.size), poles, x,
+            model.arrays(), points.rows, points.rayleigh, known, np.arange(known.size), poles, x,
             points.jacobian, points.rayleigh_jacobian, exact, no_shapes,
         )  # fmt: skip
         slopes[known] = -exact.real
