@@ -8,6 +8,7 @@ import pytest
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import UndampedModes, damped_modes
 from jackettwin.response.numbered import NumberedModes, Status
+from jackettwin.response.refined import refined
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
 from jackettwin.updating import SupportModel, family, numbered_modes, support_model
 
@@ -169,3 +170,17 @@ def test_turned_pairs_keep_their_modal_mass(tmp_path: Path) -> None:
     assembly = jacket(tmp_path, legs=3)
     modes = numbered_modes(assembly, 5)
     np.testing.assert_allclose(modes.shapes.T @ (assembly.mass @ modes.shapes), np.eye(5), atol=1e-8)
+
+
+def test_a_cluster_of_more_than_two_is_refined_together(tmp_path: Path, rng: np.random.Generator) -> None:
+    """The second bending pair and the torsion, a fifth apart, as one cluster: each pole is found once."""
+    model = model_of(jacket(tmp_path))
+    known = model.predict_many(np.array([[6e8, 1.2e7]]), (3, 4, 5), slopes=False)
+    values, vectors = known.poles.copy(), known.shapes.copy()
+    values *= 1.0 + 0.01 * rng.standard_normal(values.shape)
+    vectors += 0.01 * rng.standard_normal(vectors.shape)
+    one_family = np.zeros(3, dtype=np.intp)
+    assert refined(model.condensed, known.rows, known.rayleigh, one_family, values, vectors, 0.3).all()
+    np.testing.assert_allclose(np.sort_complex(values), np.sort_complex(known.poles), rtol=1e-9)
+    # by themselves, two starts of the pair may end in the same shape; together they span the plane
+    assert np.linalg.matrix_rank(vectors[0], tol=1e-6) == 3

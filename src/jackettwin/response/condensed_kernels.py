@@ -454,7 +454,7 @@ def _iterate(model, laws, a, b, values, vectors, tolerance, room):
     for round_ in range(_MAX_STEPS):
         s = _mean(values)
         fill(model, laws, a, b, s, F, dF, s0, s1)
-        left, phase = 0, 1.0 + 0.0j
+        left, phase = m, 1.0 + 0.0j
         if round_ > 0:
             left, phase = eliminate(F, model[4], place, G)
             if factor(G, left, pivot) == 0.0:
@@ -808,6 +808,17 @@ def _border(F, Y, X, bordered, pivot):
     factor(bordered, n + m, pivot)
 
 
+@inner
+def _bordered_solution(bordered, load, pivot, full, x):
+    """Fill x with the solution of a factored bordered system under a load."""
+    n = load.size
+    for i in range(full.size):
+        full[i] = load[i] if i < n else 0.0
+    solve(bordered, full.size, pivot, full)
+    for i in range(n):
+        x[i] = full[i]
+
+
 @compiled
 def slopes(
     model, rows, rayleigh, which, multiple, values, vectors, jacobian, rayleigh_jacobian, dvalues, dvectors
@@ -853,11 +864,7 @@ def slopes(
                 solve(B, m, small, g)
                 dvalues[first + j, z] = g[j]
                 if dvectors.size:
-                    for i in range(n + m):
-                        full[i] = loads[z, i] if i < n else 0.0
-                    solve(bordered, n + m, pivot, full)
-                    for i in range(n):
-                        dvectors[first + j, z, i] = full[i]
+                    _bordered_solution(bordered, loads[z], pivot, full, dvectors[first + j, z])
         first = last
 
 

@@ -111,7 +111,7 @@ class Families:
         done = refined(model, rows, rayleigh, self.of, values, x, _TOGETHER)
         started = ~np.isnan(start.poles)
         sound = done & (values.imag > REAL * np.abs(values)) & (np.abs(values) <= model.radius)
-        good: BoolArray = (sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1)
+        good = np.asarray((sound | ~started).all(axis=1) & started[:, self.wanted].all(axis=1))
         # one layout of arrays is one compilation: a neighbour's shapes may be a view that cannot be written
         known = np.require(start.shapes, requirements=["C", "W"])
         good &= kernels().recognised(model.pencil.M, self.of, known, values, x, _KIN, SAME)

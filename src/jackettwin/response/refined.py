@@ -86,7 +86,7 @@ def _cluster(
         return np.ones(values.size, dtype=np.bool_)
     one = np.zeros(values.size, dtype=np.intp)
     parts = (rows[None], rayleigh[None], one, values[None], vectors[None])
-    return refined(model, *parts, _INSEPARABLE)[0]
+    return np.asarray(refined(model, *parts, _INSEPARABLE)[0])
 
 
 def _block(
