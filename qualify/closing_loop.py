@@ -16,7 +16,7 @@ import numpy as np
 from jackettwin.simulate.batch import record_path, run_set
 from jackettwin.simulate.sets import read_set
 from jackettwin.twin import TwinResult, read_twin, run_twin
-from jackettwin.twin.truth import TrueMode, true_modes, true_parameters
+from jackettwin.twin.truth import StatedMode, true_modes, true_parameters
 
 GROUPS, GROUP = 10, 6
 SET = f"{{scenario: known_feet, bins: [{{speed_m_s: 12, hs_m: 2.0, tp_s: 8.0}}], seeds: {GROUPS * GROUP}}}"
@@ -134,7 +134,7 @@ def normal(name: str, true: float, value: float, std: float) -> Found:
     return Found(name, true, value, value - 1.645 * std, value + 1.645 * std)
 
 
-def share(result: TwinResult, true: TrueMode, k: int) -> Found | None:
+def share(result: TwinResult, true: StatedMode, k: int) -> Found | None:
     """Return a source's damping ratio of a mode; None if the update lacks it."""
     source, names = list(SOURCES.items())[k]
     row = [i for i, m in enumerate(result.measured) if m.label == true.label]

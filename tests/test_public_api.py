@@ -16,7 +16,7 @@ import jackettwin
 
 PACKAGES = {
     "records": "Channel Record assess decimate detrend read_record repair write_record",
-    "report": "Plot Section Table Text build_report",
+    "report": "PageSection PageTable Plot Text build_report",
     "structure": "Assembly Material Rayleigh Section Structure assemble check jacket read_structure",
 }
 OF_OTHERS = {"None", "Any", "Path", "DataFrame", "DataArray"}

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from gallery.thesis_figures import thesis_figures
-from jackettwin.report import Section
+from jackettwin.report import PageSection
 from jackettwin.report.page import write_figures, write_page
 from jackettwin.version import __version__
 
 
-def write_gallery(sections: Sequence[Section], out: Path) -> Path:
+def write_gallery(sections: Sequence[PageSection], out: Path) -> Path:
     """Write the sections and their figures into a folder; return the path of the page."""
     write_figures(sections, out / "figures")
     title = "The figures of the thesis, recomputed"

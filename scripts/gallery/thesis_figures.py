@@ -18,7 +18,7 @@ from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
 from jackettwin.report import figures_identification, figures_record
 from jackettwin.report.numbers import frequency, scientific, words
-from jackettwin.report.page import Plot, Section
+from jackettwin.report.page import PageSection, Plot
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import UndampedModes, undamped_modes
 from jackettwin.response.sensors import Sensor, observation_matrix
@@ -51,7 +51,7 @@ class _Jacket:
     labels: tuple[str, ...]
 
 
-def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[Section]:
+def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[PageSection]:
     """Return the gallery's sections: every listed figure of the thesis, from the same code as the report."""
     assembly = assemble(read_structure("jacket15"))
     pinned = numbered_modes(assembly, 8)
@@ -61,20 +61,20 @@ def thesis_figures(step: Callable[[str], None] = lambda _: None) -> list[Section
         record = read_record(directory / f"{RECORD}.parquet")
     step("figures of chapters 3 and 4")
     sections = [
-        Section("Chapter 3: theory of structures", tuple(_chapter_3(jacket))),
-        Section("Chapter 4: viscoelastic laws", tuple(_chapter_4())),
+        PageSection("Chapter 3: theory of structures", tuple(_chapter_3(jacket))),
+        PageSection("Chapter 4: viscoelastic laws", tuple(_chapter_4())),
     ]
     step("figures of chapter 5")
-    sections.append(Section("Chapter 5: the jacket", tuple(_chapter_5(jacket, record))))
+    sections.append(PageSection("Chapter 5: the jacket", tuple(_chapter_5(jacket, record))))
     step("figures of chapter 6")
     found = identify(record)
     names = _paired_names(jacket, found)
-    sections.append(Section("Chapter 6: identification", tuple(_chapter_6(found, names))))
+    sections.append(PageSection("Chapter 6: identification", tuple(_chapter_6(found, names))))
     step("figures of chapters 7 and 8")
-    sections.append(Section("Chapter 7: viscoelastic supports", (_figure_7_1(jacket),)))
-    sections.append(Section("Chapter 8: updating", tuple(_chapter_8(jacket))))
+    sections.append(PageSection("Chapter 7: viscoelastic supports", (_figure_7_1(jacket),)))
+    sections.append(PageSection("Chapter 8: updating", tuple(_chapter_8(jacket))))
     step("figures of chapter 11")
-    sections.append(Section("Chapter 11: appendix", tuple(_chapter_11(record, found, names))))
+    sections.append(PageSection("Chapter 11: appendix", tuple(_chapter_11(record, found, names))))
     return sections
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jackettwin.records import Record, assess, repair
-from jackettwin.records.changes import PARTS, Change, changes
+from jackettwin.records.changes import PARTS, SensorChange, changes
 
 N = 12_000
 PART = N // PARTS
@@ -130,7 +130,7 @@ def test_a_change_shows_beside_gaps(tower: SimpleNamespace) -> None:
     data[1, 1_000:2_500] = np.nan
     data[0, 7_000:8_000] = np.nan
     (found,) = changes(data)
-    assert found == Change(0, 6_000, N, found.gain, True)
+    assert found == SensorChange(0, 6_000, N, found.gain, True)
     assert found.gain == pytest.approx(3.0, rel=0.1)
 
 

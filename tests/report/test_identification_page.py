@@ -15,7 +15,7 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.records import Channel
 from jackettwin.report.figures_components import shape_components
-from jackettwin.report.figures_measured import Places, measured_shapes_3d
+from jackettwin.report.figures_measured import SensorLayout, measured_shapes_3d
 from jackettwin.report.identification_page import _shapes, build_identification_page, mode_names
 from jackettwin.report.numbers import UNKNOWN
 from jackettwin.report.page import Plot
@@ -31,7 +31,7 @@ CHANNELS = (
 
 
 def test_channels_of_one_height_move_one_place() -> None:
-    places = Places.of(CHANNELS)
+    places = SensorLayout.of(CHANNELS)
     assert places.height.tolist() == [30.0, 90.0]
     motion = places.motion(np.array([1.0, 2.0j, -0.5]))
     assert_allclose(motion, [[-0.25, 0, 0], [0.5, 1.0j, 0]])

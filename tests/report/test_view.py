@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
-from jackettwin.report.view import Quantity, View, thickness_quantities, view_document, write_view
+from jackettwin.report.view import ColouredQuantity, View, thickness_quantities, view_document, write_view
 from jackettwin.report.view_dimensions import dimensions
 from jackettwin.report.view_motions import damped_motion, record_motion, undamped_motion, wave_motion
 from jackettwin.response.modal import damped_modes, undamped_modes
@@ -45,7 +45,7 @@ def view(system: System) -> View:
         assembly,
         (
             *thickness_quantities(assembly),
-            Quantity("unknown", "–", np.full(n_elements, np.nan)),
+            ColouredQuantity("unknown", "–", np.full(n_elements, np.nan)),
         ),
         motions,
         (Sensor("top </script>", (0.0, 2.0, 0.0), "tower_top"),),

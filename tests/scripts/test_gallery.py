@@ -9,7 +9,7 @@ from figure_units import assert_units_of
 
 from gallery.__main__ import write_gallery
 from gallery.thesis_figures import STEPS, thesis_figures
-from jackettwin.report import Plot, Section
+from jackettwin.report import PageSection, Plot
 
 LISTED = (
     [f"3_{i}" for i in (1, 2, 3)]
@@ -26,17 +26,17 @@ def announced() -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def sections(announced: list[str]) -> list[Section]:
+def sections(announced: list[str]) -> list[PageSection]:
     return thesis_figures(announced.append)
 
 
-def test_every_listed_figure_is_there(sections: list[Section], announced: list[str]) -> None:
+def test_every_listed_figure_is_there(sections: list[PageSection], announced: list[str]) -> None:
     names = [b.name for s in sections for b in s.blocks if isinstance(b, Plot)]
     assert names == [f"figure_{n}" for n in LISTED]
     assert len(announced) == STEPS
 
 
-def test_gallery_axes_have_units(sections: list[Section]) -> None:
+def test_gallery_axes_have_units(sections: list[PageSection]) -> None:
     for section in sections:
         for block in section.blocks:
             if isinstance(block, Plot) and not _drawn(block):
@@ -48,7 +48,7 @@ def _drawn(plot: Plot) -> bool:
     return plot.name in {f"figure_{n}" for n in ("3_1", "4_3", "5_2", "7_1")}
 
 
-def test_first_two_modes_of_the_record_are_told_apart(sections: list[Section]) -> None:
+def test_first_two_modes_of_the_record_are_told_apart(sections: list[PageSection]) -> None:
     stabilisation = next(
         b.figure for s in sections for b in s.blocks if isinstance(b, Plot) and b.name == "figure_11_1"
     )
@@ -56,7 +56,7 @@ def test_first_two_modes_of_the_record_are_told_apart(sections: list[Section]) -
     assert {"fore-aft 1", "side-side 1"} <= texts
 
 
-def test_gallery_is_one_small_page(sections: list[Section], tmp_path: Path) -> None:
+def test_gallery_is_one_small_page(sections: list[PageSection], tmp_path: Path) -> None:
     path = write_gallery(sections, tmp_path)
     assert path.stat().st_size < 12e6
     assert len(list((tmp_path / "figures").glob("*.html"))) == len(LISTED)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.soil.curves import Table, Tanh
+from jackettwin.soil.curves import TabulatedCurve, Tanh
 from jackettwin.soil.hysteresis import move, sliders
 
 CURVE = Tanh(capacity=1e6, initial_stiffness=1e8)
@@ -52,7 +52,7 @@ def test_small_cycles_are_elastic_and_the_tangent_is_the_slope() -> None:
 
 
 def test_softening_holds_its_peak_and_springs_scale_with_length() -> None:
-    brittle = Table((0.0, 0.01, 0.02), (0.0, 1e5, 7e4))
+    brittle = TabulatedCurve((0.0, 0.01, 0.02), (0.0, 1e5, 7e4))
     springs = sliders((brittle, brittle), np.array([1.0, 2.5]), largest_m=0.1, number=80)
     step = move(springs, springs.at_rest(), np.array([0.05, 0.05]))
     assert step.force[1] == pytest.approx(2.5 * step.force[0])

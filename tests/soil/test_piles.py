@@ -138,7 +138,7 @@ def test_layers_meet_at_a_node_with_both_soils() -> None:
     profile = SoilProfile((Layer(10.0, 8e3, Clay(20e3, 60e3)), Layer(50.0, 10e3, Sand(35.0))))
     curves = pile_curves(PILE, profile)
     pair = np.flatnonzero(curves.at.depth == 10.0)
-    assert [type(curves.py[i]).__name__ for i in pair] == ["Table", "Tanh"]
+    assert [type(curves.py[i]).__name__ for i in pair] == ["TabulatedCurve", "Tanh"]
     assert profile.effective_stress(np.array([10.0, 20.0])).tolist() == [80e3, 180e3]
 
 

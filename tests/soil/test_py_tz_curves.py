@@ -8,7 +8,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.soil import py_curves, tz_curves
-from jackettwin.soil.curves import CubeRoot, Table, Tanh, secant_stiffness, tangent_stiffness
+from jackettwin.soil.curves import CubeRoot, TabulatedCurve, Tanh, secant_stiffness, tangent_stiffness
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile, ground_at
 from jackettwin.soil.scour import Scour
 
@@ -249,7 +249,7 @@ def test_linearisation_of_a_curve() -> None:
 
 
 @pytest.mark.parametrize(
-    "curve", [Tanh(1e6, 1e8), Table((0.0, 0.01, 0.02), (0.0, 1e5, 8e4)), CubeRoot(1e6, 0.05, 1e8)]
+    "curve", [Tanh(1e6, 1e8), TabulatedCurve((0.0, 0.01, 0.02), (0.0, 1e5, 8e4)), CubeRoot(1e6, 0.05, 1e8)]
 )
 def test_curves_are_odd(curve) -> None:
     y = np.linspace(0.0, 0.1, 11)

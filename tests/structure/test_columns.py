@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.structure import Section, Structure, read_structure
-from jackettwin.structure.columns import Column, columns
+from jackettwin.structure.columns import StraightRun, columns
 from jackettwin.structure.model import STEEL, Member, Reaction, RigidLink
 
 TUBE = Section(1.0, 0.02)
@@ -22,12 +22,12 @@ MAST = {"a": (0.0, 0.0, 0.0), "b": (0.0, 0.0, 10.0), "c": (0.0, 0.0, 25.0)}
 
 
 def test_a_mast_is_one_cantilever() -> None:
-    assert columns(frame(MAST, "ab", "bc")) == dict.fromkeys(("ab", "bc"), Column(25.0, True))
+    assert columns(frame(MAST, "ab", "bc")) == dict.fromkeys(("ab", "bc"), StraightRun(25.0, True))
 
 
 def test_a_foot_in_the_middle_ends_a_column() -> None:
     found = columns(frame(MAST, "ab", "bc", feet="ab"))
-    assert found == {"ab": Column(10.0, False), "bc": Column(15.0, True)}
+    assert found == {"ab": StraightRun(10.0, False), "bc": StraightRun(15.0, True)}
 
 
 def test_what_hangs_on_a_mast_does_not_hold_it() -> None:
@@ -36,15 +36,15 @@ def test_what_hangs_on_a_mast_does_not_hold_it() -> None:
     structure = frame(hung, "ab", "bc", "bp", "cn")
     mast = replace(structure, nodes=hung | {"q": (0.0, 2.0, 10.0)}, rigid_links=(RigidLink("b", "q"),))
     found = columns(mast)
-    assert found["ab"] == found["bc"] == Column(25.0, True)
-    assert found["bp"] == Column(4.0, True)
+    assert found["ab"] == found["bc"] == StraightRun(25.0, True)
+    assert found["bp"] == StraightRun(4.0, True)
 
 
 def test_a_stay_to_the_ground_holds_it() -> None:
     stayed = MAST | {"s": (8.0, 0.0, 0.0)}
     found = columns(frame(stayed, "ab", "bc", "bs", feet="as"))
-    assert found["ab"] == Column(10.0, False)
-    assert found["bc"] == Column(15.0, True)
+    assert found["ab"] == StraightRun(10.0, False)
+    assert found["bc"] == StraightRun(15.0, True)
     assert not found["bs"].is_cantilever
 
 

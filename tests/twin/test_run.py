@@ -21,7 +21,7 @@ from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.fitted import residuals, target_modes
 from jackettwin.twin.measure import Measured, mean_target
 from jackettwin.twin.narrative import cautions
-from jackettwin.twin.problem import Evidence, law_problem
+from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.twin.rotor import RotorDamping
 from jackettwin.twin.sums import ModeSums, of_day, of_estimate
@@ -176,7 +176,9 @@ def test_given_shapes_are_data_beside_frequencies(tmp_path: Path) -> None:
     labels = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz))
     measured = target_modes(config, labels, pinned_hz=numbered.frequency_hz)
     states = {"": (residuals(config, measured), {})}
-    problem = law_problem(config, Evidence(assembly, None, states, RotorDamping({}, {})), "kelvin-voigt")
+    problem = law_problem(
+        config, UpdateEvidence(assembly, None, states, RotorDamping({}, {})), "kelvin-voigt"
+    )
     assert problem.n_data == 3
     r = problem.evaluate(np.log([2.5e9, 7.6e8]), None)[0]
     assert r[2] == pytest.approx(50.0, rel=0.1)

@@ -14,7 +14,7 @@ from jackettwin.loads.water import Water
 from jackettwin.twin import TwinState, advance_all, read_twin
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.fitted import residuals, target_modes
-from jackettwin.twin.problem import Evidence, law_problem
+from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.rotor import RotorDamping
 from jackettwin.twin.state import ALL
 from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
@@ -38,7 +38,7 @@ def twin(folder: Path, *, adds: str = "false", sea: str = "sea: {hs_m: 2.0, tp_s
     config = read_twin(path)
     assembly = assembled(config)
     states = {"": (residuals(config, target_modes(config, ("side_side_1",) * 12, pinned_hz=np.ones(12))), {})}
-    return config, Evidence(assembly, None, states, RotorDamping({}, {}))
+    return config, UpdateEvidence(assembly, None, states, RotorDamping({}, {}))
 
 
 def test_factors_follow_the_law_with_their_priors(tmp_path: Path) -> None:

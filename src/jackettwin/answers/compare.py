@@ -14,7 +14,7 @@ CHANGED = 2.0
 
 
 @dataclass(frozen=True)
-class Change:
+class ChangedNumber:
     """One number in two runs.
 
     Attributes
@@ -46,7 +46,7 @@ class Change:
         return "changed" if abs(self.sigmas) >= CHANGED else "within its uncertainty"
 
 
-def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[Change, ...]:
+def compare(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[ChangedNumber, ...]:
     """Return what two runs say of the same modes and parameters, in the order of the first."""
     return (
         *_paired(_modes(a, "frequency_hz"), _modes(b, "frequency_hz"), "Hz"),
@@ -59,22 +59,22 @@ _Value = tuple[float, float | None]
 """A number and the standard deviation of its logarithm."""
 
 
-def _paired(a: Mapping[str, _Value], b: Mapping[str, _Value], unit: str) -> Iterable[Change]:
+def _paired(a: Mapping[str, _Value], b: Mapping[str, _Value], unit: str) -> Iterable[ChangedNumber]:
     return [change(name, unit, a.get(name), b.get(name)) for name in dict.fromkeys((*a, *b))]
 
 
-def change(what: str, unit: str, before: _Value | None, after: _Value | None) -> Change:
+def change(what: str, unit: str, before: _Value | None, after: _Value | None) -> ChangedNumber:
     """Return one number in two runs.
 
     >>> change("f", "Hz", (0.2, 0.003), (0.21, 0.004)).sigmas
     9.758...
     """
     if before is None or after is None:
-        return Change(what, unit, before and before[0], after and after[0], None, None)
+        return ChangedNumber(what, unit, before and before[0], after and after[0], None, None)
     (x, s), (y, t) = before, after
     moved = log(y / x) if x > 0.0 and y > 0.0 else None
     spread = None if s is None or t is None else hypot(s, t)
-    return Change(what, unit, x, y, moved, moved / spread if moved is not None and spread else None)
+    return ChangedNumber(what, unit, x, y, moved, moved / spread if moved is not None and spread else None)
 
 
 def _modes(document: Mapping[str, Any], quantity: str) -> dict[str, _Value]:
@@ -89,7 +89,7 @@ def _modes(document: Mapping[str, Any], quantity: str) -> dict[str, _Value]:
     return found
 
 
-def _parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[Change]:
+def _parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterable[ChangedNumber]:
     """Return the ground under the law that the second run recommends, else under its first that both have."""
     laws = [{u["law"]: u for u in document.get("updates", [])} for document in (a, b)]
     wanted = (b.get("answers") or {}).get("law")

@@ -10,7 +10,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from jackettwin.answers.compare import Change, compare
+from jackettwin.answers.compare import ChangedNumber, compare
 from jackettwin.cli.console import number, output, print_json
 from jackettwin.errors import InputError
 
@@ -61,7 +61,7 @@ def compare_command(a: Path, b: Path, as_json: bool) -> None:
     output.print(table)
 
 
-def _summary(changes: tuple[Change, ...]) -> str:
+def _summary(changes: tuple[ChangedNumber, ...]) -> str:
     """Return what changed in a sentence, most first."""
     changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
     if not changed:

@@ -123,7 +123,7 @@ def _plain(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Step:
+class ConsoleStep:
     """Announces the next step when called; ``within`` says how far the present one is."""
 
     announce: Callable[[str], None]
@@ -135,11 +135,11 @@ class Step:
 
 
 @contextmanager
-def progress(total: int, title: str) -> Iterator[Step]:
+def progress(total: int, title: str) -> Iterator[ConsoleStep]:
     """Yield what announces the next of ``total`` steps: a bar on a terminal, else plain lines, on stderr."""
     if not messages.is_terminal:
         with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as say:
-            yield Step(say.announce, say.within)
+            yield ConsoleStep(say.announce, say.within)
         return
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -158,7 +158,7 @@ def progress(total: int, title: str) -> Iterator[Step]:
             bar.update(task, description=what, advance=1 if started else 0)
             started = True
 
-        yield Step(announce, lambda what: bar.update(task, description=what))
+        yield ConsoleStep(announce, lambda what: bar.update(task, description=what))
         bar.update(task, completed=total, description=title)
 
 

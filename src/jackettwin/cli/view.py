@@ -16,8 +16,14 @@ from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError, located
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
 from jackettwin.records import read_record
-from jackettwin.report.view import Quantity, View, thickness_quantities, write_view
-from jackettwin.report.view_motions import Motion, damped_motion, record_motion, undamped_motion, wave_motion
+from jackettwin.report.view import ColouredQuantity, View, thickness_quantities, write_view
+from jackettwin.report.view_motions import (
+    DrawnMotion,
+    damped_motion,
+    record_motion,
+    undamped_motion,
+    wave_motion,
+)
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.passage import wave_passage
@@ -207,7 +213,7 @@ def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:
             raise InputError("no such member or part", field="--flooded", value=name)
 
 
-def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
+def _modes(assembly: Assembly, system: System, number: int) -> list[DrawnMotion]:
     """Return undamped modes, and damped ones if anything dissipates; what floats freely is no mode."""
     if number == 0:
         return []
@@ -233,19 +239,21 @@ def _modes(assembly: Assembly, system: System, number: int) -> list[Motion]:
     ]
 
 
-def _uses(assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]) -> tuple[Quantity, ...]:
+def _uses(
+    assembly: Assembly, system: System, forces: dict[str, tuple[float, ...]]
+) -> tuple[ColouredQuantity, ...]:
     """Return utilisation and stress at rest under the weight and the forces given."""
     u = static_displacement(system, self_weight(assembly) + nodal_load(assembly, forces))
     along = element_weight(assembly)
     uses = np.array([use.utilisation for use in member_uses(assembly, u, along=along)])[assembly.mesh.member]
     sections = section_forces(assembly, u, along=along)
     return (
-        Quantity("utilisation at rest, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
-        Quantity(
+        ColouredQuantity("utilisation at rest, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),
+        ColouredQuantity(
             "von Mises stress at rest",
             "MPa",
             von_mises_stress(assembly, sections).max(axis=1) / 1e6,
             from_zero=True,
         ),
-        Quantity("axial force at rest", "MN", sections.axial.mean(axis=1) / 1e6),
+        ColouredQuantity("axial force at rest", "MN", sections.axial.mean(axis=1) / 1e6),
     )

@@ -32,7 +32,7 @@ class Control:
     """Cut-in and cut-out; None if not known."""
 
 
-class Operation(NamedTuple):
+class OperatingPoint(NamedTuple):
     """A steady operating point.
 
     ``induced`` (n, 2) are the axial and tangential induced velocities at the stations [m/s].
@@ -53,7 +53,7 @@ class Operation(NamedTuple):
 
 def steady_operation(
     rotor: Rotor, wind_speed: float, *, rotor_speed: float, pitch: float, density: float = AIR_KG_M3
-) -> Operation:
+) -> OperatingPoint:
     """Return thrust, torque and induction of a rotor square to the wind.
 
     Raises
@@ -85,7 +85,7 @@ def steady_operation(
     torque = (scale * r) @ (cl * np.sin(phi) - cd * np.cos(phi))
     # swirl turns against the rotor: it adds to the tangential wind
     induced = np.stack([wind_speed * a, tangential * da], axis=1)
-    return Operation(wind_speed, rotor_speed, pitch, float(thrust), float(torque), induced)
+    return OperatingPoint(wind_speed, rotor_speed, pitch, float(thrust), float(torque), induced)
 
 
 def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tuple[FloatArray, FloatArray]:
@@ -113,7 +113,7 @@ def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tu
 
 def operating_point(
     rotor: Rotor, control: Control, wind_speed: float, *, density: float = AIR_KG_M3
-) -> Operation:
+) -> OperatingPoint:
     """Return the point the controller holds: optimal speed and zero pitch, then rated power by pitching."""
     speed = float(
         np.clip(
@@ -123,7 +123,7 @@ def operating_point(
         )
     )
 
-    def at(pitch: float) -> Operation:
+    def at(pitch: float) -> OperatingPoint:
         return steady_operation(rotor, wind_speed, rotor_speed=speed, pitch=pitch, density=density)
 
     wanted = control.rated_power_w / control.efficiency
@@ -133,7 +133,7 @@ def operating_point(
 
 
 def operating_damping(
-    rotor: Rotor, operation: Operation, *, yaw_error: float = 0.0, density: float = AIR_KG_M3
+    rotor: Rotor, operation: OperatingPoint, *, yaw_error: float = 0.0, density: float = AIR_KG_M3
 ) -> Linearised:
     """Return the rotor linearised about an operating point with its wake frozen.
 

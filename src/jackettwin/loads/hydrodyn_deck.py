@@ -20,7 +20,7 @@ from jackettwin.files.yaml import read_text
 from jackettwin.loads.coefficients import Coefficients, GrowthBand, Strip, StripTable
 from jackettwin.loads.ends import EndCoefficients
 from jackettwin.structure import Structure
-from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
+from jackettwin.structure.subdyn_tables import Deck, SubdynRow, number, to_float
 
 _SAME_PLACE_M = 0.3
 """Feet of HydroDyn's files reach a little into the bed, so that no water presses on their ends."""
@@ -40,7 +40,7 @@ class HydroDynMembers(NamedTuple):
 class _Tubes:
     """The file's members: rows, ends (n, 2, 3) [m] from still water, and the structure's members they are."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[SubdynRow, ...]
     ends: Mapping[str, FloatArray]
     names: Mapping[str, str]
 
@@ -105,12 +105,12 @@ def _simple(deck: Deck) -> tuple[Strip, Strip]:
         header = line.lower().split()
         if header[:1] == ["simplcd"] and at + 2 < len(deck.lines):
             words = dict(zip(header, deck.lines[at + 2].split(), strict=False))
-            row = Row(words | {"#": str(at + 3)}, deck.path)
+            row = SubdynRow(words | {"#": str(at + 3)}, deck.path)
             return _strip(deck, row, "simpl", ""), _strip(deck, row, "simpl", "mg")
     raise InputError("table is missing", file=deck.path, field="SimplCd", remedy="give a HydroDyn input file")
 
 
-def _strip(deck: Deck, row: Row, prefix: str, suffix: str) -> Strip:
+def _strip(deck: Deck, row: SubdynRow, prefix: str, suffix: str) -> Strip:
     cd, ca, cp = (number(row, f"{prefix}{name}{suffix}", deck.path) for name in ("cd", "ca", "cp"))
     return Strip(cd, ca, cp)
 

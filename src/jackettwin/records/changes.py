@@ -51,7 +51,7 @@ PRESENT = 0.9
 
 
 @dataclass(frozen=True)
-class Change:
+class SensorChange:
     """A channel that is another after some time, or before it.
 
     Attributes
@@ -72,7 +72,7 @@ class Change:
     certain: bool
 
 
-def described(change: Change, step_s: float) -> str:
+def described(change: SensorChange, step_s: float) -> str:
     """Return a change in words.
 
     >>> described(Change(0, 6000, 12000, 3.02, True), 0.05)
@@ -91,7 +91,7 @@ def described(change: Change, step_s: float) -> str:
     return f"{what}, or a channel like it changes; kept"
 
 
-def changes(y: FloatArray) -> list[Change]:
+def changes(y: FloatArray) -> list[SensorChange]:
     """Return the channels that change during a record, one change each, the clearest first.
 
     Parameters
@@ -99,7 +99,7 @@ def changes(y: FloatArray) -> list[Change]:
     y : (n_channels, n_samples)
         Zero mean; NaN marks missing samples.
     """
-    out: list[Change] = []
+    out: list[SensorChange] = []
     rows = [i for i in range(len(y)) if np.isfinite(y[i]).any() and np.nanstd(y[i]) > 0.0]
     bands = _envelopes(y) if rows else []
     there = _present(y) if bands else np.empty((0, PARTS), dtype=np.bool_)
@@ -109,7 +109,7 @@ def changes(y: FloatArray) -> list[Change]:
             break
         worst = max(found, key=lambda one: abs(one.gain - 1.0) / max(1.0, abs(one.gain)))
         start, stop = (np.array([worst.start, worst.stop]) * y.shape[1]) // PARTS
-        out.append(Change(worst.row, int(start), int(stop), worst.gain, worst.certain))
+        out.append(SensorChange(worst.row, int(start), int(stop), worst.gain, worst.certain))
         if not worst.certain:
             break
         rows.remove(worst.row)
@@ -143,7 +143,7 @@ def _present(y: FloatArray) -> BoolArray:
     return np.array([part.mean(axis=1) for part in parts]).T >= PRESENT
 
 
-def _change(bands: list[ComplexArray], there: BoolArray, rows: list[int], i: int) -> Change | None:
+def _change(bands: list[ComplexArray], there: BoolArray, rows: list[int], i: int) -> SensorChange | None:
     """Return the change of channel i, in parts, in the first band in which the others explain it well."""
     best: _Against | None = None
     for z in bands:
@@ -221,7 +221,7 @@ def _most_alike(x: ComplexArray, own: ComplexArray, n: int) -> IntArray:
     return np.sort(np.argsort(-subspace_mac)[: max(n, 1)])
 
 
-def _split(i: int, seen: _Against, *, certain: bool) -> Change | None:
+def _split(i: int, seen: _Against, *, certain: bool) -> SensorChange | None:
     """Return the change where two gains explain the channel best; None if one does as well.
 
     The part in which the change lies belongs to neither side.
@@ -241,7 +241,7 @@ def _split(i: int, seen: _Against, *, certain: bool) -> Change | None:
         return None
     ratio, worse_is_left = gain
     start, stop = (0, k + 1) if worse_is_left else (k, PARTS)
-    return Change(i, start, stop, ratio, certain or ratio == 0.0)
+    return SensorChange(i, start, stop, ratio, certain or ratio == 0.0)
 
 
 def _gain_of_the_worse(left: _Against, right: _Against, *, first: bool) -> tuple[float, bool] | None:

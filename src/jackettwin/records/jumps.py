@@ -14,7 +14,7 @@ SIGMAS = 6.0
 
 
 @dataclass(frozen=True)
-class Step:
+class ClockStep:
     """A step of some series between two runs of windows.
 
     Attributes
@@ -73,7 +73,7 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
     return [(a, b) for a, b in pairwise(edges) if b > a]
 
 
-def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[Step]:
+def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[ClockStep]:
     """Return the steps between runs; a run of one window is the one in which a step lies."""
     tolerance = _tolerance(series, reach)
     kept = [run for run in between if run[1] - run[0] > 1] or between
@@ -82,7 +82,7 @@ def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> l
         by = np.median(series[slice(*after)], axis=0) - np.median(series[slice(*before)], axis=0)
         rows = tuple(int(i) for i in np.flatnonzero(np.abs(by) > tolerance))
         if rows:
-            out.append(Step(rows, by, before[1], after[0]))
+            out.append(ClockStep(rows, by, before[1], after[0]))
     return out
 
 

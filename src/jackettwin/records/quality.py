@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, sensor_polarity
-from jackettwin.records.changes import Change, changes, described
+from jackettwin.records.changes import SensorChange, changes, described
 from jackettwin.records.clock_findings import clock_findings, clocks_of, in_step
 from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
 from jackettwin.records.record import LARGEST
@@ -122,7 +122,7 @@ def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
     return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
 
 
-def _changed(record: Record, slow_free: FloatArray) -> dict[int, Change]:
+def _changed(record: Record, slow_free: FloatArray) -> dict[int, SensorChange]:
     """Return by row the vibration channels that change while the record runs."""
     rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
     return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(slow_free[rows])}
@@ -135,7 +135,7 @@ def _judge(
     spikes: BoolArray,
     slow_free: FloatArray,
     sign: bool | None,
-    change: Change | None,
+    change: SensorChange | None,
 ) -> tuple[ChannelQuality, BoolArray, list[Finding]]:
     """Return the quality of one channel, its suspect samples and its findings."""
     channel, y = record.channels[i], record.data[i]

@@ -51,7 +51,7 @@ PARALLEL = 0.98
 
 
 @dataclass(frozen=True)
-class Together:
+class SharedMotion:
     """How parallel channels move together.
 
     Attributes
@@ -76,14 +76,14 @@ class Together:
 
 
 @dataclass(frozen=True)
-class Group:
+class ParallelChannels:
     """Parallel channels at one place (``heights`` is None), or at several heights of a tower."""
 
-    seen: Together
+    seen: SharedMotion
     heights: list[float] | None = None
 
 
-def parallel_groups(record: Record, y: FloatArray) -> Iterator[Group]:
+def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]:
     """Yield the parallel accelerations whose places say how they move together.
 
     Parameters
@@ -98,14 +98,14 @@ def parallel_groups(record: Record, y: FloatArray) -> Iterator[Group]:
             continue
         spectra = windowed_spectra(y[rows] * senses[:, None])
         for together in _one_place(places):
-            yield Group(_together(rows, together, spectra))
+            yield ParallelChannels(_together(rows, together, spectra))
         tower = [k for k, place in enumerate(places) if isinstance(place, float)]
         if len({places[k] for k in tower}) > 1:
             heights = [place for k in tower if isinstance(place := places[k], float)]
-            yield Group(_together(rows, tower, spectra), heights)
+            yield ParallelChannels(_together(rows, tower, spectra), heights)
 
 
-def swapped(record: Record, groups: Sequence[Group]) -> dict[str, bool]:
+def swapped(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, bool]:
     """Return channels that move against parallel ones: True if it is certainly they, False if in doubt.
 
     Parameters
@@ -218,7 +218,7 @@ def _one_place(places: list[str | float | None]) -> Iterator[list[int]]:
             yield group
 
 
-def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> Together:
+def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> SharedMotion:
     picked, spectra = [rows[k] for k in chosen], all_spectra[chosen]
     peak = strongest_line(spectra)
     n_bands = max(int(np.log((spectra.shape[1] - 1) / LEAST_CYCLES) / np.log(WIDTH)), 0)
@@ -226,10 +226,10 @@ def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> 
     bands = [((a + b) / 2.0, band_coherency(spectra[:, a:b])) for a, b in pairwise(edges)]
     inside = around(spectra, peak)
     size = np.linalg.norm(inside, axis=1)
-    return Together(picked, float(peak), size, band_coherency(inside), bands)
+    return SharedMotion(picked, float(peak), size, band_coherency(inside), bands)
 
 
-def one_motion(seen: Together) -> bool:
+def one_motion(seen: SharedMotion) -> bool:
     """Tell whether channels show one motion up to size and sign: in four bands, nowhere with another sign."""
     coherencies = np.array([coherency for _, coherency in seen.bands])
     clear = np.abs(coherencies) > CERTAIN
@@ -237,14 +237,14 @@ def one_motion(seen: Together) -> bool:
     return bool(np.all(clear.sum(axis=0) >= FEWEST_BANDS) and np.all(same | (np.abs(coherencies) < UNCLEAR)))
 
 
-def _against_same_place(seen: Together) -> Iterator[tuple[int, bool]]:
+def _against_same_place(seen: SharedMotion) -> Iterator[tuple[int, bool]]:
     """Yield the channels at one place that move against the others wherever they move together at all."""
     minority, certain = against_majority(seen.coherency)
     if minority and one_motion(seen):
         yield from ((i, certain) for i in minority)
 
 
-def _against_tower(seen: Together, heights: list[float]) -> Iterator[tuple[int, bool]]:
+def _against_tower(seen: SharedMotion, heights: list[float]) -> Iterator[tuple[int, bool]]:
     """Yield the channels of a tower that are in counterphase in its first mode."""
     minority, certain = against_majority(seen.coherency)
     if not minority or _beside_the_axis(seen, heights):
@@ -258,7 +258,7 @@ def _against_tower(seen: Together, heights: list[float]) -> Iterator[tuple[int, 
     yield from ((i, certain) for i in minority)
 
 
-def _beside_the_axis(seen: Together, heights: list[float]) -> bool:
+def _beside_the_axis(seen: SharedMotion, heights: list[float]) -> bool:
     """Tell whether sensors at one height do not see the same motion: then not all are on the axis."""
     return any(
         abs(seen.coherency[i, j]) < CERTAIN

@@ -21,7 +21,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.quantities import G0
-from jackettwin.records.sensor_polarity import CERTAIN, Group, Together, one_motion
+from jackettwin.records.sensor_polarity import CERTAIN, ParallelChannels, SharedMotion, one_motion
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record
@@ -73,7 +73,7 @@ class WrongUnit:
         return f"{which} is {size} beside its like: {WORDS[self.factor]}? kept, correct the unit"
 
 
-def wrong_units(record: Record, groups: Sequence[Group]) -> dict[str, WrongUnit]:
+def wrong_units(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, WrongUnit]:
     """Return by name the accelerations that must be in another unit than their like.
 
     Parameters
@@ -85,7 +85,7 @@ def wrong_units(record: Record, groups: Sequence[Group]) -> dict[str, WrongUnit]
     return found | {w.channel: w for w in _by_gravity(record)}
 
 
-def _in_group(record: Record, group: Group) -> Iterator[WrongUnit]:
+def _in_group(record: Record, group: ParallelChannels) -> Iterator[WrongUnit]:
     names = [record.channels[i].name for i in group.seen.rows]
     if np.min(np.abs(group.seen.coherency)) < CERTAIN or np.min(group.seen.size) <= 0.0:
         return
@@ -95,7 +95,7 @@ def _in_group(record: Record, group: Group) -> Iterator[WrongUnit]:
         yield from _on_a_tower(group.seen, np.array(group.heights), names)
 
 
-def _at_one_place(seen: Together, names: list[str]) -> Iterator[WrongUnit]:
+def _at_one_place(seen: SharedMotion, names: list[str]) -> Iterator[WrongUnit]:
     """Yield what is a unit's ratio off the median of three sensors or more, or off the other of two."""
     usual = np.median(seen.size) if len(names) > 2 else np.min(seen.size)
     for name, size in zip(names, seen.size, strict=True):
@@ -104,7 +104,7 @@ def _at_one_place(seen: Together, names: list[str]) -> Iterator[WrongUnit]:
             yield WrongUnit(name, factor, () if len(names) > 2 else tuple(n for n in names if n != name))
 
 
-def _on_a_tower(seen: Together, heights_m: FloatArray, names: list[str]) -> Iterator[WrongUnit]:
+def _on_a_tower(seen: SharedMotion, heights_m: FloatArray, names: list[str]) -> Iterator[WrongUnit]:
     """Yield the one channel that, over a unit's ratio, makes the amplitudes grow smoothly with height."""
     size = np.log(seen.size)
     if np.max(np.abs(_bend(heights_m, size))) < SMOOTH:

@@ -6,6 +6,11 @@ from jackettwin.doors import door
 
 if TYPE_CHECKING:
     from jackettwin.report.build import build_report as build_report
-    from jackettwin.report.page import Plot as Plot, Section as Section, Table as Table, Text as Text
+    from jackettwin.report.page import (
+        Plot as Plot,
+        PageSection as PageSection,
+        PageTable as PageTable,
+        Text as Text,
+    )
 
 door(__name__)

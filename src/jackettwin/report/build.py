@@ -12,7 +12,7 @@ from jackettwin.report import section_appendix as appendix
 from jackettwin.report import section_first as first
 from jackettwin.report import tables_answers as tables
 from jackettwin.report.numbers import fixed
-from jackettwin.report.page import Block, Section, Table, Text, write_figures, write_page
+from jackettwin.report.page import Block, PageSection, PageTable, Text, write_figures, write_page
 from jackettwin.report.section_records import further_records, the_records
 from jackettwin.report.section_structure import the_structure
 from jackettwin.report.sentences import Said, sentences
@@ -49,7 +49,7 @@ def build_report(
 
 def report_sections(
     result: TwinResult, answers: Answers | None = None, provenance: Rows = ()
-) -> list[Section]:
+) -> list[PageSection]:
     """Return the report's sections: verdict, engineer's part, appendix; empty ones are left out."""
     a = answers or answer(result)
     said = sentences(a)
@@ -70,8 +70,8 @@ def report_sections(
         ("Identification", further_records),
         ("Provenance", partial(_provenance, given=provenance)),
     )
-    sections = [Section(title, tuple(make(result))) for title, make in makers]
-    sections += [Section(title, tuple(make(result)), appendix=True) for title, make in after]
+    sections = [PageSection(title, tuple(make(result))) for title, make in makers]
+    sections += [PageSection(title, tuple(make(result)), appendix=True) for title, make in after]
     return [section for section in sections if section.blocks]
 
 
@@ -130,7 +130,7 @@ def _provenance(result: TwinResult, *, given: Rows) -> list[Block]:
         settings.setdefault(_settings(found), []).extend(found.records)
     for chosen, records in settings.items():
         rows += [("identified with, in", ", ".join(records)), *chosen]
-    return [Table("Where do the numbers come from?", ("what", "value"), tuple(rows), 2)]
+    return [PageTable("Where do the numbers come from?", ("what", "value"), tuple(rows), 2)]
 
 
 def _conditions(record: Observation) -> str:

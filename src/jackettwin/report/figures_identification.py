@@ -87,7 +87,7 @@ def stabilisation_damping(found: Identification, names: Sequence[str]) -> go.Fig
     return figure.update_layout(yaxis={"range": [0.0, highest], "tickvals": list(range(0, top + 1, 10))})
 
 
-def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Look) -> None:
+def _bar(figure: go.Figure, mode: ModalEstimate, y: float, look: style.Appearance) -> None:
     """Draw the 95 % interval of a mode's damping as a bar."""
     bounds = damping_interval(mode)
     if bounds is None:

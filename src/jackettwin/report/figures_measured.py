@@ -24,7 +24,7 @@ _LEAST_SIZE = 0.1
 
 
 @dataclass(frozen=True)
-class Places:
+class SensorLayout:
     """Where the sensors sit: places from the lowest up, and the channels of each.
 
     Attributes
@@ -40,7 +40,7 @@ class Places:
     direction: FloatArray
 
     @classmethod
-    def of(cls, channels: Sequence[Channel]) -> Places:
+    def of(cls, channels: Sequence[Channel]) -> SensorLayout:
         """Return the places of the channels, all of which must say their height."""
         heights = [float(c.height_m) for c in channels if c.height_m is not None]
         order = sorted(set(heights))
@@ -63,7 +63,7 @@ def measured_shapes_3d(channels: Sequence[Channel], modes: Sequence[tuple[str, M
     modes : sequence of (label, mode)
         Labels may be empty.
     """
-    places = Places.of(channels)
+    places = SensorLayout.of(channels)
     size = max(float(np.ptp(places.height)), _LEAST_SIZE)
     figure = go.Figure()
     for i, (label, mode) in enumerate(modes):
@@ -83,12 +83,12 @@ def measured_shapes_3d(channels: Sequence[Channel], modes: Sequence[tuple[str, M
     return _lay_out(figure, places, size, modes)
 
 
-def _now(places: Places, mode: ModalEstimate, size: float, theta: float) -> FloatArray:
+def _now(places: SensorLayout, mode: ModalEstimate, size: float, theta: float) -> FloatArray:
     turned = places.motion(mode.mode_shape) * np.exp(1j * theta)
     return np.asarray(turned.real * _SWAY * size)
 
 
-def _line(places: Places, shift: FloatArray, label: str, *, first: bool = False) -> go.Scatter3d:
+def _line(places: SensorLayout, shift: FloatArray, label: str, *, first: bool = False) -> go.Scatter3d:
     colour = style.mode_look(label).colour if label else style.PALE
     return go.Scatter3d(
         x=shift[:, 0],
@@ -104,7 +104,7 @@ def _line(places: Places, shift: FloatArray, label: str, *, first: bool = False)
 
 
 def _lay_out(
-    figure: go.Figure, places: Places, size: float, modes: Sequence[tuple[str, ModalEstimate]]
+    figure: go.Figure, places: SensorLayout, size: float, modes: Sequence[tuple[str, ModalEstimate]]
 ) -> go.Figure:
     n_columns = min(len(modes), _COLUMNS)
     n_rows = -(-len(modes) // n_columns)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from jackettwin.report.figures_follow import parameters_through_time
-from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
+from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
 from jackettwin.twin.followed import Followed
 from jackettwin.version import __version__
 
@@ -23,15 +23,15 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
         "slope of all stiffness, 90 %, fitted to the data of all days at once."
     )
     sections = [
-        Section(
+        PageSection(
             "Drift",
             (
                 Text((followed.statement,)),
                 Plot("parameters_through_time", caption, parameters_through_time(followed)),
             ),
         ),
-        Section("Days", (_table(followed),)),
-        *([Section("Warnings", (Text(followed.warnings, "warnings"),))] if followed.warnings else []),
+        PageSection("Days", (_table(followed),)),
+        *([PageSection("Warnings", (Text(followed.warnings, "warnings"),))] if followed.warnings else []),
     ]
     return write_page(
         sections,
@@ -51,7 +51,7 @@ def _table(followed: Followed) -> Block:
             low, high = day.interval_90[name]
             cells.append(f"{day.median[name]:.3g} ({low:.3g} to {high:.3g})")
         rows.append((f"{day.time_utc:%Y-%m-%d}", str(day.records), day.status, *cells))
-    return Table(
+    return PageTable(
         "What was known after each day? Median and 90 % interval of every parameter.",
         ("day (UTC)", "records", "posterior", *units),
         tuple(rows),

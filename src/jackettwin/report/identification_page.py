@@ -13,7 +13,7 @@ from jackettwin.records.yaw import knows_yaw
 from jackettwin.report import figures_measured, figures_record, section_records
 from jackettwin.report import tables_records as tables
 from jackettwin.report.figures_components import shape_components
-from jackettwin.report.page import Block, Plot, Section, Text, write_page
+from jackettwin.report.page import Block, PageSection, Plot, Text, write_page
 from jackettwin.twin import Examination
 from jackettwin.version import __version__
 
@@ -32,10 +32,10 @@ def build_identification_page(seen: Examination, path: Path) -> Path:
     found = seen.identification
     names = mode_names(seen)
     sections = [
-        Section("Record", tuple(_record(seen, names))),
-        Section("Modes", tuple(_modes(seen, names))),
-        Section("Mode shapes", tuple(_shapes(found, names))),
-        Section("Warnings", (Text(found.warnings, "warnings"),) if found.warnings else ()),
+        PageSection("Record", tuple(_record(seen, names))),
+        PageSection("Modes", tuple(_modes(seen, names))),
+        PageSection("Mode shapes", tuple(_shapes(found, names))),
+        PageSection("Warnings", (Text(found.warnings, "warnings"),) if found.warnings else ()),
     ]
     return write_page(
         [section for section in sections if section.blocks],

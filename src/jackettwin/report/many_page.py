@@ -9,8 +9,8 @@ from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.report.figures_subspace_mac import interval_history
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
-from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
-from jackettwin.twin.groups import Group
+from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.twin.groups import RecordGroup
 from jackettwin.twin.observe_files import Failed
 from jackettwin.twin.together import Together
 from jackettwin.version import __version__
@@ -28,10 +28,10 @@ def build_many_page(together: Together, failed: tuple[Failed, ...], path: Path) 
     """
     fused = together.fused
     sections = [
-        Section("Modes", tuple(_modes(fused)) if fused is not None else ()),
-        Section("Groups", (_groups(together.groups),) if len(together.groups) > 1 else ()),
-        Section("Warnings", (Text(together.warnings, "warnings"),) if together.warnings else ()),
-        Section("Not identified", (_failures(failed),) if failed else ()),
+        PageSection("Modes", tuple(_modes(fused)) if fused is not None else ()),
+        PageSection("Groups", (_groups(together.groups),) if len(together.groups) > 1 else ()),
+        PageSection("Warnings", (Text(together.warnings, "warnings"),) if together.warnings else ()),
+        PageSection("Not identified", (_failures(failed),) if failed else ()),
     ]
     n = len(fused.records) if fused is not None else 0
     return write_page(
@@ -61,7 +61,7 @@ def _modes(fused: FusedIdentification) -> list[Block]:
     ]
 
 
-def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
+def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> PageTable:
     rows = [
         (words(label), *_numbers(mode), fixed(100.0 * len(mode.sightings) / n_records, 0), *_scatter(mode))
         for label, mode in named
@@ -80,10 +80,10 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
         "Modes fused over all records. ± is one standard deviation of the mean; scatter is that between "
         "records beyond their own uncertainty."
     )
-    return Table(caption, columns, tuple(rows))
+    return PageTable(caption, columns, tuple(rows))
 
 
-def _groups(groups: tuple[Group, ...]) -> Table:
+def _groups(groups: tuple[RecordGroup, ...]) -> PageTable:
     rows = []
     for group in groups:
         where = (_range(group.wind_speed_m_s), _range(group.yaw_deg), group.state or UNKNOWN)
@@ -98,16 +98,16 @@ def _groups(groups: tuple[Group, ...]) -> Table:
         "ζ [%]",
         "95 % of ζ [%]",
     )
-    return Table("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
+    return PageTable("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
 
 
-def _failures(failed: tuple[Failed, ...]) -> Table:
+def _failures(failed: tuple[Failed, ...]) -> PageTable:
     rows = [(one.record, one.problem) for one in failed[:_SHOWN_FAILURES]]
     more = len(failed) - len(rows)
     caption = f"{count(len(failed), 'record')} could not be identified" + (
         f"; {more} more are in the JSON." if more else "."
     )
-    return Table(caption, ("record", "problem"), tuple(rows), 2)
+    return PageTable(caption, ("record", "problem"), tuple(rows), 2)
 
 
 def _numbers(mode: FusedMode) -> tuple[str, ...]:

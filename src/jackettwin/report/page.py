@@ -27,7 +27,7 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """Cells as they are printed; columns whose name ends in a unit are set as numbers."""
 
     caption: str
@@ -106,11 +106,11 @@ class Embedded:
         return packed(self.html)
 
 
-Block = Text | Table | Plot | Drawing | FirstPage | Embedded
+Block = Text | PageTable | Plot | Drawing | FirstPage | Embedded
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A heading and what stands under it."""
 
     title: str
@@ -123,13 +123,13 @@ class Section:
         return "".join(c if c.isalnum() else "-" for c in self.title.lower()).strip("-")
 
 
-def write_page(sections: Sequence[Section], path: Path, *, title: str, subtitle: str = "") -> Path:
+def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subtitle: str = "") -> Path:
     """Write one self-contained HTML file; the plotting library only where something is plotted."""
     library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
     return _write("page.html.j2", path, sections=sections, title=title, subtitle=subtitle, plotly=library)
 
 
-def write_figures(sections: Sequence[Section], directory: Path) -> None:
+def write_figures(sections: Sequence[PageSection], directory: Path) -> None:
     """Write every figure as a file of its own: pages beside one shared ``plotly.min.js``, drawings as SVG."""
     for drawing in _drawings(sections):
         for i, svg in enumerate(drawing.drawings, start=1):
@@ -145,7 +145,7 @@ def write_figures(sections: Sequence[Section], directory: Path) -> None:
         _write("figure.html.j2", directory / f"{plot.name}.html", plot=plot, title=plot.name)
 
 
-def _drawings(sections: Iterable[Section]) -> Iterable[Drawing]:
+def _drawings(sections: Iterable[PageSection]) -> Iterable[Drawing]:
     for section in sections:
         for block in section.blocks:
             if isinstance(block, Drawing):
@@ -154,7 +154,7 @@ def _drawings(sections: Iterable[Section]) -> Iterable[Drawing]:
                 yield from block.drawings
 
 
-def _plots(sections: Iterable[Section]) -> Iterable[Plot]:
+def _plots(sections: Iterable[PageSection]) -> Iterable[Plot]:
     return (block for section in sections for block in section.blocks if isinstance(block, Plot))
 
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from jackettwin.report import figures_posterior as draw
 from jackettwin.report import tables_updating as tables
 from jackettwin.report.numbers import UNKNOWN, fixed, words
-from jackettwin.report.page import Block, Plot, Table, Text
+from jackettwin.report.page import Block, PageTable, Plot, Text
 from jackettwin.twin import TwinResult
 from jackettwin.updating import Update
 from jackettwin.updating.law_choice import recommended
@@ -77,7 +77,7 @@ def _status(k: Uncertainty) -> str:
     )
 
 
-def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> Table:
+def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> PageTable:
     q, labels = k.predictive, {m.mode: m.label for m in result.measured}
     rows = [
         (
@@ -89,7 +89,9 @@ def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> Table:
         for i, mode in enumerate(q.modes)
     ]
     columns = ("mode", "f [Hz]", "undamped f [Hz]", "ζ [%]")
-    return Table(f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1)
+    return PageTable(
+        f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1
+    )
 
 
 def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.report.numbers import UNKNOWN, fixed, words
-from jackettwin.report.page import Block, Embedded, Table
+from jackettwin.report.page import Block, Embedded, PageTable
 from jackettwin.report.view import View, render_view, thickness_quantities
 from jackettwin.report.view_motions import damped_motion
 from jackettwin.twin import TwinResult
@@ -38,7 +38,7 @@ def _view(result: TwinResult) -> View:
     return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
 
 
-def structure_table(result: TwinResult) -> Table:
+def structure_table(result: TwinResult) -> PageTable:
     """Return what the structure is made of, part by part."""
     mesh, structure = result.assembly.mesh, result.assembly.structure
     p = mesh.properties
@@ -67,7 +67,7 @@ def structure_table(result: TwinResult) -> Table:
     caption = "What is the structure made of?"
     if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
         caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
-    return Table(caption, columns, tuple(rows))
+    return PageTable(caption, columns, tuple(rows))
 
 
 def _range(values: list[float], decimals: int) -> str:

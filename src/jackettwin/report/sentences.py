@@ -44,7 +44,7 @@ _GERUNDS = {
 
 
 @dataclass(frozen=True)
-class Question:
+class AnsweredQuestion:
     """A question of the first page: its answer in one or two sentences, and what else there is to say."""
 
     title: str
@@ -57,7 +57,7 @@ class Said:
     """The first page in words."""
 
     headline: tuple[str, ...]
-    questions: tuple[Question, ...]
+    questions: tuple[AnsweredQuestion, ...]
 
 
 def sentences(a: Answers) -> Said:
@@ -65,11 +65,11 @@ def sentences(a: Answers) -> Said:
     return Said(
         tuple(filter(None, _headline(a))),
         (
-            Question("Is the model right?", *_model(a)),
-            Question("How stiff and how damped is the ground?", *_ground(a)),
-            Question("Whose damping is it?", *_owners(a)),
-            Question("How far can this be trusted?", (*_trust(a), *_law(a))),
-            Question("What to do next?", *_next(a)),
+            AnsweredQuestion("Is the model right?", *_model(a)),
+            AnsweredQuestion("How stiff and how damped is the ground?", *_ground(a)),
+            AnsweredQuestion("Whose damping is it?", *_owners(a)),
+            AnsweredQuestion("How far can this be trusted?", (*_trust(a), *_law(a))),
+            AnsweredQuestion("What to do next?", *_next(a)),
         ),
     )
 

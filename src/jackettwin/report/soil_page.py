@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.report import style
-from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
+from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
 from jackettwin.version import __version__
 
 _SHOWN = 6
@@ -27,12 +27,12 @@ def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
     OSError
         If the file cannot be written.
     """
-    sections = [Section("Head", _head(document))]
+    sections = [PageSection("Head", _head(document))]
     if document["curves"] is not None:
-        sections.append(Section("Capacity", _capacity(document)))
-        sections.append(Section("Curves", _curves(document["curves"])))
+        sections.append(PageSection("Capacity", _capacity(document)))
+        sections.append(PageSection("Curves", _curves(document["curves"])))
     if document["warnings"]:
-        sections.append(Section("Warnings", (Text(tuple(document["warnings"]), "warnings"),)))
+        sections.append(PageSection("Warnings", (Text(tuple(document["warnings"]), "warnings"),)))
     pile = document["pile"]
     return write_page(
         sections,
@@ -46,7 +46,7 @@ def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
 def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
     f = document["frequency_hz"]
     return tuple(
-        Table(
+        PageTable(
             f"{title} of the pile's head at {f:g} Hz [N/m, N, N·m/rad].",
             ("", *_NAMES),
             tuple(
@@ -77,9 +77,9 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
     )
     caption = f"A lateral load {pushed['arm_m']:g} m above the free head, step by step."
     return (
-        Table("Ultimate loads.", ("", "[MN]"), tuple((name, f"{1e-6 * v:.2f}") for name, v in rows)),
+        PageTable("Ultimate loads.", ("", "[MN]"), tuple((name, f"{1e-6 * v:.2f}") for name, v in rows)),
         Plot("pushover", caption, _pushover(pushed)),
-        Table(
+        PageTable(
             "The same in numbers.",
             ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]"),
             table,
@@ -115,14 +115,14 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
     )
     return (
         Plot("curves", "Reaction per metre of pile at some depths.", _drawn(stations)),
-        Table(
+        PageTable(
             "Every station.",
             ("depth [m]", "p_u [kN/m]", "t_max [kN/m]", "p-y stiffness [MN/m²]", "t-z stiffness [MN/m²]"),
             rows,
             text_columns=0,
             folded=True,
         ),
-        Table(
+        PageTable(
             "Tip: reaction against displacement.",
             ("z [mm]", "q [MN]"),
             tuple(

@@ -18,7 +18,7 @@ SCALE = "Cividis"
 """Colour scale of quantities: monotone in grey, and the same to colour-blind eyes."""
 
 
-class Look(NamedTuple):
+class Appearance(NamedTuple):
     """Colour, marker and dash of one thing: any one of them tells it apart."""
 
     colour: str
@@ -30,10 +30,10 @@ _LAWS = dict(
     zip(
         FAMILIES,
         (
-            Look(ORANGE, "square", "dash"),
-            Look(SKY, "diamond", "dot"),
-            Look(PURPLE, "triangle-up", "solid"),
-            Look(GREEN, "cross", "dashdot"),
+            Appearance(ORANGE, "square", "dash"),
+            Appearance(SKY, "diamond", "dot"),
+            Appearance(PURPLE, "triangle-up", "solid"),
+            Appearance(GREEN, "cross", "dashdot"),
         ),
         strict=False,
     )
@@ -57,12 +57,12 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
 _VARIANTS = ("", "-open", "-open-dot", "-dot")
 
 
-def law_look(law: str) -> Look:
+def law_look(law: str) -> Appearance:
     """Return the look of a support law, the same on the whole page."""
-    return _LAWS.get(law, Look(GREY, "x", "longdash"))
+    return _LAWS.get(law, Appearance(GREY, "x", "longdash"))
 
 
-def mode_look(label: str) -> Look:
+def mode_look(label: str) -> Appearance:
     """Return the look of a mode from its label ``kind_number``: colour by kind, fill and dash by number.
 
     ``mode_3``, whose kind is not known, has its colour by number; what has no number is grey.
@@ -72,9 +72,9 @@ def mode_look(label: str) -> Look:
     if kind == "mode" and number.isdigit():
         turn, place = divmod(order - 1, len(_UNNAMED))
         colour, symbol = _UNNAMED[place]
-        return Look(colour, symbol + _VARIANTS[turn % 4], _DASHES[turn % 4])
+        return Appearance(colour, symbol + _VARIANTS[turn % 4], _DASHES[turn % 4])
     colour, symbol = _KINDS.get(kind, (GREY, "x"))
-    return Look(colour, symbol + _VARIANTS[(order - 1) % 4], _DASHES[(order - 1) % 4])
+    return Appearance(colour, symbol + _VARIANTS[(order - 1) % 4], _DASHES[(order - 1) % 4])
 
 
 def direction_colour(direction: tuple[float, float, float]) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from jackettwin.answers.result import Answers, Span
 from jackettwin.report.numbers import UNKNOWN, fixed, parameter_words, words
-from jackettwin.report.page import Table
+from jackettwin.report.page import PageTable
 from jackettwin.report.sentences import span_words, step_words
 from jackettwin.twin import TwinResult
 from jackettwin.updating.budget import SOURCES
 
 
-def modes_table(a: Answers, result: TwinResult) -> Table:
+def modes_table(a: Answers, result: TwinResult) -> PageTable:
     """Return every measured mode beside the design and the updated model."""
     rows = []
     for mode, m in zip(a.modes, result.measured, strict=True):
@@ -43,7 +43,7 @@ def modes_table(a: Answers, result: TwinResult) -> Table:
         f"Does the model meet what was measured? Beneath each value its 90 % interval; updated: "
         f"{a.law or 'no law'}. MAC: how alike measured and modelled shapes are."
     )
-    return Table(caption, columns, tuple(rows), 2)
+    return PageTable(caption, columns, tuple(rows), 2)
 
 
 def _cell(span: Span | None, factor: float, decimals: int) -> str:
@@ -55,7 +55,7 @@ def _cell(span: Span | None, factor: float, decimals: int) -> str:
     return f"{text}\n{fixed(factor * span.low, decimals)} – {fixed(factor * span.high, decimals)}"
 
 
-def ground_table(a: Answers) -> Table:
+def ground_table(a: Answers) -> PageTable:
     """Return what is known of every parameter of the ground, and why."""
     verdicts = {"identified": "known", "weak": "known roughly", "unidentified": "not known", "": UNKNOWN}
     rows = tuple(
@@ -69,7 +69,7 @@ def ground_table(a: Answers) -> Table:
         f"What is known of the ground ({a.law})? Of a foot. In brackets 90 %; factor: its upper over its "
         f"lower end. Known: {a.usable:g} or less, by the data alone."
     )
-    return Table(caption, columns, rows, 3)
+    return PageTable(caption, columns, rows, 3)
 
 
 def _ranged(span: Span | None, unit: str) -> str:
@@ -81,7 +81,7 @@ def _ranged(span: Span | None, unit: str) -> str:
     return f"{value}\n({interval}"
 
 
-def laws_table(a: Answers) -> Table:
+def laws_table(a: Answers) -> PageTable:
     """Return every law that was fitted, its probability and its misfit."""
     rows = tuple(
         (
@@ -99,10 +99,10 @@ def laws_table(a: Answers) -> Table:
     }[a.probability_from]
     caption = f"Which law? Probability of each, all equally likely before: {source}."
     marked = frozenset(i for i, law in enumerate(a.laws) if law.locked)
-    return Table(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
+    return PageTable(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
 
 
-def budget_table(a: Answers) -> Table:
+def budget_table(a: Answers) -> PageTable:
     """Return each mode's damping by source."""
     sources = [s for s in SOURCES if any(s in m.sources for m in a.modes)]
     names = {"structure": "steel", "soil": "ground"}
@@ -119,10 +119,10 @@ def budget_table(a: Answers) -> Table:
     caption = (
         "Who damps which mode by how much? Beneath each value its 90 % interval; sources at the best fit."
     )
-    return Table(caption, columns, rows, 1)
+    return PageTable(caption, columns, rows, 1)
 
 
-def next_table(a: Answers) -> Table:
+def next_table(a: Answers) -> PageTable:
     """Return what each further measurement would make of what is not known."""
     names = [g.name for g in a.ground if g.verdict in ("weak", "unidentified")]
     now = {g.name: g.factor for g in a.ground}
@@ -132,7 +132,7 @@ def next_table(a: Answers) -> Table:
         "What would make the ground known? Factor between the ends of each 90 % interval, as expected; "
         f"{a.usable:g} or less counts as known."
     )
-    return Table(
+    return PageTable(
         caption, ("measurement", *(f"{parameter_words(name)} [-]" for name in names)), tuple(rows), 1
     )
 

@@ -11,12 +11,12 @@ from jackettwin.identification.comparison import Comparison
 from jackettwin.report.figures_identification import damping_interval, frequency_interval
 from jackettwin.report.figures_record import plain
 from jackettwin.report.numbers import UNKNOWN, count, fixed, frequency, interval, percent, scientific, words
-from jackettwin.report.page import Table
+from jackettwin.report.page import PageTable
 from jackettwin.twin import Examination, TwinResult
 from jackettwin.twin.held import unpaired_finding
 
 
-def quality_table(seen: Examination) -> Table:
+def quality_table(seen: Examination) -> PageTable:
     """Return how good each channel of a record is."""
     channels = {channel.name: channel for channel in seen.record.channels}
     rows = []
@@ -40,10 +40,10 @@ def quality_table(seen: Examination) -> Table:
         "clipped [%]",
     )
     whole = "".join(f" {f.text[0].upper()}{f.text[1:]}." for f in seen.quality.findings if f.channel is None)
-    return Table(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
+    return PageTable(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
 
 
-def method_table(compared: Comparison, names: Sequence[str]) -> Table:
+def method_table(compared: Comparison, names: Sequence[str]) -> PageTable:
     """Return f and ζ of each mode by every method side by side."""
     titles = {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}
 
@@ -69,10 +69,10 @@ def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     )
     caption += "".join(f" {titles[method]} not applied: {why}." for method, why in compared.refused.items())
     columns = ("mode", "reported", *(titles[method] for method in compared.modes))
-    return Table(caption, columns, tuple(rows))
+    return PageTable(caption, columns, tuple(rows))
 
 
-def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:
+def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> PageTable:
     """Return the identified modes of a record with their 95 % intervals."""
     rows = [
         (
@@ -105,7 +105,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
             " Least ±: what a record of this length allows at best, by the long-data law √(1/2πζfT) and by "
             "the Cramér-Rao bound of the fitted spectrum."
         )
-    return Table(caption, columns, tuple(rows), 2, folded=folded)
+    return PageTable(caption, columns, tuple(rows), 2, folded=folded)
 
 
 def _limits(m: ModalEstimate) -> str:
@@ -116,7 +116,7 @@ def _limits(m: ModalEstimate) -> str:
     return " / ".join(UNKNOWN if bound is None else fixed(100.0 * bound, 0) for bound in bounds)
 
 
-def records_table(result: TwinResult) -> Table:
+def records_table(result: TwinResult) -> PageTable:
     """Return every named mode in every record: which is which, and how far the records agree."""
     found = [
         dict(zip(names, seen.modes, strict=True))
@@ -134,17 +134,17 @@ def records_table(result: TwinResult) -> Table:
     ]
     records = [name for seen in result.identifications for name in seen.records]
     caption = "Which mode is which in every record: f [Hz] / ζ [%]; a dash where it was not found."
-    return Table(caption, ("mode", *records), tuple(rows))
+    return PageTable(caption, ("mode", *records), tuple(rows))
 
 
-def rejected_table(found: Identification) -> Table:
+def rejected_table(found: Identification) -> PageTable:
     """Return the candidates that were not accepted, each with its reason."""
     rows = [(r.reason, frequency(r.frequency_hz), percent(r.damping_ratio)) for r in found.rejected]
     caption = f"{count(len(rows), 'candidate').capitalize()} not accepted as a mode, with the reasons"
-    return Table(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
+    return PageTable(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
 
 
-def pairing_table(result: TwinResult) -> Table:
+def pairing_table(result: TwinResult) -> PageTable:
     """Return which identified mode is which of the model, and why the others are none of them."""
     rows = [
         (
@@ -173,7 +173,7 @@ def pairing_table(result: TwinResult) -> Table:
         "ζ fitted",
         "held against",
     )
-    return Table(
+    return PageTable(
         "Which identified mode is which: the modal assurance criterion at the sensors, on the feet that make "
         "the model most like the records; for modes closer than 6 % in frequency, whose measured shapes mix, "
         "the share of the shape in the plane of the pair.",

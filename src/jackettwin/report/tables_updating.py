@@ -9,15 +9,15 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
-from jackettwin.report.page import Table
+from jackettwin.report.page import PageTable
 from jackettwin.soil.parameter import Parameter
 from jackettwin.twin import TwinResult
-from jackettwin.twin.truth import TrueMode, TrueParameter
+from jackettwin.twin.truth import StatedMode, TrueParameter
 from jackettwin.updating import Update
 from jackettwin.updating.law_choice import recommended
 
 
-def key_table(result: TwinResult) -> Table:
+def key_table(result: TwinResult) -> PageTable:
     """Return measured against updated, one row a mode."""
     columns = ["mode", "no.", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
     columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
@@ -30,14 +30,14 @@ def key_table(result: TwinResult) -> Table:
         row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
         rows.append(tuple(row))
     caption = "Does each law meet the modes (best fit)? In brackets: not fitted; ± one standard deviation."
-    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
+    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
 def _mark(text: str, fitted: bool) -> str:
     return text if fitted or text == UNKNOWN else f"({text})"
 
 
-def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
+def truth_table(result: TwinResult, stated: tuple[StatedMode, ...]) -> PageTable:
     """Return the true modes that the records state beside the measured and the updated ones."""
     shown = [u for u in [recommended(result.updates)] if u is not None]
     columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in shown)]
@@ -55,10 +55,10 @@ def truth_table(result: TwinResult, stated: tuple[TrueMode, ...]) -> Table:
     caption = (
         "Is it true? What these records state of their asset, the mean over them, beside what was found."
     )
-    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
+    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
-def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
+def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> PageTable:
     """Return the true parameters of the support beside the updated ones."""
     rows = [
         (
@@ -72,7 +72,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
         for p in parameters
     ]
     columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
-    return Table(
+    return PageTable(
         "Are the parameters true? Those the records state beside those found, SI units.",
         columns,
         tuple(rows),
@@ -80,7 +80,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
     )
 
 
-def damped_undamped_table(result: TwinResult) -> Table:
+def damped_undamped_table(result: TwinResult) -> PageTable:
     """Return damped and undamped frequencies side by side, law by law."""
     columns = ["mode"]
     for u in result.updates:
@@ -91,10 +91,10 @@ def damped_undamped_table(result: TwinResult) -> Table:
         pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
         rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
     caption = "Is a damper locked? Damped and undamped frequencies of the full updated model."
-    return Table(caption, tuple(columns), tuple(rows))
+    return PageTable(caption, tuple(columns), tuple(rows))
 
 
-def relaxation_table(result: TwinResult) -> Table:
+def relaxation_table(result: TwinResult) -> PageTable:
     """Return measured real poles beside the updated model's nearest."""
     rows = []
     for i, r in enumerate(result.relaxations):
@@ -117,7 +117,7 @@ def relaxation_table(result: TwinResult) -> Table:
     caption = (
         "Real poles exp(−at): measured rates beside those of the updated model, nearest by rate and shape."
     )
-    return Table(caption, columns, tuple(rows), text_columns=2)
+    return PageTable(caption, columns, tuple(rows), text_columns=2)
 
 
 def _interval(draws: FloatArray) -> tuple[float, float]:
@@ -125,7 +125,7 @@ def _interval(draws: FloatArray) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def parameter_table(updates: Sequence[Update]) -> Table:
+def parameter_table(updates: Sequence[Update]) -> PageTable:
     """Return the updated support parameters."""
     rows = []
     for u in updates:
@@ -148,7 +148,7 @@ def parameter_table(updates: Sequence[Update]) -> Table:
                 )
             )
     columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
-    return Table(
+    return PageTable(
         "What are each law's parameters at its best fit? Intervals are the posterior's, whose median is the "
         "value stated everywhere else. c_fore_aft, c_side_side: the rotor's dashpot.",
         columns,
@@ -163,7 +163,7 @@ def _prior(p: Parameter) -> str:
     return f"{scientific(p.median)} ×÷ {exp(p.log_std):.2g}"
 
 
-def solutions_table(result: TwinResult, u: Update) -> Table:
+def solutions_table(result: TwinResult, u: Update) -> PageTable:
     """Return every distinct solution of a law, with the modes that took part in the fit."""
     of_solution = u.problem.states[0].residuals.modes
     fitted = [m for m in result.measured if m.mode in of_solution]
@@ -186,7 +186,7 @@ def solutions_table(result: TwinResult, u: Update) -> Table:
         f"{u.law}: are there other solutions? All found, cheapest first, and how many starts ended there; "
         "* on a bound."
     )
-    return Table(caption, columns, tuple(rows), 2, frozenset(marked))
+    return PageTable(caption, columns, tuple(rows), 2, frozenset(marked))
 
 
 def _unit(unit: str) -> str:

@@ -21,7 +21,7 @@ from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.report.view_dimensions import dimensions
-from jackettwin.report.view_motions import Motion
+from jackettwin.report.view_motions import DrawnMotion
 from jackettwin.response.sensors import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 
@@ -30,7 +30,7 @@ _LINES = ("cable", "spring", "beam")
 
 
 @dataclass(frozen=True)
-class Quantity:
+class ColouredQuantity:
     """A number for every element, to colour by; ``log`` spreads values that span decades."""
 
     name: str
@@ -53,8 +53,8 @@ class View:
     """
 
     assembly: Assembly
-    quantities: tuple[Quantity, ...]
-    motions: tuple[Motion, ...] = ()
+    quantities: tuple[ColouredQuantity, ...]
+    motions: tuple[DrawnMotion, ...] = ()
     sensors: tuple[Sensor, ...] = ()
     coefficients: Coefficients | None = None
     flooded: tuple[str, ...] = ()
@@ -136,16 +136,16 @@ def view_document(view: View) -> dict[str, Any]:
     }
 
 
-def thickness_quantities(assembly: Assembly) -> tuple[Quantity, ...]:
+def thickness_quantities(assembly: Assembly) -> tuple[ColouredQuantity, ...]:
     """Return wall thickness, diameter and slenderness of every element."""
     p = assembly.mesh.properties
     D = _diameter(assembly)
     bore = np.sqrt(np.maximum(D**2 - 4.0 * p.A / np.pi, 0.0))
     t = 0.5 * (D - bore)
     return (
-        Quantity("wall thickness", "mm", 1e3 * t, log=True),
-        Quantity("outer diameter", "m", D, log=True),
-        Quantity("diameter over wall", "–", D / t),
+        ColouredQuantity("wall thickness", "mm", 1e3 * t, log=True),
+        ColouredQuantity("outer diameter", "m", D, log=True),
+        ColouredQuantity("diameter over wall", "–", D / t),
     )
 
 

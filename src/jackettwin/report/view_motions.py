@@ -14,7 +14,7 @@ from jackettwin.structure import Assembly
 
 
 @dataclass(frozen=True)
-class Motion:
+class DrawnMotion:
     """Displacements of every node over time as shapes times coordinates.
 
     Attributes
@@ -71,10 +71,10 @@ class Motion:
 _FRAMES = 48
 
 
-def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: FloatArray) -> Motion:
+def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: FloatArray) -> DrawnMotion:
     """Return a standing mode."""
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
-    return Motion(
+    return DrawnMotion(
         name,
         f"{frequency_hz:.4f} Hz, undamped",
         "undamped modes",
@@ -84,13 +84,13 @@ def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: F
     )
 
 
-def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: ComplexArray) -> Motion:
+def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: ComplexArray) -> DrawnMotion:
     """Return a complex mode: its parts do not pass through rest together. Its decay is not drawn."""
     f = abs(eigenvalue) / (2.0 * np.pi)
     theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
     parts = np.stack([shape.real, -shape.imag])
     zeta = -eigenvalue.real / abs(eigenvalue)
-    return Motion(
+    return DrawnMotion(
         name,
         f"{f:.4f} Hz, ζ = {100 * zeta:.2f} %",
         "damped modes",
@@ -100,13 +100,13 @@ def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: Com
     )
 
 
-def wave_motion(assembly: Assembly, passage: Passage) -> Motion:
+def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:
     """Return a wave passing, with the structure at rest under it at every instant."""
     rest = _translations(assembly, passage.displacement)
     # few shapes carry all phases
     u, s, vt = np.linalg.svd(rest, full_matrices=False)
     kept = s > 1e-4 * s[0] if s[0] > 0.0 else np.arange(s.size) < 1
-    return Motion(
+    return DrawnMotion(
         "regular wave",
         f"H {passage.height_m:g} m, T {passage.period_s:g} s, length {passage.length_m:.0f} m, "
         f"towards {np.degrees(passage.direction_rad):.0f}° from +x; quasi-static",
@@ -123,10 +123,10 @@ def wave_motion(assembly: Assembly, passage: Passage) -> Motion:
     )
 
 
-def record_motion(assembly: Assembly, name: str, found: Playback) -> Motion:
+def record_motion(assembly: Assembly, name: str, found: Playback) -> DrawnMotion:
     """Return a record played back."""
     end = found.start_s + found.step_s * len(found.q)
-    return Motion(
+    return DrawnMotion(
         f"record {name}",
         f"{found.start_s:.0f} to {end:.0f} s, {found.shapes.shape[1]} modes",
         "loads and response",

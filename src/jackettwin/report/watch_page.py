@@ -14,7 +14,7 @@ from jackettwin.report.figures_watch import (
     unexplained_through_time,
 )
 from jackettwin.report.numbers import count
-from jackettwin.report.page import Block, Plot, Section, Table, Text, write_page
+from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
 from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.twin.watched_document import alarm_document, statement
 from jackettwin.version import __version__
@@ -36,9 +36,11 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
             "lie if nothing has changed. Orange: when the change began, 90 %; red: the alarm, and its size."
         )
         outcome.append(Plot("unexplained_through_time", caption, unexplained_through_time(watched)))
-    sections.append(Section("Has it changed?", tuple(outcome)))
+    sections.append(PageSection("Has it changed?", tuple(outcome)))
     sections += [
-        Section(f"Change {i}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, alarm, i)))
+        PageSection(
+            f"Change {i}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, alarm, i))
+        )
         for i, alarm in enumerate(watched.alarms, start=1)
     ]
     if watched.looks:
@@ -47,14 +49,14 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
             f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
         )
         sections.append(
-            Section("Evidence", (Plot("evidence_through_time", caption, evidence_through_time(watched)),))
+            PageSection("Evidence", (Plot("evidence_through_time", caption, evidence_through_time(watched)),))
         )
     caption = "What explains how much of the variance of each quantity over the baseline."
     sections.append(
-        Section("What moves the modes", (Plot("explained_shares", caption, explained_shares(watched)),))
+        PageSection("What moves the modes", (Plot("explained_shares", caption, explained_shares(watched)),))
     )
     if watched.limits:
-        sections.append(Section("Limits", (Text(watched.limits, "list"),)))
+        sections.append(PageSection("Limits", (Text(watched.limits, "list"),)))
     return write_page(
         sections,
         path,
@@ -71,7 +73,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
         rows.append((cause["cause"], f"{100.0 * cause['probability']:.1f}", size))
     caption = "Causes, after the data of the change; sizes with 90 % intervals."
     blocks: list[Block] = [
-        Table(caption, ("cause", "probability [%]", "size"), tuple(rows)),
+        PageTable(caption, ("cause", "probability [%]", "size"), tuple(rows)),
         Plot(f"change_pattern_{number}", "Change of each quantity, 90 %.", change_pattern(watched, alarm)),
     ]
     if document["inseparable"]:

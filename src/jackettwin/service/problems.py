@@ -16,7 +16,7 @@ from jackettwin.errors import InputError
 MEDIA_TYPE = "application/problem+json"
 
 
-class Problem(BaseModel):
+class ProblemDocument(BaseModel):
     """What was wrong, where, and what to do."""
 
     model_config = ConfigDict(
@@ -67,7 +67,7 @@ class ApiError(Exception):
         self, status: int, detail: str, *, headers: dict[str, str] | None = None, **members: Any
     ) -> None:
         super().__init__(detail)
-        self.problem = Problem(title=TITLES[status], status=status, detail=detail, **members)
+        self.problem = ProblemDocument(title=TITLES[status], status=status, detail=detail, **members)
         self.headers = headers
 
 
@@ -76,9 +76,9 @@ def no_database() -> ApiError:
     return ApiError(503, "the database does not answer; try again soon", headers={"Retry-After": "5"})
 
 
-def as_problem(error: InputError, status: int = 422) -> Problem:
+def as_problem(error: InputError, status: int = 422) -> ProblemDocument:
     """Return an error of the user's input as a problem document; paths of ours are left out."""
-    return Problem(
+    return ProblemDocument(
         title=TITLES[status],
         status=status,
         detail=error.problem,
@@ -94,7 +94,7 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return {
         status: {
             "description": TITLES[status],
-            "content": {MEDIA_TYPE: {"schema": Problem.model_json_schema()}},
+            "content": {MEDIA_TYPE: {"schema": ProblemDocument.model_json_schema()}},
         }
         for status in statuses
     }
@@ -109,7 +109,7 @@ def register(app: FastAPI) -> None:
     app.add_exception_handler(OperationalError, _database_away)
 
 
-def _answer(problem: Problem, headers: dict[str, str] | None = None) -> JSONResponse:
+def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> JSONResponse:
     content = problem.model_dump(exclude_none=True)
     return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
 
@@ -139,7 +139,7 @@ async def _http_error(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException | StarletteHTTPException)
     title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
-    return _answer(Problem(title=title, status=error.status_code, detail=str(error.detail)), headers)
+    return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 
 
 async def _invalid_request(_: Request, error: Exception) -> JSONResponse:
@@ -148,7 +148,7 @@ async def _invalid_request(_: Request, error: Exception) -> JSONResponse:
     place = ".".join(str(part) for part in first["loc"] if part not in ("body", "query", "path", "header"))
     value = first.get("input")
     return _answer(
-        Problem(
+        ProblemDocument(
             title=TITLES[422],
             status=422,
             detail=first["msg"],

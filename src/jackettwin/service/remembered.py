@@ -20,7 +20,7 @@ Hashes = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
-class Told:
+class DaysTold:
     """What the days of a turbine say together, how many they are, and the identity of their states."""
 
     sums: engine.Sums
@@ -37,7 +37,7 @@ class Remembered:
 
     def told(
         self, connection: Connection, version: assets.Version, model: TwinModel, day: str | None = None
-    ) -> Told:
+    ) -> DaysTold:
         """Return what all days, or those up to one, say; only days that are new or changed are read."""
         key = (version.asset, version.model_hash)
         hashes = tuple(results.state_hashes(connection, *key, day).items())
@@ -54,7 +54,7 @@ class Remembered:
         for state in states[-1:]:
             sums = engine.with_day(sums, state.day, state.document)
         identity = hashlib.sha256(repr(hashes).encode()).hexdigest()
-        return Told(sums, len(hashes), identity)
+        return DaysTold(sums, len(hashes), identity)
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: engine.Sums) -> None:
         with self._lock:

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.loads.rotor_wind import RotorWind
 from jackettwin.simulate.model import Aerodynamics, Model, aerodynamics, build_model, with_aerodynamics
-from jackettwin.simulate.scenario import Air, Clock, Scenario, Sea, Turbine
+from jackettwin.simulate.scenario import Air, Scenario, Sea, SimulationClock, Turbine
 from jackettwin.simulate.water import (
     RelativeDrag,
     WaterLoads,
@@ -90,7 +90,7 @@ def loads_on(scenario: Scenario, n_steps: int) -> Loads:
     )
 
 
-def _of_water(sea: Sea, model: Model, clock: Clock, nothing: FloatArray) -> _Part:
+def _of_water(sea: Sea, model: Model, clock: SimulationClock, nothing: FloatArray) -> _Part:
     basis, t = model.reduced.basis, _times(nothing, clock)
     grid, ends = water_points(model.assembly, sea), water_ends(model.assembly, sea)
     water = water_loads(
@@ -116,7 +116,7 @@ def _of_water(sea: Sea, model: Model, clock: Clock, nothing: FloatArray) -> _Par
     return _Part(model, nothing, nothing, signals, wave=water, relative=beyond)
 
 
-def _of_air(air: Air, turbine: Turbine | None, model: Model, clock: Clock) -> _Part:
+def _of_air(air: Air, turbine: Turbine | None, model: Model, clock: SimulationClock) -> _Part:
     step = clock.load_step_s
     aero = None if turbine is None else aerodynamics(air, turbine)
     wind = wind_field(air, aero, duration=clock.total_s, step=step)
@@ -137,7 +137,7 @@ def _of_air(air: Air, turbine: Turbine | None, model: Model, clock: Clock) -> _P
     )
 
 
-def _of_rotor(wind: RotorWind, air: Air, aero: Aerodynamics, model: Model, clock: Clock) -> _Part:
+def _of_rotor(wind: RotorWind, air: Air, aero: Aerodynamics, model: Model, clock: SimulationClock) -> _Part:
     t = np.arange(wind.n_times, dtype=np.float64) * wind.step_s
     heading = air.heading(t - clock.discard_s) if air.yaw_path else None
     rotor = rotor_loads_in(wind, air, aero, heading=heading)
@@ -148,7 +148,7 @@ def _of_rotor(wind: RotorWind, air: Air, aero: Aerodynamics, model: Model, clock
     return _Part(model, repeating, before, rotor=rotor, rotor_damping=known)
 
 
-def _times(rows: FloatArray, clock: Clock) -> FloatArray:
+def _times(rows: FloatArray, clock: SimulationClock) -> FloatArray:
     return np.arange(rows.shape[0], dtype=np.float64) * clock.load_step_s
 
 

@@ -20,11 +20,11 @@ from jackettwin.loads.wind import Wind
 from jackettwin.response.sensors import Sensor, observation_matrix, sees
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
-from jackettwin.simulate.scenario import GRID_M, Air, Clock, Instrument, Scenario, Sea, Turbine
+from jackettwin.simulate.scenario import GRID_M, Air, Instrument, Scenario, Sea, SimulationClock, Turbine
 from jackettwin.simulate.schema import (
+    InstrumentSchema,
     RotorSchema,
     ScenarioSchema,
-    SensorSchema,
     TimeSchema,
     WavesSchema,
     WindSchema,
@@ -308,7 +308,7 @@ def _peakedness(w: WavesSchema) -> float | None:
     return w.gamma
 
 
-def _clock(t: TimeSchema) -> Clock:
+def _clock(t: TimeSchema) -> SimulationClock:
     """Return the clock; loads default to the longest multiple of the step up to 0.05 s."""
     h = t.step_s
     load = t.load_step_s or max(h, h * int(_LONGEST_LOAD_STEP_S / h + 1e-9))
@@ -334,7 +334,7 @@ def _clock(t: TimeSchema) -> Clock:
             allowed=f"{_MOST_SAMPLES:.0e} steps: ≥ {h * samples / _MOST_SAMPLES:.3g} s for this duration",
             remedy="take longer steps or a shorter record",
         )
-    return Clock(t.duration_s, h, t.discard_s, load)
+    return SimulationClock(t.duration_s, h, t.discard_s, load)
 
 
 def _check_instruments(instruments: tuple[Instrument, ...], structure: Structure) -> None:
@@ -347,7 +347,7 @@ def _check_instruments(instruments: tuple[Instrument, ...], structure: Structure
     observation_matrix(assemble(structure), tuple(one.sensor for one in instruments))
 
 
-def _instrument(s: SensorSchema) -> Instrument:
+def _instrument(s: InstrumentSchema) -> Instrument:
     return Instrument(
         sensor=Sensor(s.channel, s.direction, s.node, s.height_m, s.member, s.position, sees(s.quantity)),
         quantity=s.quantity,

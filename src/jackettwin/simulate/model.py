@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.loads.bem import Operation, operating_damping, operating_point
+from jackettwin.loads.bem import OperatingPoint, operating_damping, operating_point
 from jackettwin.loads.morison import morison_points
 from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
 from jackettwin.loads.water import water_mass
@@ -107,7 +107,7 @@ class Aerodynamics:
     """The rotor about the mean wind, at the tower top in global axes."""
 
     mean: Linearised
-    operation: Operation | None
+    operation: OperatingPoint | None
     turbine: Turbine
 
     @property
@@ -127,7 +127,9 @@ def aerodynamics(air: Air, turbine: Turbine) -> Aerodynamics:
     return Aerodynamics(mean, operation, turbine)
 
 
-def _linearised_at(yaw: float, speed: float, turbine: Turbine, operation: Operation | None) -> Linearised:
+def _linearised_at(
+    yaw: float, speed: float, turbine: Turbine, operation: OperatingPoint | None
+) -> Linearised:
     """Return the rotor's load, damping and stiffness at a heading [rad], in global axes."""
     if operation is not None:
         found = operating_damping(turbine.rotor, operation, yaw_error=-yaw)

@@ -134,7 +134,7 @@ class Turbine:
 
 
 @dataclass(frozen=True)
-class Clock:
+class SimulationClock:
     """Length of the record, what is thrown away before it, and both steps [s]."""
 
     duration_s: float = 600.0
@@ -184,6 +184,6 @@ class Scenario:
     sea: Sea | None
     air: Air | None
     turbine: Turbine | None
-    clock: Clock
+    clock: SimulationClock
     instruments: tuple[Instrument, ...]
     sensor_seed: int = 0

@@ -12,7 +12,7 @@ from jackettwin.simulate.scenario import TOWER_DRAG
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.soil.foundation import (
     CurvesSchema,
-    DampingSchema,
+    FoundationDampingSchema,
     LayerSchema,
     LinearSchema,
     PileSchema,
@@ -63,7 +63,7 @@ class GroundSchema(Schema):
     linear: LinearSchema | None = None
     scour: ScourSchema | None = None
     curves: CurvesSchema = CurvesSchema()
-    damping: DampingSchema | None = None
+    damping: FoundationDampingSchema | None = None
     law: LawSchema | None = None
     radiation: RadiationSchema | None = None
     hysteresis: bool = False
@@ -130,7 +130,7 @@ class TimeSchema(Schema):
     load_step_s: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
 
 
-class SensorSchema(Schema):
+class InstrumentSchema(Schema):
     """A sensor of the record, with its flaws in SI units."""
 
     channel: Annotated[str, Field(min_length=1)]
@@ -171,5 +171,5 @@ class ScenarioSchema(Schema):
     wind: WindSchema | None = None
     rotor: RotorSchema | None = None
     time: TimeSchema = TimeSchema()
-    sensors: list[SensorSchema] = []
+    sensors: list[InstrumentSchema] = []
     sensor_seed: Seed = 0

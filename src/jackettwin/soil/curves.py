@@ -44,7 +44,7 @@ class Tanh:
 
 
 @dataclass(frozen=True)
-class Table:
+class TabulatedCurve:
     """Straight lines between points that start at the origin, constant beyond the last."""
 
     y: tuple[float, ...]
@@ -80,7 +80,7 @@ class CubeRoot:
         return np.asarray(np.sign(y) * np.minimum(0.5 * np.cbrt(np.abs(y) / self.y50), 1.0) * self.capacity)
 
 
-NOTHING = Table((0.0, 1.0), (0.0, 0.0))
+NOTHING = TabulatedCurve((0.0, 1.0), (0.0, 0.0))
 """The curve of ground that is not there."""
 
 

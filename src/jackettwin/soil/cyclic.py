@@ -48,12 +48,12 @@ class CyclicPile:
     springs: Sliders
     dof: IntArray
 
-    def at_rest(self) -> Held:
+    def at_rest(self) -> CyclicState:
         """Return the pile in virgin ground."""
-        return Held(np.zeros(self.linear.shape[0]), self.springs.at_rest())
+        return CyclicState(np.zeros(self.linear.shape[0]), self.springs.at_rest())
 
 
-class Held(NamedTuple):
+class CyclicState(NamedTuple):
     """Displacements (6n,) [m, rad] and the sliders' state."""
 
     u: FloatArray
@@ -95,7 +95,7 @@ def cyclic_pile(pile: Pile, curves: PileCurves) -> CyclicPile:
     return CyclicPile(linear, bands, springs, dof.astype(np.intp))
 
 
-def advance(pile: CyclicPile, held: Held, head: FloatArray) -> tuple[FloatArray, Held]:
+def advance(pile: CyclicPile, held: CyclicState, head: FloatArray) -> tuple[FloatArray, CyclicState]:
     """Return the force (6,) that moves the head to ``head`` (6,), and the state there.
 
     Raises
@@ -112,7 +112,7 @@ def advance(pile: CyclicPile, held: Held, head: FloatArray) -> tuple[FloatArray,
         ground = move(pile.springs, held.sliders, u[pile.dof])
         force = pile.linear @ u + np.bincount(pile.dof, ground.force, minlength=n)
         if np.abs(force[6:]).max() <= _TOLERANCE * scale:
-            return np.asarray(force[:6], dtype=np.float64), Held(u, ground.state)
+            return np.asarray(force[:6], dtype=np.float64), CyclicState(u, ground.state)
         bands = pile.bands.copy()
         bands[0] += np.bincount(pile.dof, ground.tangent, minlength=n)[6:]
         try:

@@ -27,7 +27,7 @@ class SpringSchema(Schema):
     law: LawSchema = ElasticLaw(type="elastic")
 
 
-class SupportSchema(Schema):
+class SpringsSchema(Schema):
     """A support file."""
 
     supports: list[SpringSchema] = Field(min_length=1)
@@ -183,7 +183,7 @@ def _read_support_file(path: Path, structure: Structure) -> Support:
 
 
 def _springs(content: Any, path: Path, structure: Structure) -> Support:
-    schema = validate(SupportSchema, content, file=path)
+    schema = validate(SpringsSchema, content, file=path)
     springs = []
     for index, entry in enumerate(schema.supports):
         place = f"supports.{index}"

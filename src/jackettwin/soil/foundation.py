@@ -228,7 +228,7 @@ class CurvesSchema(Schema):
         return CurveOptions(**self.model_dump())
 
 
-class DampingSchema(Schema):
+class FoundationDampingSchema(Schema):
     """Dashpots c = 2ζk/ω1 (thesis eq. (5.4))."""
 
     ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -257,7 +257,7 @@ class FoundationSchema(Schema):
     soil: SoilSchema
     scour: ScourSchema | None = None
     curves: CurvesSchema = CurvesSchema()
-    damping: DampingSchema | None = None
+    damping: FoundationDampingSchema | None = None
     law: LawSchema | None = None
     radiation: RadiationSchema | None = None
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.soil.curves import CubeRoot, Curve, Table, Tanh
+from jackettwin.soil.curves import CubeRoot, Curve, TabulatedCurve, Tanh
 
 SUBGRADE_ANGLE_DEG = (25.0, 30.0, 35.0, 40.0)
 SUBGRADE_MODULUS_N_M3 = (5.4e6, 11e6, 22e6, 45e6)
@@ -148,7 +148,7 @@ def stiff_clay_py(
     strain_50: float,
     cyclic: bool = False,
     mean_strength_pa: float | None = None,
-) -> Table:
+) -> TabulatedCurve:
     """Return the curve of stiff clay below water, Reese, Cox & Koop (1975, OTC 2312), as a fine table.
 
     pc = min((2 s_a + σ'_v) D + 2.83 s_a z, 11 s_u D) with the mean strength s_a down to z (s_u by default);
@@ -178,7 +178,7 @@ def dry_stiff_clay_py(
     J: float = 0.5,
     cycles: float = 0.0,
     mean_strength_pa: float | None = None,
-) -> Table:
+) -> TabulatedCurve:
     """Return the curve of stiff clay without free water, Welch & Reese (1972), as a fine table.
 
     p = ½ pu (y/y50)^¼ up to pu at 16 y50 with y50 = 2.5 ε50 D and
@@ -207,5 +207,5 @@ def _reese_cyclic(r: FloatArray, A: float) -> FloatArray:
     return np.maximum(np.where(r <= 0.6 * rp, arch, 0.936 * A - 0.085 * (r - 0.6 * rp)), 0.0)
 
 
-def _table(y: FloatArray, p: FloatArray) -> Table:
-    return Table(tuple(map(float, y)), tuple(map(float, p)))
+def _table(y: FloatArray, p: FloatArray) -> TabulatedCurve:
+    return TabulatedCurve(tuple(map(float, y)), tuple(map(float, p)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jackettwin.errors import InputError
-from jackettwin.soil.curves import Table
+from jackettwin.soil.curves import TabulatedCurve
 
 TZ_Z = (0.0, 0.0016, 0.0031, 0.0057, 0.0080, 0.0100, 0.0200)
 TZ_T = (0.0, 0.30, 0.50, 0.75, 0.90, 1.00)
@@ -39,13 +39,13 @@ def sand_friction(*, stress_pa: float, beta: float, limit_pa: float) -> float:
     return min(beta * stress_pa, limit_pa)
 
 
-def clay_tz(*, friction_pa: float, D: float, residual: float = 0.9) -> Table:
+def clay_tz(*, friction_pa: float, D: float, residual: float = 0.9) -> TabulatedCurve:
     """Return t(z) of clay [N/m]: the peak at 1 % D, then down to ``residual`` (0.7 to 0.9) at 2 % D."""
     t = friction_pa * np.pi * D
-    return Table(tuple(D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))
+    return TabulatedCurve(tuple(D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))
 
 
-def sand_tz(*, friction_pa: float, D: float, form: str = "rp2geo") -> Table:
+def sand_tz(*, friction_pa: float, D: float, form: str = "rp2geo") -> TabulatedCurve:
     """Return t(z) of sand [N/m].
 
     Parameters
@@ -61,9 +61,9 @@ def sand_tz(*, friction_pa: float, D: float, form: str = "rp2geo") -> Table:
     """
     t = friction_pa * np.pi * D
     if form == "rp2geo":
-        return Table(tuple(D * z for z in TZ_Z[:-1]), tuple(t * share for share in TZ_T))
+        return TabulatedCurve(tuple(D * z for z in TZ_Z[:-1]), tuple(t * share for share in TZ_T))
     if form == "rp2a":
-        return Table((0.0, SAND_PEAK_RP2A_M), (0.0, t))
+        return TabulatedCurve((0.0, SAND_PEAK_RP2A_M), (0.0, t))
     raise InputError(
         "unknown form of the sand t-z curve", field="sand_tz", value=form, allowed="rp2geo, rp2a"
     )
@@ -79,6 +79,6 @@ def sand_bearing(*, stress_pa: float, bearing_factor: float, limit_pa: float) ->
     return min(bearing_factor * stress_pa, limit_pa)
 
 
-def tip_qz(*, bearing_pa: float, D: float, area_m2: float) -> Table:
+def tip_qz(*, bearing_pa: float, D: float, area_m2: float) -> TabulatedCurve:
     """Return Q(z) of the pile tip [N] on ``area_m2``: the full base if plugged, else the steel annulus."""
-    return Table(tuple(D * z for z in QZ_Z), tuple(bearing_pa * area_m2 * share for share in QZ_Q))
+    return TabulatedCurve(tuple(D * z for z in QZ_Z), tuple(bearing_pa * area_m2 * share for share in QZ_Q))

@@ -15,7 +15,7 @@ from jackettwin.files.windio import Part, WindIO, windio
 from jackettwin.files.yaml import read_text
 from jackettwin.structure.blades import BladeStructure
 from jackettwin.structure.rotor_modes import FlexibleRotor
-from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
+from jackettwin.structure.subdyn_tables import Deck, SubdynRow, number, to_float
 
 DEFAULT_RATIO = 0.005
 """Structural damping of a blade whose file says nothing: half a percent, as reference turbines state."""
@@ -146,7 +146,7 @@ def read_elastodyn_blade(path: Path, *, length: float) -> BladeStructure:
         )
 
 
-def _stations(deck: Deck) -> list[Row]:
+def _stations(deck: Deck) -> list[SubdynRow]:
     """Return the rows of the distributed properties: their table stands apart from its count."""
     for at, line in enumerate(deck.lines):
         header = line.lower().split()
@@ -154,7 +154,7 @@ def _stations(deck: Deck) -> list[Row]:
             count = int(_value(deck, "NBlInpSt"))
             found = [deck.lines[k].split() for k in range(at + 2, min(at + 2 + count, len(deck.lines)))]
             return [
-                Row(dict(zip(header, row, strict=False)) | {"#": str(at + 3 + k)}, deck.path)
+                SubdynRow(dict(zip(header, row, strict=False)) | {"#": str(at + 3 + k)}, deck.path)
                 for k, row in enumerate(found)
             ]
     raise InputError(

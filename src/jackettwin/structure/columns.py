@@ -15,14 +15,14 @@ _STRAIGHT = 0.9998
 """Cosine of the angle (about 1°) up to which two members in a row are one column."""
 
 
-class Column(NamedTuple):
+class StraightRun(NamedTuple):
     """Length [m] of a straight run, and whether one of its ends hangs free."""
 
     length_m: float
     is_cantilever: bool
 
 
-def columns(structure: Structure) -> dict[str, Column]:
+def columns(structure: Structure) -> dict[str, StraightRun]:
     """Return the straight run that each member belongs to.
 
     Two members in line are one column unless something else at their common node leads to the ground: what
@@ -47,9 +47,9 @@ def columns(structure: Structure) -> dict[str, Column]:
     pieces: dict[str, list[str]] = defaultdict(list)
     for name in run:
         pieces[root(name)].append(name)
-    found: dict[str, Column] = {}
+    found: dict[str, StraightRun] = {}
     for names in pieces.values():
-        column = Column(sum(axis[name][1] for name in names), frame.is_cantilever(names))
+        column = StraightRun(sum(axis[name][1] for name in names), frame.is_cantilever(names))
         found |= dict.fromkeys(names, column)
     return found
 

@@ -28,7 +28,7 @@ _SHARPEST = float(np.radians(5.0))
 """Tubes that leave a chord at less run beside it: no joint of clause 14."""
 
 
-class End(NamedTuple):
+class MemberEnd(NamedTuple):
     """A member's end at a node: its section there, its direction away from the node, its mesh element."""
 
     member: Member
@@ -51,8 +51,8 @@ class JointPlan:
     """
 
     node: str
-    chord: tuple[End, ...]
-    braces: tuple[End, ...]
+    chord: tuple[MemberEnd, ...]
+    braces: tuple[MemberEnd, ...]
     across: FloatArray
     joints: tuple[Joint, ...]
 
@@ -101,15 +101,15 @@ def joint_plans(assembly: Assembly, yield_strength_pa: float) -> tuple[JointPlan
     return tuple(found)
 
 
-def _ends(assembly: Assembly) -> dict[str, list[End]]:
+def _ends(assembly: Assembly) -> dict[str, list[MemberEnd]]:
     """Return the ends of members by node."""
     structure, mesh = assembly.structure, assembly.mesh
-    of: dict[str, list[End]] = defaultdict(list)
+    of: dict[str, list[MemberEnd]] = defaultdict(list)
     for k, m in enumerate(structure.members):
         mine = np.flatnonzero(mesh.member == k)
         along = _unit(structure, m)
-        of[m.start].append(End(m, m.section_start, along, int(mine[0]), 0))
-        of[m.end].append(End(m, m.section_end, -along, int(mine[-1]), 1))
+        of[m.start].append(MemberEnd(m, m.section_start, along, int(mine[0]), 0))
+        of[m.end].append(MemberEnd(m, m.section_end, -along, int(mine[-1]), 1))
     return of
 
 
@@ -118,7 +118,7 @@ def _unit(structure: Structure, m: Member) -> FloatArray:
     return np.asarray(along / np.linalg.norm(along))
 
 
-def _chord(ends: list[End]) -> tuple[End, ...]:
+def _chord(ends: list[MemberEnd]) -> tuple[MemberEnd, ...]:
     """Return one or two ends that are the chord; none where no tube is the widest."""
     pairs = [(a, b) for i, a in enumerate(ends) for b in ends[i + 1 :] if float(a.away @ b.away) < -_STRAIGHT]
     if pairs:
@@ -127,11 +127,13 @@ def _chord(ends: list[End]) -> tuple[End, ...]:
     return (widest[0],) if len(widest) > 1 and _size(widest[0]) > _size(widest[1]) else ()
 
 
-def _size(end: End) -> tuple[float, float]:
+def _size(end: MemberEnd) -> tuple[float, float]:
     return end.section.outer_diameter_m, end.section.thickness_m
 
 
-def _plan(node: str, chord: tuple[End, ...], braces: tuple[End, ...], f_y: float) -> JointPlan | None:
+def _plan(
+    node: str, chord: tuple[MemberEnd, ...], braces: tuple[MemberEnd, ...], f_y: float
+) -> JointPlan | None:
     line = chord[0].away
     cosine = np.array([float(e.away @ line) for e in braces])
     theta = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
@@ -174,7 +176,7 @@ def joint_uses(
     return tuple(uses)
 
 
-def _brace_forces(assembly: Assembly, forces: SectionForces, end: End, line: FloatArray) -> BraceForces:
+def _brace_forces(assembly: Assembly, forces: SectionForces, end: MemberEnd, line: FloatArray) -> BraceForces:
     """Return a brace's forces at its node, moments about the plane of brace and chord and across it."""
     k, at = end.element, end.at_end
     axes = assembly.mesh.axes[k]
@@ -185,7 +187,7 @@ def _brace_forces(assembly: Assembly, forces: SectionForces, end: End, line: Flo
 
 
 def _worst(
-    plan: JointPlan, end: End, joint: Joint, own: BraceForces, shares: FloatArray, found: JointUse
+    plan: JointPlan, end: MemberEnd, joint: Joint, own: BraceForces, shares: FloatArray, found: JointUse
 ) -> BraceUse:
     at = int(found.utilisation.argmax())
     K, Y, X = (float(v) for v in shares[:, at])

@@ -14,7 +14,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.files.yaml import read_text
 from jackettwin.structure.model import PointMass, Reaction, Structure
 from jackettwin.structure.subdyn_members import read_parts
-from jackettwin.structure.subdyn_tables import Deck, Row, flag, number, read_deck, to_float, to_integer
+from jackettwin.structure.subdyn_tables import Deck, SubdynRow, flag, number, read_deck, to_float, to_integer
 
 _DOFS = ("x", "y", "z", "tx", "ty", "tz")
 _FLAGS = ("tdxss", "tdyss", "tdzss", "rdxss", "rdyss", "rdzss")
@@ -92,7 +92,7 @@ def _masses(deck: Deck) -> tuple[PointMass, ...]:
     return tuple(bodies)
 
 
-def _optional(row: Row, key: str, deck: Deck) -> float:
+def _optional(row: SubdynRow, key: str, deck: Deck) -> float:
     """Return the number in a column that older formats do not have."""
     return number(row, key, deck.path) if key in row else 0.0
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.structure.model import RigidLink, Vector
-from jackettwin.structure.subdyn_tables import Deck, Row, number
+from jackettwin.structure.subdyn_tables import Deck, SubdynRow, number
 from jackettwin.structure.two_node import TwoNodeElement, spring_matrix, two_node_element
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ _RIGIDLY, _UNIVERSAL, _PIN, _BALL = "1", "2", "3", "4"
 Ends = dict[str, tuple[str, str]]
 
 
-def joint_rows(deck: Deck) -> tuple[Row, ...]:
+def joint_rows(deck: Deck) -> tuple[SubdynRow, ...]:
     """Return the rows of the table of joints."""
     return deck.table(
         "NJoints",
@@ -30,7 +30,7 @@ def joint_rows(deck: Deck) -> tuple[Row, ...]:
     )
 
 
-def member_rows(deck: Deck) -> tuple[Row, ...]:
+def member_rows(deck: Deck) -> tuple[SubdynRow, ...]:
     """Return the rows of the table of members.
 
     The number behind a member's type is a cosine matrix up to OpenFAST 4.0, then a beam's spin; only the
@@ -100,7 +100,7 @@ def with_hinges(
     return nodes, ends, links, springs
 
 
-def _free_axes(deck: Deck, row: Row, kind: str) -> tuple[Vector, ...]:
+def _free_axes(deck: Deck, row: SubdynRow, kind: str) -> tuple[Vector, ...]:
     place = f"JointID {row['jointid']}"
     if kind == _BALL:
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -125,7 +125,9 @@ def _free_axes(deck: Deck, row: Row, kind: str) -> tuple[Vector, ...]:
     return (cast("Vector", tuple(float(value) / length for value in axis)),)
 
 
-def _joint_springs(deck: Deck, row: Row, axes: tuple[Vector, ...], nodes: list[str]) -> list[TwoNodeElement]:
+def _joint_springs(
+    deck: Deck, row: SubdynRow, axes: tuple[Vector, ...], nodes: list[str]
+) -> list[TwoNodeElement]:
     stiffness = number(row, "jointstiff", deck.path) if "jointstiff" in row else 0.0
     if stiffness == 0.0:
         return []

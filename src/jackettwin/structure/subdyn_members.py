@@ -16,7 +16,7 @@ from jackettwin.errors import InputError, located
 from jackettwin.structure.model import Material, Member, RigidLink, Section, Vector
 from jackettwin.structure.rectangles import rectangular_section
 from jackettwin.structure.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
-from jackettwin.structure.subdyn_tables import Deck, Row, number, to_float
+from jackettwin.structure.subdyn_tables import Deck, SubdynRow, number, to_float
 from jackettwin.structure.two_node import (
     BeamSection,
     TwoNodeElement,
@@ -89,11 +89,11 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
     return parts
 
 
-def _kind(row: Row) -> str:
+def _kind(row: SubdynRow) -> str:
     return row.get("mtype", "1").lower().strip("\"'")
 
 
-def _unsupported(deck: Deck, row: Row, kind: str) -> InputError:
+def _unsupported(deck: Deck, row: SubdynRow, kind: str) -> InputError:
     return InputError(
         f"unsupported member type ({_REFUSED.get(kind, 'unknown')})",
         file=deck.path,
@@ -109,15 +109,15 @@ class _Tables:
     """Property tables of a deck, by number."""
 
     deck: Deck
-    tubes: dict[str, Row]
-    rectangles: dict[str, Row]
-    arbitrary: dict[str, Row]
-    cables: dict[str, Row]
-    rigid: dict[str, Row]
-    springs: dict[str, Row]
-    cosines: dict[str, Row]
+    tubes: dict[str, SubdynRow]
+    rectangles: dict[str, SubdynRow]
+    arbitrary: dict[str, SubdynRow]
+    cables: dict[str, SubdynRow]
+    rigid: dict[str, SubdynRow]
+    springs: dict[str, SubdynRow]
+    cosines: dict[str, SubdynRow]
 
-    def find(self, table: dict[str, Row], row: Row, key: str) -> Row:
+    def find(self, table: dict[str, SubdynRow], row: SubdynRow, key: str) -> SubdynRow:
         """Return the property set that a member names."""
         if row[key] not in table:
             raise InputError(
@@ -129,7 +129,7 @@ class _Tables:
             )
         return table[row[key]]
 
-    def values(self, row: Row, *keys: str) -> list[float]:
+    def values(self, row: SubdynRow, *keys: str) -> list[float]:
         """Return numbers of a row."""
         return [number(row, key, self.deck.path) for key in keys]
 
@@ -137,7 +137,7 @@ class _Tables:
 def _tables(deck: Deck) -> _Tables:
     def rows(
         *keywords: str, columns: tuple[str, ...], optional: tuple[str, ...] = (), nth: int = 0
-    ) -> dict[str, Row]:
+    ) -> dict[str, SubdynRow]:
         found = deck.table(*keywords, columns=columns, optional=optional, nth=nth)
         return {row[columns[0]]: row for row in found}
 
@@ -161,7 +161,7 @@ def _tables(deck: Deck) -> _Tables:
 
 
 def _pieces(
-    deck: Deck, row: Row, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int
+    deck: Deck, row: SubdynRow, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int
 ) -> int:
     """Return how many elements a beam has: MDivSize overrides NDiv."""
     size = row.get("mdivsize", "")
@@ -182,7 +182,7 @@ def _along(parts: Parts, name: str, ends: tuple[str, str], pieces: int) -> list[
     return [ends[0], *names, ends[1]]
 
 
-def _add_tube(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int) -> None:
+def _add_tube(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str], pieces: int) -> None:
     name = row["memberid"]
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
@@ -217,7 +217,7 @@ def _between(a: Section, b: Section, share: float) -> Section:
 
 
 def _add_beam(
-    parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int, *, shear: bool
+    parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str], pieces: int, *, shear: bool
 ) -> None:
     """Add a beam of any section as elements; both ends must name one property set."""
     name = row["memberid"]
@@ -240,7 +240,7 @@ def _add_beam(
         parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
 
 
-def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+def _any_section(tables: _Tables, row: SubdynRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of an arbitrary beam."""
     p = tables.find(tables.arbitrary, row, "mpropsetid1")
     E, G, rho, A, A_x, A_y, I_x, I_y, I_p = tables.values(p, *_ARBITRARY_KEYS)
@@ -249,7 +249,7 @@ def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
     return [E, G, rho], BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
 
 
-def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+def _rectangle(tables: _Tables, row: SubdynRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of a rectangular beam."""
     p = tables.find(tables.rectangles, row, "mpropsetid1")
     E, G, rho, a, b, t = tables.values(p, *_RECTANGLE_KEYS)
@@ -257,7 +257,7 @@ def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
         return [E, G, rho], rectangular_section(a, b, t, poisson_ratio=0.5 * E / G - 1.0)
 
 
-def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> FloatArray:
+def _axes(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> FloatArray:
     """Return (3, 3): along the member, then the section's x and y, in rows."""
     spin, chosen = row.get("mspin/cosmid", row.get("cosmid/mspin", "0")), row.get("cosmid", "-1")
     if chosen != "-1" and chosen in tables.cosines:
@@ -272,7 +272,7 @@ def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> Flo
     return np.array([z, np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x])
 
 
-def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
+def _cable(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.cables, row, "mpropsetid1")
     EA, rho, T = tables.values(p, "ea", "matdens", "t0")
     a, b = (np.array(parts.nodes[node]) for node in ends)
@@ -280,7 +280,7 @@ def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> Tw
     return two_node_element(row["memberid"], "cable", ends, K, M)
 
 
-def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
+def _spring(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.springs, row, "mpropsetid1")
     k = np.zeros((6, 6))
     k[np.triu_indices(6)] = tables.values(p, *_SPRING_KEYS)
@@ -296,12 +296,12 @@ def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> T
             allowed=", ".join(tables.cosines) or None,
             remedy="give a cosine matrix",
         )
-    axes = _axes(parts, tables, Row({**row, "cosmid": chosen}, row.path), ends)
+    axes = _axes(parts, tables, SubdynRow({**row, "cosmid": chosen}, row.path), ends)
     # a spring's own order is x, y, z with z along it
     return two_node_element(row["memberid"], "spring", ends, spring_matrix(k, np.roll(axes, -1, axis=0)))
 
 
-def _rigid_mass(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> list[TwoNodeElement]:
+def _rigid_mass(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> list[TwoNodeElement]:
     p = tables.rigid.get(row["mpropsetid1"])
     density = tables.values(p, "matdens")[0] if p else 0.0
     if density == 0.0:

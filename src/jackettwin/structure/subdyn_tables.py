@@ -17,7 +17,7 @@ from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
 
 
-class Row(dict[str, str]):
+class SubdynRow(dict[str, str]):
     """A row of a table, column by column; ``#`` is the number of its line.
 
     A column that the row does not have is the file's fault, and named.
@@ -83,7 +83,7 @@ class Deck:
         columns: tuple[str, ...] = (),
         optional: tuple[str, ...] = (),
         nth: int = 0,
-    ) -> tuple[Row, ...]:
+    ) -> tuple[SubdynRow, ...]:
         """Return the rows of the table whose count line has one of the keywords.
 
         Parameters
@@ -118,13 +118,13 @@ class Deck:
             return ()
         return tuple(self.lines[number + 1].lower().split())
 
-    def _row(self, at: int, keys: list[str], needed: int, keyword: str, count: int) -> Row:
+    def _row(self, at: int, keys: list[str], needed: int, keyword: str, count: int) -> SubdynRow:
         words = self.lines[at].split() if at < len(self.lines) else []
         if len(words) < min(len(keys), 2) or not words or words[0].startswith("---"):
             raise _short(self.path, keyword, count)
         if needed:
             words = _without_remark(words, needed, keys)
-        return Row(dict(zip(keys, words, strict=False)) | {"#": str(at + 1)}, self.path)
+        return SubdynRow(dict(zip(keys, words, strict=False)) | {"#": str(at + 1)}, self.path)
 
 
 def _short(path: Path, keyword: str, count: int) -> InputError:
@@ -151,12 +151,12 @@ def read_deck(path: Path) -> Deck:
     return Deck(path, tuple(read_text(path, what="SubDyn file").splitlines()))
 
 
-def number(row: Row, key: str, path: Path) -> float:
+def number(row: SubdynRow, key: str, path: Path) -> float:
     """Return the number in a column of a row."""
     return to_float(row[key], path, f"line {row['#']}.{key}")
 
 
-def flag(row: Row, key: str, path: Path, *, default: bool) -> bool:
+def flag(row: SubdynRow, key: str, path: Path, *, default: bool) -> bool:
     """Return the 0 or 1 in a column of a row."""
     if key not in row:
         return default

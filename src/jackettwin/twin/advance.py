@@ -21,7 +21,7 @@ from jackettwin.twin.observation import Observation
 from jackettwin.twin.state import (
     UNDATED,
     ClearShape,
-    Conditions,
+    ConditionSums,
     Day,
     Operation,
     RateSums,
@@ -114,7 +114,7 @@ def _operation(seen: Observation) -> Operation:
     wind, duration = seen.wind_m_s, seen.duration_s
     height, period = (seen.conditions.get(key) for key in ("wave_height_m", "wave_period_s"))
     waved = height is not None and period is not None
-    conditions = Conditions(
+    conditions = ConditionSums(
         records=1,
         duration=whole(duration),
         windy=0 if wind is None else whole(duration),

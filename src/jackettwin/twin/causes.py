@@ -26,8 +26,8 @@ from jackettwin.twin.changed_structures import Happening, Standing, happenings
 from jackettwin.updating.next_measurement import Measurement
 from jackettwin.watching import (
     Cause,
+    CauseVerdict,
     Diagnosis,
-    Verdict,
     expected_information,
     lognormal_sizes,
     sensor_noise,
@@ -323,7 +323,7 @@ def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measureme
     return tuple(sorted(found, key=lambda m: -m.gain_nats)[:_SHOWN])
 
 
-def _predicted(cause: Cause, verdict: Verdict, column: int, noise: float) -> tuple[float, float]:
+def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -> tuple[float, float]:
     """Return mean and standard deviation of what a cause does to one quantity, at the size it would have."""
     per = cause.draws[:, column]
     low, high = verdict.interval_90

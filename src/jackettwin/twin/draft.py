@@ -34,7 +34,7 @@ _PLAIN = re.compile(r"^[A-Za-z_][\w./\-]*$")
 
 
 @dataclass(frozen=True)
-class Place:
+class SensorPlace:
     """A channel as the draft places it.
 
     Attributes
@@ -66,7 +66,7 @@ class Draft:
     """
 
     text: str
-    places: tuple[Place, ...]
+    places: tuple[SensorPlace, ...]
     missing: tuple[str, ...]
 
     @property
@@ -123,7 +123,7 @@ def draft_twin(
     return Draft("\n".join(lines) + "\n", places, missing)
 
 
-def _place(channel: Channel, assembly: Assembly) -> Place:
+def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
     """Return where a channel's sensor sits, and what is missing to say so."""
     structure, read = assembly.structure, read_name(channel.name)
     node, height, why = channel.node, channel.height_m, []
@@ -135,7 +135,7 @@ def _place(channel: Channel, assembly: Assembly) -> Place:
     if read.direction is not None and read.direction == channel.direction:
         why.append(f"{read.direction_word} by its name")
     sensor = Sensor(channel.name, channel.direction, node, None if node is not None else height)
-    return Place(sensor, ", ".join(why), _lacks(sensor, assembly))
+    return SensorPlace(sensor, ", ".join(why), _lacks(sensor, assembly))
 
 
 def _lacks(sensor: Sensor, assembly: Assembly) -> str:
@@ -153,7 +153,7 @@ def _lacks(sensor: Sensor, assembly: Assembly) -> str:
     return ""
 
 
-def _sensor_line(place: Place) -> str:
+def _sensor_line(place: SensorPlace) -> str:
     """Return a sensor's line, commented out if something of it is missing."""
     s = place.sensor
     at = f"node: {_text(s.node)}" if s.node is not None else f"height_m: {_number(s.height_m)}"
@@ -188,7 +188,9 @@ def _logger(unsaid: Unsaid) -> list[str]:
     return [f"logger: {{{given}}}   # of files that do not say it"] if given else []
 
 
-def _missing(places: Sequence[Place], records: Sequence[Record], structure: Structure) -> tuple[str, ...]:
+def _missing(
+    places: Sequence[SensorPlace], records: Sequence[Record], structure: Structure
+) -> tuple[str, ...]:
     """Return what nobody has said, most needed first."""
     missing = [f"{place.sensor.channel}: {place.lacks}" for place in places if place.lacks]
     remarks = {text for record in records for text in record.metadata.get("remarks", ())}

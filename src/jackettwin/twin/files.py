@@ -30,7 +30,7 @@ from jackettwin.twin.config import (
     TwinConfig,
     UpdateSettings,
 )
-from jackettwin.twin.schema import StructureChoice, SupportSchema, TwinSchema
+from jackettwin.twin.schema import RefinedStructure, SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family, numbered_modes
@@ -317,8 +317,8 @@ def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
     choice = (
         schema.structure
-        if isinstance(schema.structure, StructureChoice)
-        else StructureChoice(source=schema.structure)
+        if isinstance(schema.structure, RefinedStructure)
+        else RefinedStructure(source=schema.structure)
     )
     structure = choice.build(folder)
     rna = schema.rna or choice.rna

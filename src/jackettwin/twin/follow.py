@@ -26,10 +26,10 @@ from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.observation import Observation
 from jackettwin.twin.observe_files import observe_files, sorted_out
-from jackettwin.twin.problem import Evidence, law_model, model_problem, tied_problem
+from jackettwin.twin.problem import UpdateEvidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
-from jackettwin.twin.state import ALL, UNDATED, Conditions, TwinState, empty_state
+from jackettwin.twin.state import ALL, UNDATED, ConditionSums, TwinState, empty_state
 from jackettwin.twin.stored import digest
 from jackettwin.updating import Problem, SupportModel
 from jackettwin.updating.drift import Drift, find_drift
@@ -221,10 +221,10 @@ def _question(
 
 def _evidence(
     config: TwinConfig, model: TwinModel, rotor: RotorDamping, wind: float | None, state: TwinState
-) -> Evidence:
+) -> UpdateEvidence:
     """Return what some records say, as a law is fitted to it."""
     relaxations = measured_relaxations(config, state)
-    return Evidence(model.structure, state, _states(config, model, state, wind), rotor, relaxations)
+    return UpdateEvidence(model.structure, state, _states(config, model, state, wind), rotor, relaxations)
 
 
 def _states(config: TwinConfig, model: TwinModel, state: TwinState, wind: float | None) -> States:
@@ -361,7 +361,7 @@ def _mean_time(span: TwinState, first: datetime) -> float:
     return float(np.average(at, weights=[weight for _, weight in known]))
 
 
-def _usual(config: TwinConfig, said: Conditions, wind: float | None) -> dict[str, float]:
+def _usual(config: TwinConfig, said: ConditionSums, wind: float | None) -> dict[str, float]:
     """Return the dashpots' factors in the mean wind of some records."""
     if wind is None or said.wind_m_s is None:
         return {}

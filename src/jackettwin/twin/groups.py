@@ -9,7 +9,7 @@ from typing import Any
 
 from jackettwin.identification import FusedIdentification
 from jackettwin.identification.many_records.fusion import fused_records
-from jackettwin.identification.many_records.tracking import Followed
+from jackettwin.identification.many_records.tracking import TrackedModes
 
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""
@@ -21,7 +21,7 @@ Key = tuple[Interval | None, Interval | None, str | None]
 
 
 @dataclass(frozen=True)
-class Group:
+class RecordGroup:
     """Records of one bin of wind speed, one yaw sector and one state; None where records do not say.
 
     ``records`` are positions among all records.
@@ -34,12 +34,12 @@ class Group:
     fused: FusedIdentification
 
 
-def grouped(followed: Followed) -> tuple[Group, ...]:
+def grouped(followed: TrackedModes) -> tuple[RecordGroup, ...]:
     """Return the groups of records followed under ``group_key``, each fused; by state, wind speed and yaw."""
     members: dict[Key, list[int]] = {}
     for i, key in enumerate(followed.keys):
         members.setdefault(key, []).append(i)  # type: ignore[arg-type]
-    groups = [Group(*key, tuple(rows), fused_records(followed, key)) for key, rows in members.items()]
+    groups = [RecordGroup(*key, tuple(rows), fused_records(followed, key)) for key, rows in members.items()]
     return tuple(sorted(groups, key=lambda g: (g.state or "", g.wind_speed_m_s or (), g.yaw_deg or ())))
 
 

@@ -11,7 +11,7 @@ from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.identification.picks import plain_picks
 from jackettwin.twin.document import identification_document
-from jackettwin.twin.groups import Group
+from jackettwin.twin.groups import RecordGroup
 from jackettwin.twin.many import Batch
 from jackettwin.twin.together import Together
 
@@ -87,7 +87,7 @@ def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, A
     }
 
 
-def _group_document(group: Group) -> dict[str, Any]:
+def _group_document(group: RecordGroup) -> dict[str, Any]:
     fused: FusedIdentification = group.fused
     names = [channel.name for channel in fused.channels]
     return {

@@ -27,7 +27,7 @@ from jackettwin.updating.targets import Residuals
 
 
 @dataclass(frozen=True)
-class Evidence:
+class UpdateEvidence:
     """What every law is fitted to.
 
     Attributes
@@ -47,7 +47,7 @@ class Evidence:
     relaxations: tuple[MeasuredRelaxation, ...] = ()
 
 
-def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
+def law_problem(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Problem:
     """Return the residuals of all operating states against the parameters of one law.
 
     Raises
@@ -58,7 +58,7 @@ def law_problem(config: TwinConfig, evidence: Evidence, law: str) -> Problem:
     return model_problem(config, evidence, law_model(config, evidence, law))
 
 
-def model_problem(config: TwinConfig, evidence: Evidence, model: SupportModel) -> Problem:
+def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportModel) -> Problem:
     """Return the residuals of all operating states against the parameters of a model."""
     relaxations = relaxation_targets(
         config,
@@ -96,7 +96,7 @@ def tied_problem(
         )
 
 
-def law_model(config: TwinConfig, evidence: Evidence, law: str) -> SupportModel:
+def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> SupportModel:
     """Return the structure on supports of one law, its parameters bounded and informed as the twin says.
 
     Raises
@@ -147,7 +147,9 @@ def _heads(config: TwinConfig) -> Support | None:
         return read_support(source, config.structure, folder=config.path.parent)
 
 
-def measured_shapes(config: TwinConfig, model: SupportModel, evidence: Evidence) -> tuple[ShapeTarget, ...]:
+def measured_shapes(
+    config: TwinConfig, model: SupportModel, evidence: UpdateEvidence
+) -> tuple[ShapeTarget, ...]:
     """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
     state = evidence.state
     first, _ = next(iter(evidence.states.values()))

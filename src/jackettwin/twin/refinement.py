@@ -12,7 +12,7 @@ from jackettwin.errors import located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure import Structure
 from jackettwin.twin.schema import StructureOrName
-from jackettwin.updating.refinement import Refinement, Stage
+from jackettwin.updating.refinement import Refinement, RefinementStage
 from jackettwin.updating.steel import Factor
 
 WORSE = 1e-3
@@ -50,7 +50,7 @@ class RefinementConfig:
 
     path: Path
     structure: Structure
-    stages: tuple[Stage, ...]
+    stages: tuple[RefinementStage, ...]
 
 
 def read_refinement(path: Path | str) -> RefinementConfig:
@@ -68,10 +68,10 @@ def read_refinement(path: Path | str) -> RefinementConfig:
         return RefinementConfig(path, structure, tuple(_stage(i, s) for i, s in enumerate(schema.stages)))
 
 
-def _stage(index: int, schema: StageSchema) -> Stage:
+def _stage(index: int, schema: StageSchema) -> RefinementStage:
     with located(field=f"stages.{index}.free"):
         factors = tuple(Factor(f.part, f.property, *f.bounds) for f in schema.free)
-    return Stage(tuple(schema.parts), dict(schema.frequency_hz), factors)
+    return RefinementStage(tuple(schema.parts), dict(schema.frequency_hz), factors)
 
 
 def refinement_document(result: Refinement) -> dict[str, Any]:

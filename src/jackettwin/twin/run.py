@@ -14,7 +14,7 @@ from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.measure import measure
 from jackettwin.twin.model import twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
-from jackettwin.twin.problem import Evidence, law_problem
+from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
@@ -76,7 +76,9 @@ def run_twin(
     wind = mean_wind(config, state)
     fitted = residuals(config, measured, relaxations)
     states = operating_states(config, measured, state, fitted, wind)
-    evidence = Evidence(assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations)
+    evidence = UpdateEvidence(
+        assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
+    )
     wanted = laws or config.update.laws
     shown, updates = tuple(m.mode for m in measured), []
     for law in relaxing(config, wanted) if relaxations else wanted:
@@ -112,7 +114,7 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
 
 def _update(
     config: TwinConfig,
-    evidence: Evidence,
+    evidence: UpdateEvidence,
     law: str,
     shown: tuple[int, ...],
     progress: Progress,

@@ -16,11 +16,12 @@ from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
 from jackettwin.response.sensors import Seen, Sensor
+from jackettwin.simulate.schema import RayleighSchema, StructureChoice
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure
 from jackettwin.structure.files import RnaSchema
 from jackettwin.twin.calibration import Calibration, Calibrations
-from jackettwin.twin.config import GivenRelaxation, Positive, Ratio, UpdateSettings, WatchSettings
+from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
 from jackettwin.twin.operation import UNKNOWN, OperationRule
 from jackettwin.updating import Target
 
@@ -38,11 +39,9 @@ class SteelSchema(Schema):
     density: Positive = 1.0
 
 
-class StructureChoice(Schema):
+class RefinedStructure(StructureChoice):
     """A structure with overrides; ``steel`` is what ``jackettwin refine`` prints."""
 
-    source: str
-    rna: RnaSchema | None = None
     steel: dict[str, SteelSchema] = {}
 
     def build(self, folder: Path) -> Structure:
@@ -55,15 +54,8 @@ class StructureChoice(Schema):
 
 
 StructureOrName = Annotated[
-    StructureChoice, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
+    RefinedStructure, BeforeValidator(lambda given: {"source": given} if isinstance(given, str) else given)
 ]
-
-
-class RayleighSchema(Schema):
-    """Steel damping: a least ratio and where it stands."""
-
-    ratio: Ratio
-    frequency_hz: Positive
 
 
 class DampingSchema(Schema):

@@ -26,7 +26,7 @@ UNDATED = ""
 """The day of records without a start."""
 
 
-class Conditions(NamedTuple):
+class ConditionSums(NamedTuple):
     """Sums over records of what they say of themselves, as whole numbers (:data:`~.sums.UNIT` a unit).
 
     Attributes
@@ -48,13 +48,13 @@ class Conditions(NamedTuple):
     wave_height: int = 0
     wave_period: int = 0
 
-    def plus(self, other: Conditions) -> Conditions:
+    def plus(self, other: ConditionSums) -> ConditionSums:
         """Return the sums of both."""
-        return Conditions(*map(add, self, other))
+        return ConditionSums(*map(add, self, other))
 
-    def negated(self) -> Conditions:
+    def negated(self) -> ConditionSums:
         """Return what takes the sums out again when it is added."""
-        return Conditions(*map(neg, self))
+        return ConditionSums(*map(neg, self))
 
     @property
     def wind_m_s(self) -> float | None:
@@ -119,7 +119,7 @@ class Operation:
         Levels and temperatures, as whole numbers: what moves frequencies besides wind and waves.
     """
 
-    conditions: Conditions = Conditions()
+    conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeSums] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
     beside: Mapping[str, tuple[int, int]] = field(default_factory=dict)
@@ -159,7 +159,7 @@ class Day:
 class OperationTotal:
     """What all records in one state of operation say."""
 
-    conditions: Conditions = Conditions()
+    conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeTotal] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
 

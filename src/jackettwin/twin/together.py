@@ -8,7 +8,7 @@ from jackettwin.errors import InputError
 from jackettwin.identification import FusedIdentification
 from jackettwin.identification.many_records.fusion import fused_records
 from jackettwin.identification.many_records.tracking import follow
-from jackettwin.twin.groups import Group, group_key, grouped
+from jackettwin.twin.groups import RecordGroup, group_key, grouped
 from jackettwin.twin.many import Batch
 
 
@@ -25,7 +25,7 @@ class Together:
     """
 
     fused: FusedIdentification | None
-    groups: tuple[Group, ...]
+    groups: tuple[RecordGroup, ...]
     warnings: tuple[str, ...]
     duration_s: float
 

@@ -12,7 +12,7 @@ from jackettwin.twin.result import TwinResult
 
 
 @dataclass(frozen=True)
-class TrueMode:
+class StatedMode:
     """A mode as the records state it: the mean over them; its damping by source if they state that."""
 
     label: str
@@ -40,7 +40,7 @@ class TrueParameter:
         return low <= self.true <= high
 
 
-def true_modes(result: TwinResult) -> tuple[TrueMode, ...]:
+def true_modes(result: TwinResult) -> tuple[StatedMode, ...]:
     """Return the true modes of the measured ones, averaged over all records that state them."""
     stated: dict[str, list[dict[str, Any]]] = {}
     for seen in result.observations:
@@ -49,9 +49,9 @@ def true_modes(result: TwinResult) -> tuple[TrueMode, ...]:
     return tuple(_mean(m.label, stated[m.label]) for m in result.measured if m.label in stated)
 
 
-def _mean(label: str, modes: list[dict[str, Any]]) -> TrueMode:
+def _mean(label: str, modes: list[dict[str, Any]]) -> StatedMode:
     sources = modes[0].get("damping_by_source") or {}
-    return TrueMode(
+    return StatedMode(
         label,
         float(np.mean([m["frequency_hz"] for m in modes])),
         float(np.mean([m["damping_ratio"] for m in modes])),

@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.watching import Watch
-from jackettwin.watching.diagnosis import Verdict
+from jackettwin.watching.diagnosis import CauseVerdict
 
 _Z90 = 1.645
 _LIKELY = 0.001
@@ -75,7 +75,7 @@ def _sized(size: float, std: float) -> dict[str, Any]:
     return {"size": float(mid), "interval_90": [float(low), float(high)]}
 
 
-def _cause(verdict: Verdict) -> dict[str, Any]:
+def _cause(verdict: CauseVerdict) -> dict[str, Any]:
     return {
         "cause": verdict.cause,
         "probability": verdict.probability,

@@ -11,7 +11,7 @@ from jackettwin.updating.steel import Factor, SteelFit, fit_steel, only_parts
 
 
 @dataclass(frozen=True)
-class Stage:
+class RefinementStage:
     """One stage: some parts on pinned feet, their measured frequencies and what may change.
 
     Attributes
@@ -42,7 +42,7 @@ class Refinement:
     factors: Mapping[str, Mapping[str, float]]
 
 
-def refine(structure: Structure, stages: tuple[Stage, ...]) -> Refinement:
+def refine(structure: Structure, stages: tuple[RefinementStage, ...]) -> Refinement:
     """Fit stage after stage; each starts from what the earlier ones found.
 
     Raises

@@ -11,7 +11,11 @@ if TYPE_CHECKING:
         lognormal_sizes as lognormal_sizes,
         sensor_noise as sensor_noise,
     )
-    from jackettwin.watching.diagnosis import Diagnosis as Diagnosis, Verdict as Verdict, diagnose as diagnose
+    from jackettwin.watching.diagnosis import (
+        Diagnosis as Diagnosis,
+        CauseVerdict as CauseVerdict,
+        diagnose as diagnose,
+    )
     from jackettwin.watching.history import History as History
     from jackettwin.watching.next_look import expected_information as expected_information
     from jackettwin.watching.watch import (

@@ -30,7 +30,7 @@ MISFIT = 0.1
 
 
 @dataclass(frozen=True)
-class Verdict:
+class CauseVerdict:
     """One cause and what is to be thought of it.
 
     Attributes
@@ -55,7 +55,7 @@ class Diagnosis:
     inseparable : groups of causes, likely ones, that these quantities do not tell apart
     """
 
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[CauseVerdict, ...]
     inseparable: tuple[tuple[str, ...], ...]
 
 
@@ -71,10 +71,10 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
     evidence = np.array([found[0] for found in judged] + [_something(change, kinds)]) + priors
     probability = np.exp(evidence - np.logaddexp.reduce(evidence))
     verdicts = [
-        Verdict(cause.name, float(p), *found[1:], cause.unit)
+        CauseVerdict(cause.name, float(p), *found[1:], cause.unit)
         for cause, p, found in zip(causes, probability, judged, strict=False)
     ]
-    verdicts.append(Verdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
+    verdicts.append(CauseVerdict(SOMETHING_ELSE, float(probability[-1]), np.nan, (np.nan, np.nan), "-"))
     ordered = tuple(sorted(verdicts, key=lambda v: -v.probability))
     likely = [c for c, p in zip(causes, probability, strict=False) if p > 0.02]
     return Diagnosis(ordered, _groups(change, likely, {v.cause: v for v in ordered}, kinds))
@@ -173,7 +173,7 @@ def _something(change: Change, kinds: Sequence[str]) -> float:
 
 
 def _groups(
-    change: Change, causes: Sequence[Cause], verdicts: dict[str, Verdict], kinds: Sequence[str]
+    change: Change, causes: Sequence[Cause], verdicts: dict[str, CauseVerdict], kinds: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
     """Return groups of causes that data and model cannot tell apart, each at the size it would have.
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits
+from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits
 from jackettwin.identification.maximum_likelihood.mode_drift import has_left, long_data_limits, strayed
 from jackettwin.identification.maximum_likelihood.refined import Refined
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -97,7 +97,7 @@ def test_a_close_pair_keeps_its_damping_in_waves(seed):
 
 def test_a_mode_whose_start_is_nowhere_near_is_left_unrefined(tower, rng):
     y = simulate(tower, rng, sample_rate_hz=5.0).data
-    start = Start(
+    start = FitStart(
         frequency_hz=tower.frequency_hz,
         # the second pair started as if it were forty times lighter than the spectrum has it
         damping_ratio=tower.damping_ratio / np.array([1.0, 1.0, 40.0, 40.0]),

@@ -9,7 +9,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record, write_record
 from jackettwin.records.readers import Format, formats, registry
-from jackettwin.records.readers.table import Table
+from jackettwin.records.readers.table import ReadTable
 
 WRITABLE = [form.extensions[0] for form in formats() if form.write]
 
@@ -171,8 +171,8 @@ def test_one_description_serves_a_folder(record: Record, tmp_path: Path) -> None
 def test_an_installed_package_may_bring_a_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Entry points of the group ``jackettwin.readers``, each a ``Format``."""
 
-    def read(path: Path) -> Table:
-        return Table(("acc_x",), np.array([[1.0, 2.0, 3.0]]), sample_rate_hz=10.0, unit="m/s^2")
+    def read(path: Path) -> ReadTable:
+        return ReadTable(("acc_x",), np.array([[1.0, 2.0, 3.0]]), sample_rate_hz=10.0, unit="m/s^2")
 
     class Point:
         def load(self) -> Format:

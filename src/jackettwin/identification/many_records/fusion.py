@@ -20,7 +20,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.many_records.setups import WEAK_TIE, tie
-from jackettwin.identification.many_records.tracking import Followed, Track, follow
+from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence
@@ -129,7 +129,7 @@ def fuse(identifications: Iterable[Identification]) -> FusedIdentification:
     return fused_records(follow((found, None) for found in identifications))
 
 
-def fused_records(followed: Followed, key: Hashable = None) -> FusedIdentification:
+def fused_records(followed: TrackedModes, key: Hashable = None) -> FusedIdentification:
     """Return the modes of records that were followed, over those of one key; over all if it is None.
 
     A mode counts if it is found in ``FEWEST_SHARE`` of them.
@@ -204,7 +204,7 @@ def _correlation(seen: Sightings) -> float:
     return float(np.median(known)) if len(known) else 0.0
 
 
-def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followed: Followed) -> FusedMode:
+def _fused_mode(track: Track, seen: Sightings, keys: Iterable[Hashable], followed: TrackedModes) -> FusedMode:
     mean = average(seen)
     f, zeta = mean.frequency_hz, mean.damping_ratio
     return FusedMode(
@@ -238,7 +238,7 @@ def _variances(seen: Sightings, which: int, zeta: float) -> FloatArray:
     return np.asarray(limit * (np.where(known, claimed, typical) if which == 0 else typical))
 
 
-def _warnings(followed: Followed, modes: Sequence[FusedMode]) -> tuple[str, ...]:
+def _warnings(followed: TrackedModes, modes: Sequence[FusedMode]) -> tuple[str, ...]:
     """Say so if records hold different channels, and where those they share hardly move."""
     names = [c.name for c in followed.channels]
     if len(followed.shared) == len(names):

@@ -113,7 +113,7 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Followed:
+class TrackedModes:
     """Records, and every mode followed through them.
 
     Attributes
@@ -138,7 +138,7 @@ class Followed:
     tracks: tuple[Track, ...]
 
 
-def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> Followed:
+def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> TrackedModes:
     """Follow the modes of records, each with a key that says which group it belongs to.
 
     Within a record, modes go to tracks such that the sum of the distances is least, none twice, so that
@@ -180,7 +180,7 @@ def follow(identifications: Iterable[tuple[Identification, Hashable]]) -> Follow
             remedy="fuse records of the same sensors",
         )
     shared = set.intersection(*map(set, sets))
-    return Followed(
+    return TrackedModes(
         records=tuple(names),
         keys=tuple(keys),
         duration_s=np.array(duration),

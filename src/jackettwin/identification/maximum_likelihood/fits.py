@@ -51,7 +51,7 @@ OF_EACH_MODE = (
 
 
 @dataclass(frozen=True)
-class Start:
+class FitStart:
     """The candidates a fit starts from; arrays as of ``refine``.
 
     Attributes
@@ -101,7 +101,7 @@ class _Tried:
 
 
 def accepted_fits(
-    y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start
+    y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
 ) -> tuple[list[Believed], tuple[Finding, ...]]:
     """Return the fits that are believed, and a finding on each group of modes that none describes.
 
@@ -139,7 +139,9 @@ def not_refined(frequency_hz: FloatArray, obstacle: str) -> Finding:
     return Finding("not_refined", params={"frequencies_hz": _listed(frequency_hz), "obstacle": obstacle})
 
 
-def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: Start) -> _Tried:
+def _whole_band(
+    y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
+) -> _Tried:
     """Return the fit of the whole band in which fewest modes stray, that of the modes alone if none does.
 
     A background is tried beside modes that were fitted but strayed, or nearly: where they cannot be fitted
@@ -158,16 +160,16 @@ def _whole_band(y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, floa
     return best
 
 
-def _rank(tried: _Tried, start: Start) -> tuple[bool, int, int]:
+def _rank(tried: _Tried, start: FitStart) -> tuple[bool, int, int]:
     return tried.fit is None, int(np.sum(tried.strayed & start.sure)), int(tried.strayed.sum())
 
 
-def _given(start: Start) -> dict[str, Any]:
+def _given(start: FitStart) -> dict[str, Any]:
     """Return the arguments that ``refine`` and ``refine_group`` share."""
     return {key: getattr(start, key) for key in GIVEN}
 
 
-def _tried(fit: Callable[[], Refined], most: float, start: Start, duration_s: float) -> _Tried:
+def _tried(fit: Callable[[], Refined], most: float, start: FitStart, duration_s: float) -> _Tried:
     none = np.zeros(len(start.sure), dtype=bool)
     try:
         # what overflows is found by its result

@@ -64,7 +64,7 @@ HELD = 1e-4
 
 
 @dataclass(frozen=True)
-class Prior:
+class ParameterPrior:
     """Centre and precision of the Gaussian prior of every parameter."""
 
     centre: FloatArray
@@ -146,7 +146,7 @@ def _noise_level(data: Periodogram, share: float) -> FloatArray:
     return np.asarray(np.log(share * data.floor.min(axis=0)))
 
 
-def prior_of(data: Periodogram, p: Parameters) -> Prior:
+def prior_of(data: Periodogram, p: Parameters) -> ParameterPrior:
     """Return the prior: weak on colours, noise and lags, none on the modes but those that are not sought."""
     level = _noise_level(data, LIKELY_NOISE)
     blank = p.moved(-p.vector)
@@ -168,10 +168,10 @@ def prior_of(data: Periodogram, p: Parameters) -> Prior:
         noise=std**-2.0,
         lag=np.broadcast_to((LAG_PRIOR * p.lagging_size) ** -2.0, p.lag.shape),
     )
-    return Prior(centre.vector, precision.vector)
+    return ParameterPrior(centre.vector, precision.vector)
 
 
-def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
+def objective(data: Periodogram, prior: ParameterPrior, p: Parameters) -> float:
     """Return the log-posterior up to a constant; −∞ outside the admissible region."""
     low, high = np.log(ZETA_RANGE)
     if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
@@ -190,7 +190,7 @@ def objective(data: Periodogram, prior: Prior, p: Parameters) -> float:
     return float(value + COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real)))
 
 
-def scoring(data: Periodogram, prior: Prior, p: Parameters) -> tuple[FloatArray, FloatArray]:
+def scoring(data: Periodogram, prior: ParameterPrior, p: Parameters) -> tuple[FloatArray, FloatArray]:
     """Return the score and the Fisher information, prior included."""
     model = expected(data, p)
     white, misfit = whitened(data, model)

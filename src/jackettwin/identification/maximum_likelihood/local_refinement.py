@@ -39,7 +39,7 @@ FEW_LINES = 1.5
 
 
 @dataclass(frozen=True)
-class Group:
+class FitGroup:
     """Neighbouring modes, the candidates among them, and the band they are fitted in.
 
     Attributes
@@ -52,7 +52,7 @@ class Group:
     band_hz: tuple[float, float]
 
 
-def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, float]) -> list[Group]:
+def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, float]) -> list[FitGroup]:
     """Part the sure candidates where neighbours are farther apart than the reach.
 
     Doubtful ones join the group in whose band they lie. Bands of neighbouring groups meet halfway.
@@ -71,7 +71,7 @@ def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, floa
     lower = np.maximum(low / REACH, np.append(band_hz[0], middle))
     upper = np.minimum(high * REACH, np.append(middle, band_hz[1]))
     return [
-        Group((frequency_hz > a) & (frequency_hz < b), (float(a), float(b)))
+        FitGroup((frequency_hz > a) & (frequency_hz < b), (float(a), float(b)))
         for a, b in zip(lower, upper, strict=True)
     ]
 
@@ -79,7 +79,7 @@ def groups(frequency_hz: FloatArray, sure: BoolArray, band_hz: tuple[float, floa
 def refine_group(
     y: FloatArray,
     sample_rate_hz: float,
-    group: Group,
+    group: FitGroup,
     *,
     frequency_hz: FloatArray,
     damping_ratio: FloatArray,

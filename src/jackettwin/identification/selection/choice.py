@@ -11,7 +11,7 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
-from jackettwin.identification.maximum_likelihood.fits import Start, accepted_fits, not_refined
+from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits, not_refined
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
@@ -156,8 +156,8 @@ def _start(
     ready: Prepared,
     tones: Tones,
     settings: IdentificationSettings,
-) -> Start:
-    return Start(
+) -> FitStart:
+    return FitStart(
         frequency_hz=np.array([m.frequency_hz for m in modes]),
         damping_ratio=np.array([m.damping_ratio for m in modes]),
         log_damping_std=np.array([_log_damping_std(m) for m in modes]),

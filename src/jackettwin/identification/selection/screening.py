@@ -26,7 +26,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
 from jackettwin.identification.selection.neighbours import apart, of_neighbours
-from jackettwin.identification.selection.second_look import SAME_SHAPE, Look, second_look, seen_again
+from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ class Evidence:
         Whether channels are sensors: a mode may well move one component of many alone.
     """
 
-    look: Look
+    look: SecondLook
     lines: ComplexArray
     scale: FloatArray
     duration_s: float

@@ -28,7 +28,7 @@ SAME_FREQUENCY = 2.0
 
 
 @dataclass(frozen=True)
-class Look:
+class SecondLook:
     """Poles of the second look: flat arrays of the same length.
 
     Attributes
@@ -47,7 +47,7 @@ class Look:
     orders: tuple[int, ...]
 
 
-def second_look(y: FloatArray, ready: Prepared) -> Look:
+def second_look(y: FloatArray, ready: Prepared) -> SecondLook:
     """Return the poles of a shorter lag window, without their uncertainty."""
     rate = ready.settings.sample_rate_hz
     rows = max(int(SHORTER * ready.settings.block_rows), 3)
@@ -62,10 +62,12 @@ def second_look(y: FloatArray, ready: Prepared) -> Look:
         number.append(np.full(len(pole), poles.order))
         f.append(np.abs(pole) / (2.0 * np.pi))
         shapes.append(poles.shapes)
-    return Look(np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders)
+    return SecondLook(np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders)
 
 
-def seen_again(look: Look, mode: ModalEstimate, scale: FloatArray, others: Sequence[ModalEstimate]) -> float:
+def seen_again(
+    look: SecondLook, mode: ModalEstimate, scale: FloatArray, others: Sequence[ModalEstimate]
+) -> float:
     """Return the share of the second look's orders that hold the mode, from the first that does on.
 
     Of a close pair a shape counts that lies in the plane of the two.

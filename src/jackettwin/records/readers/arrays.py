@@ -23,7 +23,7 @@ from jackettwin.records.readers.description import (
     parse_description,
     parse_time,
 )
-from jackettwin.records.readers.table import Table, is_time, seconds, time_unit
+from jackettwin.records.readers.table import ReadTable, is_time, seconds, time_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,7 +41,7 @@ STEP_KEYS = ("dt", "time_step", "step_s", "wf_increment")
 
 def table_from_arrays(
     arrays: Mapping[str, npt.NDArray[Any]], units: Mapping[str, str] | None = None
-) -> Table:
+) -> ReadTable:
     """Return the table that named arrays hold; names are matched on their last dotted part.
 
     Raises
@@ -74,7 +74,7 @@ def table_from_arrays(
         times_s, start = seconds(numbers[times[0]].astype(np.float64), time_unit(_last(times[0])))
     listed = [name for name in rows if name not in vectors or matrix_key]
     found, unit = _units(dict(units or {}), matrix_key, listed, named)
-    return Table(
+    return ReadTable(
         names=tuple(rows),
         data=np.vstack([np.asarray(row, dtype=np.float64) for row in rows.values()]),
         channels={name: ChannelEntry(unit=unit) for name, unit in found.items() if unit},

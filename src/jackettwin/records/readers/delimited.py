@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import parse_time
-from jackettwin.records.readers.table import Table, table_from_columns
+from jackettwin.records.readers.table import ReadTable, table_from_columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,7 +54,7 @@ _DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read names, units and numbers.
 
     Raises
@@ -65,7 +65,7 @@ def read(path: Path) -> Table:
     return _table(_decode(path.read_bytes()).splitlines())
 
 
-def pieces(path: Path) -> Iterator[Table]:
+def pieces(path: Path) -> Iterator[ReadTable]:
     """Yield tables of ``ROWS`` lines; each is read with the lines on top of the file above it.
 
     Raises
@@ -111,7 +111,7 @@ def _encoding(path: Path) -> str:
     return "utf-8-sig"
 
 
-def _table(lines: list[str], above: int = 0) -> Table:
+def _table(lines: list[str], above: int = 0) -> ReadTable:
     """Return what lines hold; ``above`` lines of numbers were left out between the top and the others."""
     lines = _without_toa5(lines)
     comments, start = _preamble(lines)

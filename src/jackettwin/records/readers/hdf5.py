@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from jackettwin.records.readers.table import Table
+    from jackettwin.records.readers.table import ReadTable
     from jackettwin.records.record import Record
 
 UNIT_KEYS = ("unit", "units", "unit_string")
@@ -32,7 +32,7 @@ MOST_COMPRESSION = 1000
 """A damaged header announces any size; what deflate cannot have packed into the file is refused."""
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read every dataset.
 
     Raises
@@ -46,7 +46,7 @@ def read(path: Path) -> Table:
     return table_from_arrays(arrays, units)
 
 
-def pieces(path: Path) -> Iterator[Table]:
+def pieces(path: Path) -> Iterator[ReadTable]:
     """Yield tables of ``ROWS`` rows: of every dataset as long as the longest only these are read.
 
     Raises

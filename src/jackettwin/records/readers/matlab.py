@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from jackettwin.records.readers.table import Table
+    from jackettwin.records.readers.table import ReadTable
     from jackettwin.records.record import Record
 
 HDF5_MARK = b"\x89HDF\r\n\x1a\n"
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read arrays and fields of structs; MATLAB 7.3 files need the hdf5 extra."""
     with path.open("rb") as stream:
         stream.seek(512)  # 7.3 puts HDF5 behind a text block of this size

@@ -11,18 +11,18 @@ from jackettwin.records.readers.arrays import arrays_from_record, table_from_arr
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from jackettwin.records.readers.table import Table
+    from jackettwin.records.readers.table import ReadTable
     from jackettwin.records.record import Record
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read the archive; pickled objects are refused."""
     # np.load leaves a file open that it opened itself and could not read.
     with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
         return table_from_arrays({key: archive[key] for key in archive.files})
 
 
-def read_single(path: Path) -> Table:
+def read_single(path: Path) -> ReadTable:
     """Read a single array: a matrix of channels, a vector, or the named fields of a structured array."""
     with path.open("rb") as stream:
         array = np.load(stream, allow_pickle=False)

@@ -16,7 +16,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import ChannelEntry
 from jackettwin.records.readers.source import Source
-from jackettwin.records.readers.table import Table
+from jackettwin.records.readers.table import ReadTable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,7 @@ MOST_HEADER_LINES = 50
 _AXIS = re.compile(r"(?:TA|AL)([xyz])([a-z]?)$")
 
 
-def read_text(path: Path) -> Table:
+def read_text(path: Path) -> ReadTable:
     """Read a ``.out``: names follow the first line that starts with Time, units in the next."""
     raw = path.read_bytes()
     if raw[:2] in (b"\x01\x00", b"\x02\x00", b"\x03\x00", b"\x04\x00"):  # a binary file by a text name
@@ -58,7 +58,7 @@ def read_text(path: Path) -> Table:
     return _table(names, units, values.T.reshape(len(names), -1), description)
 
 
-def read_binary(path: Path) -> Table:
+def read_binary(path: Path) -> ReadTable:
     """Read a ``.outb``."""
     source = Source(path.read_bytes())
     identifier = int(source.take("<i2", 1)[0])
@@ -93,9 +93,9 @@ def read_binary(path: Path) -> Table:
     return _table(names, units, np.vstack([times, values.T]), description)
 
 
-def _table(names: list[str], units: list[str], values: FloatArray, description: str) -> Table:
+def _table(names: list[str], units: list[str], values: FloatArray, description: str) -> ReadTable:
     channels = {name: _entry(name, unit) for name, unit in zip(names[1:], units[1:], strict=True)}
-    return Table(
+    return ReadTable(
         names=tuple(names[1:]),
         data=values[1:],
         channels=channels,

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from jackettwin.records.readers.table import Table, table_from_columns
+from jackettwin.records.readers.table import ReadTable, table_from_columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,12 +24,12 @@ BUFFER_BYTES = 1 << 20
 """Read ahead of each column [bytes]."""
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read every column; nulls are missing samples."""
     return _table(pq.read_table(path))
 
 
-def pieces(path: Path) -> Iterator[Table]:
+def pieces(path: Path) -> Iterator[ReadTable]:
     """Yield the columns in tables of ``ROWS`` rows."""
     with pq.ParquetFile(path, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
         for batch in file.iter_batches(batch_size=ROWS):
@@ -42,7 +42,7 @@ def write(record: Record, path: Path) -> None:
     pq.write_table(pa.table(columns), path)
 
 
-def _table(stored: Any) -> Table:
+def _table(stored: Any) -> ReadTable:
     # pandas calls an index without a name like this
     names = ["" if re.fullmatch(r"__index_level_\d+__", name) else name for name in stored.column_names]
     zoned = any(pa.types.is_timestamp(field.type) and field.type.tz is not None for field in stored.schema)

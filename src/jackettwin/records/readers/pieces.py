@@ -20,7 +20,7 @@ from jackettwin.errors import InputError
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description
 from jackettwin.records.readers.registry import described_by, reading, tables_of
-from jackettwin.records.readers.table import Table, stated_rate, to_record
+from jackettwin.records.readers.table import ReadTable, stated_rate, to_record
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -67,7 +67,7 @@ def read_record_pieces(path: Path, seconds: float = 600.0, unsaid: Unsaid | None
 class _Timed:
     """Rows of a table with their times since the first sample of the file."""
 
-    table: Table
+    table: ReadTable
     t: FloatArray
 
     def rows(self, start: int, stop: int | None = None) -> _Timed:
@@ -82,7 +82,9 @@ class _Timed:
         return _Timed(replace(self.table, data=data, times_s=times), t)
 
 
-def _split(tables: Iterable[Table], said: Description, unsaid: Unsaid, seconds: float) -> Iterator[Table]:
+def _split(
+    tables: Iterable[ReadTable], said: Description, unsaid: Unsaid, seconds: float
+) -> Iterator[ReadTable]:
     """Yield tables cut at the boundaries, each with the start of its first row."""
     held: _Timed | None = None
     origin: datetime | None = None
@@ -101,9 +103,9 @@ def _split(tables: Iterable[Table], said: Description, unsaid: Unsaid, seconds: 
         yield from _long_enough(held, origin, seconds)
 
 
-def _timed(tables: Iterable[Table], said: Description, unsaid: Unsaid) -> Iterator[_Timed]:
+def _timed(tables: Iterable[ReadTable], said: Description, unsaid: Unsaid) -> Iterator[_Timed]:
     """Yield tables with their times since the first sample, all with the columns of the first."""
-    first: Table | None = None
+    first: ReadTable | None = None
     count, latest, zero = 0, 0.0, 0.0
     for table in tables:
         if first is None:
@@ -124,7 +126,7 @@ def _timed(tables: Iterable[Table], said: Description, unsaid: Unsaid) -> Iterat
         yield _Timed(replace(first, data=data, times_s=times), t)
 
 
-def _columns_of(first: Table, table: Table) -> FloatArray:
+def _columns_of(first: ReadTable, table: ReadTable) -> FloatArray:
     """Return a table's data in the columns of the first one: a column empty for hours stays a channel."""
     if table.names == first.names:
         return table.data
@@ -152,7 +154,7 @@ def _first_boundary(origin: datetime | None, seconds: float) -> float:
     return seconds - (origin - midnight).total_seconds() % seconds
 
 
-def _long_enough(piece: _Timed, origin: datetime | None, seconds: float) -> Iterator[Table]:
+def _long_enough(piece: _Timed, origin: datetime | None, seconds: float) -> Iterator[ReadTable]:
     """Yield a piece with the start of its first row, unless it is too short or empty."""
     if len(piece.t) < 2 or piece.t[-1] - piece.t[0] < SHORTEST * seconds:
         return

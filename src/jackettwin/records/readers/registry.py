@@ -14,7 +14,7 @@ from jackettwin.files import atomic_path
 from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description, description_text, read_description
-from jackettwin.records.readers.table import Table, to_record
+from jackettwin.records.readers.table import ReadTable, to_record
 from jackettwin.records.record import Record
 
 SHARED_DESCRIPTION = "records.json"
@@ -31,10 +31,10 @@ class Format:
 
     name: str
     extensions: tuple[str, ...]
-    read: Callable[[Path], Table]
+    read: Callable[[Path], ReadTable]
     write: Callable[[Record, Path], None] | None = None
     json_beside: bool = True
-    pieces: Callable[[Path], Iterator[Table]] | None = None
+    pieces: Callable[[Path], Iterator[ReadTable]] | None = None
 
 
 FORMATS = (
@@ -92,7 +92,7 @@ def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
         return to_record(_format_of(path).read(path), described, path, unsaid)
 
 
-def tables_of(path: Path) -> Iterator[Table]:
+def tables_of(path: Path) -> Iterator[ReadTable]:
     """Yield a file in tables of some ten thousand rows, where the format allows it; else in one."""
     form = _format_of(path)
     if form.pieces is None:

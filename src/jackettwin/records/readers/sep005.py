@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.files import validate
 from jackettwin.records.readers.description import CHANNEL_METADATA, ChannelEntry, parse_time
-from jackettwin.records.readers.table import Table, seconds, to_record
+from jackettwin.records.readers.table import ReadTable, seconds, to_record
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -74,7 +74,7 @@ def to_sep005(record: Record) -> list[dict[str, Any]]:
     return signals
 
 
-def _table(signals: Sequence[Mapping[str, Any]]) -> Table:
+def _table(signals: Sequence[Mapping[str, Any]]) -> ReadTable:
     for i, signal in enumerate(signals):
         missing = [key for key in REQUIRED if key not in signal]
         if missing or ("fs" not in signal and "time" not in signal):
@@ -100,7 +100,7 @@ def _table(signals: Sequence[Mapping[str, Any]]) -> Table:
         )
     entries = {str(s["name"]): _entry(s, i) for i, s in enumerate(signals)}
     further = {str(s["name"]): extra for s in signals if (extra := {k: s[k] for k in s if k not in KNOWN})}
-    return Table(
+    return ReadTable(
         names=tuple(str(signal["name"]) for signal in signals),
         data=np.vstack(rows),
         channels=entries,

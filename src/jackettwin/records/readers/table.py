@@ -31,7 +31,7 @@ _TIME_UNIT = re.compile(r"^(?P<name>.+?)[_ ]*\(?(?P<unit>ms|us|µs|ns|s)\)?$", r
 
 
 @dataclass(frozen=True)
-class Table:
+class ReadTable:
     """Named columns and whatever else the file said.
 
     Attributes
@@ -71,7 +71,7 @@ def table_from_columns(
     columns: Sequence[npt.NDArray[Any]],
     units: Mapping[str, str] | None = None,
     **known: Any,
-) -> Table:
+) -> ReadTable:
     """Return a table of equally long columns.
 
     The first column is the time if its name says so, or if it has no name and does not just count
@@ -105,7 +105,7 @@ def table_from_columns(
             allowed="at least one column of numbers",
             remedy="check separator and decimal sign",
         )
-    return Table(tuple(names[i] for i in kept), np.vstack([columns[i] for i in kept]), channels, **known)
+    return ReadTable(tuple(names[i] for i in kept), np.vstack([columns[i] for i in kept]), channels, **known)
 
 
 def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> int | None:
@@ -165,7 +165,9 @@ def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArr
     return times_s, None
 
 
-def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsaid | None = None) -> Record:
+def to_record(
+    table: ReadTable, beside: Description | None, path: Path, unsaid: Unsaid | None = None
+) -> Record:
     """Return the record: columns chosen and described by the JSON, in SI units, on a regular grid.
 
     Raises
@@ -222,7 +224,7 @@ def to_record(table: Table, beside: Description | None, path: Path, unsaid: Unsa
     )
 
 
-def _start(table: Table, said: Description, unsaid: Unsaid) -> tuple[datetime | None, tuple[str, ...]]:
+def _start(table: ReadTable, said: Description, unsaid: Unsaid) -> tuple[datetime | None, tuple[str, ...]]:
     """Return the start in UTC, and the remark that the clock's zone is not known."""
     if said.start_utc is not None or table.start_utc is None or table.zone_said:
         return said.start_utc or table.start_utc, ()
@@ -233,7 +235,7 @@ def _start(table: Table, said: Description, unsaid: Unsaid) -> tuple[datetime | 
 
 
 def _described(
-    names: Sequence[str], table: Table, said: Description, unsaid: Unsaid
+    names: Sequence[str], table: ReadTable, said: Description, unsaid: Unsaid
 ) -> tuple[Described, ...]:
     if unsaid.unit is None and table.unit is not None:
         unsaid = replace(unsaid, unit=table.unit)
@@ -268,7 +270,7 @@ def _refuse_twins(names: tuple[str, ...]) -> None:
             )
 
 
-def _row_of(name: str, table: Table) -> int:
+def _row_of(name: str, table: ReadTable) -> int:
     if name not in table.names:
         raise InputError(
             "channel is described but not in the data file",
@@ -280,7 +282,7 @@ def _row_of(name: str, table: Table) -> int:
     return table.names.index(name)
 
 
-def stated_rate(table: Table, said: Description) -> float | None:
+def stated_rate(table: ReadTable, said: Description) -> float | None:
     """Return the rate that the file or its description states, if either does.
 
     Raises

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.records.readers.source import Source
-from jackettwin.records.readers.table import Table, table_from_columns
+from jackettwin.records.readers.table import ReadTable, table_from_columns
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,7 +60,7 @@ class _Contents:
     pieces: dict[str, list[npt.NDArray[Any]]] = field(default_factory=dict)
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read every numeric channel; names get their group in front only if two groups share them."""
     contents = _Contents()
     raw = path.read_bytes()

@@ -16,7 +16,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import ChannelEntry, describe, parse_time
-from jackettwin.records.readers.table import Table
+from jackettwin.records.readers.table import ReadTable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,7 +45,7 @@ class _Set:
     values: FloatArray
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> ReadTable:
     """Read every time response of the file; other data sets are passed over.
 
     Raises
@@ -72,7 +72,7 @@ def read(path: Path) -> Table:
         )
     titles = [s.name for s in sets]
     names = _unique(titles)
-    return Table(
+    return ReadTable(
         names=names,
         data=np.vstack([s.values for s in sets]),
         channels={name: s.entry for name, s in zip(names, sets, strict=True)},
