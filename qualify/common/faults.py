@@ -196,7 +196,9 @@ def sign_turns(record: Record, strength: float, rng: np.random.Generator) -> Rec
     number = (1, 2, len(record.data) // 2)[int(strength) - 1]
     data = record.data.copy()
     data[:number, int(rng.uniform(0.25, 0.75) * data.shape[1]) :] *= -1.0
-    return replace(record, data=data)
+    # which of the two senses was the right one nothing tells: shapes of either are true
+    sense = np.where(np.arange(len(data)) < number, -1.0, 1.0)
+    return replace(record, data=data, metadata={SENSE: sense.tolist()})
 
 
 FAULTS: dict[str, Fault] = {

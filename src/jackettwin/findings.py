@@ -48,6 +48,11 @@ CATALOGUE: dict[str, Kind] = {
         "{channels}: moves against its own sense after {from_s:.0f} to {to_s:.0f} s; turned back, declared "
         "missing between",
     ),
+    "time_lost": Kind(
+        "warning",
+        "{channels}: {lost} {lost_s:.4g} s against the other channels between {from_s:.0f} and {to_s:.0f} s; "
+        "brought into step, declared missing there",
+    ),
     "samples_repeated": Kind(
         "alarm",
         "every value of every channel stands {times} times: only one of them is used. If they were written "
@@ -56,10 +61,10 @@ CATALOGUE: dict[str, Kind] = {
     "another_time": Kind(
         "alarm",
         "{channels}: shows the peaks of the other channels and has nothing in common with them at any delay: "
-        "not of the same minutes",
+        "not of the same minutes; left out if they are fewer than the others",
     ),
     "stored_backwards": Kind(
-        "alarm", "{channels}: moves with the other channels only if read from the end to the beginning"
+        "alarm", "{channels}: moves with the other channels only if read from the end to the beginning; turned"
     ),
     "coarse_quantiser": Kind(
         "warning",

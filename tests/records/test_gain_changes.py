@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from jackettwin.records import assess, repair
+from jackettwin.records.channel_delays import Network
+from jackettwin.records.gain_changes import sign_turns
 
 
 @pytest.mark.parametrize("rows", [[1], [0, 1], [0, 1, 4, 5]])
@@ -50,3 +52,17 @@ def test_sound_sensors_neither_turn_nor_grow(tower: SimpleNamespace) -> None:
         clocks = assess(tower.record(seed)).clocks
         assert not clocks.gains
         assert not clocks.growing
+
+
+def test_a_turn_that_pairs_tell_in_neighbouring_windows_is_taken_back_once() -> None:
+    """Of channel 0 against three others, in ten windows: one pair tells it a window later."""
+    pairs = np.stack(np.triu_indices(4, 1), axis=1)
+    sign = np.ones((10, 6))
+    sign[5:, :2] = -1.0
+    sign[6:, 2] = -1.0
+    network = Network(4, pairs, np.ones(6, dtype=bool), np.empty((0, 2), dtype=np.intp), 0.1)
+    y = np.random.default_rng(1).standard_normal((1, 1000)) * np.ones((4, 1))
+    y[0, 520:] *= -1.0
+    (turn,) = sign_turns(y, sign, np.ones((10, 6)), network, 100)
+    assert turn.rows == (0,)
+    assert turn.start <= 520 <= turn.stop

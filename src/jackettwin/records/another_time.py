@@ -1,9 +1,8 @@
-"""Channels of another time than the others: of another day, stored backwards, or with seconds lost.
+"""Channels of another time than the others: of another day, or stored backwards.
 
 Sensors on one structure have something in common at some delay (``delays.long_delays``, whatever their
 spectra are). Channels that show the peaks of the others and have nothing in common with them were not taken
-together, unless they measure another direction. A delay that is short in one part of a record and long in
-another is time that a logger lost.
+together, unless they measure another direction.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.channel_delays import connected
-from jackettwin.records.clocks import ClockJump, Strangers
+from jackettwin.records.clocks import Strangers
 from jackettwin.records.delays import Phases, long_delays
 
 COMMON = 75.0
@@ -32,10 +31,7 @@ ALIKE = 0.5
 noise beside modes reaches 0.3."""
 BOW = 3
 """Degree of the polynomial that is the slope and bow of a spectrum."""
-PIECES = 4
-"""Parts of a record in each of which delays are sought …"""
-LONGEST_IN_PIECE = 0.3
-"""… up to this share of it."""
+
 
 
 def spanning_pairs(seen: Phases) -> IntArray:
@@ -86,7 +82,7 @@ def strangers(
             continue
         turned = np.concatenate([y, y[:, ::-1]])
         backwards = _common(turned, sample_rate_hz, np.asarray(pairs + [0, len(y)], dtype=np.intp))
-        out.append(Strangers(tuple(rows), bool(np.any(backwards > COMMON))))
+        out.append(Strangers(tuple(rows), bool(np.any(backwards > COMMON)), len(rows) < len(groups[0])))
     return tuple(out)
 
 
@@ -126,29 +122,3 @@ def _alike(seen: Phases) -> FloatArray:
     size = np.linalg.norm(rest, axis=0)
     rest = rest / np.where(size > 0.0, size, 1.0)
     return np.asarray(rest.T @ rest)
-
-
-def lost_time(y: FloatArray, sample_rate_hz: float, tree: IntArray, near_s: float) -> tuple[ClockJump, ...]:
-    """Return the channels that are in step with the others in one part of a record and far off in another."""
-    n = y.shape[1] // PIECES
-    parts = [
-        long_delays(y[:, k * n : (k + 1) * n], sample_rate_hz, tree, near_s, LONGEST_IN_PIECE)
-        for k in range(PIECES)
-    ]
-    delay, common = (np.array(values) for values in zip(*parts, strict=True))
-    near, far = (common > 0.0) & (delay == 0.0), delay != 0.0
-    out = []
-    for edge in np.flatnonzero(near.any(axis=0) & far.any(axis=0)):
-        joined = np.eye(len(y), dtype=bool)
-        for k, (i, j) in enumerate(tree):
-            joined[i, j] = joined[j, i] = k != edge
-        # the pair's delay is of its first channel behind its second
-        side = next(g for g in connected(joined) if tree[edge, 0] in g)
-        by = float(np.median(delay[far[:, edge], edge]))
-        in_step, off = np.flatnonzero(near[:, edge]), np.flatnonzero(far[:, edge])
-        first, last = (in_step[-1], off[0]) if in_step[-1] < off[0] else (off[-1], in_step[0])
-        if last < first:
-            first, last = 0, PIECES - 1
-        by = by if in_step[0] < off[0] else -by
-        out.append(ClockJump(tuple(side), int(first) * n, int(last + 1) * n, by))
-    return tuple(out)

@@ -15,6 +15,7 @@ from jackettwin.records.faults import is_constant
 from jackettwin.records.filters import bridge
 from jackettwin.records.findings import Finding
 from jackettwin.records.logger_clocks import logger_clocks
+from jackettwin.records.lost_time import rejoined
 from jackettwin.records.time_shift import earlier
 
 if TYPE_CHECKING:
@@ -54,6 +55,12 @@ def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
 
 def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> FloatArray:
     """Return samples with what is certainly late brought into step, NaN where no clock is known."""
+    data = data.copy()
+    for i in (i for one in clocks.strangers if one.backwards for i in one.rows):
+        data[i] = data[i, ::-1]
+    for lost in clocks.lost:
+        for i in lost.rows:
+            data[i] = rejoined(data[i], lost)
     out = data.copy()
     for late in clocks.late:
         if late.certain:
@@ -90,7 +97,17 @@ def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
     rate = record.sample_rate_hz
     for stranger in clocks.strangers:
         code = "stored_backwards" if stranger.backwards else "another_time"
-        yield _said(code, channels=_names(record, stranger.rows))
+        yield _said(code, stranger.fewer, channels=_names(record, stranger.rows))
+    for lost in clocks.lost:
+        yield _said(
+            "time_lost",
+            True,
+            channels=_names(record, lost.rows),
+            lost_s=abs(lost.samples) / rate,
+            lost="lost" if lost.samples > 0 else "gained",
+            from_s=lost.start / rate,
+            to_s=lost.stop / rate,
+        )
     for growing in clocks.growing:
         yield _said(
             "gain_grows", True, channels=_names(record, growing.rows), factor=float(np.exp(growing.rate))

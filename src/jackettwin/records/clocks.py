@@ -41,6 +41,16 @@ class ClockJump:
 
 
 @dataclass(frozen=True)
+class LostTime:
+    """Channels that lost so many samples between two of theirs; gained, if negative."""
+
+    rows: tuple[int, ...]
+    start: int
+    stop: int
+    samples: int
+
+
+@dataclass(frozen=True)
 class GainJump:
     """Channels so many times as sensitive before ``start`` (factor[0]) or from ``stop`` on (factor[1]).
 
@@ -70,10 +80,13 @@ class Strangers:
     rows : tuple of int
     backwards : bool
         Whether they have, stored from the end to the beginning.
+    fewer : bool
+        Whether they are fewer than those they are held against: then it is they.
     """
 
     rows: tuple[int, ...]
     backwards: bool
+    fewer: bool = True
 
 
 @dataclass(frozen=True)
@@ -92,7 +105,9 @@ class LoggerClocks:
         Channels whose sensitivity, or sign, jumps.
     growing : tuple of GrowingGain
     strangers : tuple of Strangers
-        Channels of another time; then nothing else is judged.
+        Channels of another time; the rest is judged without them, or after they are turned.
+    lost : tuple of LostTime
+        To be given back before anything else here is taken back.
     """
 
     late: tuple[LateClock, ...] = ()
@@ -103,11 +118,12 @@ class LoggerClocks:
     gains: tuple[GainJump, ...] = ()
     growing: tuple[GrowingGain, ...] = ()
     strangers: tuple[Strangers, ...] = ()
+    lost: tuple[LostTime, ...] = ()
 
     def of_rows(self, rows: Sequence[int]) -> LoggerClocks:
         """Return the same of channels that are these rows of a larger record."""
         named: dict[str, Any] = {
             key: tuple(replace(one, rows=tuple(rows[i] for i in one.rows)) for one in getattr(self, key))
-            for key in ("late", "jumps", "gains", "growing", "strangers")
+            for key in ("late", "jumps", "gains", "growing", "strangers", "lost")
         }
         return replace(self, **named)

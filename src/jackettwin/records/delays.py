@@ -16,6 +16,7 @@ needs doubling.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -28,7 +29,7 @@ FEWEST_LINES = 4
 quarter, and that is taken back."""
 SHORTEST = 200
 """Samples of a record that is looked at."""
-WANTED_BINS = 24
+WANTED_BINS = 12
 """Of frequency, rather than more windows."""
 MOST_BINS = 80
 """Of frequency: more lines are averaged in a wide band."""
@@ -264,12 +265,10 @@ def refined_peak(search_s: FloatArray, values: FloatArray) -> tuple[FloatArray, 
     return np.asarray(search_s[at] + move * step), np.asarray(top - 0.25 * (left - right) * move)
 
 
-def long_delays(
-    y: FloatArray, sample_rate_hz: float, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
-) -> tuple[FloatArray, FloatArray]:
-    r"""Return delays of the pairs beyond ``near_s``, 0 where there is none, and their weights.
-
-    Delays up to the share ``longest`` of the record are tried.
+def in_common(
+    y: FloatArray, sample_rate_hz: float, pairs: IntArray
+) -> tuple[FloatArray, Iterator[FloatArray]] | None:
+    r"""Return delays and, pair after pair, how much its channels have in common at each of them.
 
     .. math:: T(\tau) = \sum_s n_s\left|\frac1{n_s}\sum_{k\in s} e^{i\varphi_k + 2\pi i f_k\tau}\right|^2
 
@@ -278,25 +277,48 @@ def long_delays(
 
     Returns
     -------
-    delay_s, weight : (n_pairs,)
-        The weight is 0 for pairs that are independent at all delays.
+    delay_s : (n_delays,)
+        Of the first channel of a pair behind the second.
+    sums : iterator over (n_delays,)
+        None instead of both if the record is too short to tell.
     """
     n = y.shape[1]
     low, high = (round(edge * n / sample_rate_hz) for edge in band_hz(y, sample_rate_hz))
-    out, weight = np.zeros(len(pairs)), np.zeros(len(pairs))
     if high - low < SUB_BANDS * FEWEST_LINES:
-        return out, weight
+        return None
     lines = np.fft.rfft(y * np.hanning(n), axis=1)[:, low:high]
     unit = lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
     size = int(2 ** np.ceil(np.log2(FINE_COARSE * (high - low))))
     delay = np.fft.fftfreq(size, 1.0 / size) * n / (size * sample_rate_hz)
-    far = np.abs(delay) < longest * n / sample_rate_hz
-    near = np.abs(delay) <= near_s
     edges = np.linspace(0, high - low, SUB_BANDS + 1).astype(int)
-    for pair, (i, j) in enumerate(pairs):
-        cross, sum_ = unit[i] * unit[j].conj(), np.zeros(size)
-        for first, last in pairwise(edges):
-            sum_ += np.abs(np.fft.ifft(cross[first:last], size) * size) ** 2 / (last - first)
+    return delay, (_sum(unit[i] * unit[j].conj(), edges, size) for i, j in pairs)
+
+
+def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
+    parts = (cross[first:last] for first, last in pairwise(edges))
+    return np.asarray(sum(np.abs(np.fft.ifft(part, size) * size) ** 2 / len(part) for part in parts))
+
+
+def long_delays(
+    y: FloatArray, sample_rate_hz: float, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
+) -> tuple[FloatArray, FloatArray]:
+    """Return delays of the pairs beyond ``near_s``, 0 where there is none, and their weights.
+
+    Delays up to the share ``longest`` of the record are tried.
+
+    Returns
+    -------
+    delay_s, weight : (n_pairs,)
+        The weight is 0 for pairs that are independent at all delays.
+    """
+    out, weight = np.zeros(len(pairs)), np.zeros(len(pairs))
+    found = in_common(y, sample_rate_hz, pairs)
+    if found is None:
+        return out, weight
+    delay, sums = found
+    far = np.abs(delay) < longest * y.shape[1] / sample_rate_hz
+    near = np.abs(delay) <= near_s
+    for pair, sum_ in enumerate(sums):
         best = int(np.argmax(np.where(far, sum_, 0.0)))
         if sum_[best] > IMPROBABLE:
             weight[pair] = sum_[best]

@@ -22,10 +22,12 @@ MARGIN = 0.15
 """Share of a window beside a jump that may be of the other sensitivity and not show."""
 LEAST_GROWTH = 1.25
 """Least growth of a sensitivity over the record that counts."""
-FEWEST_TURNED = 2
-"""Windows on either side of a turn of a sign, at least …"""
+FEWEST_TURNED = 0.1
+"""Share of the windows on either side of a turn of a sign, at least …"""
 CONSISTENT = 0.9
 """… and the share of the windows that must agree with it."""
+ONE_TURN = 0.1
+"""Share of the windows within which pairs tell the same turn."""
 
 
 def gain_changes(
@@ -97,8 +99,13 @@ def sign_turns(
     at = np.array([_turn(series) for series in told.T], dtype=int)
     steady = np.mean(told, axis=0) > CONSISTENT
     out: list[GainJump] = []
-    for k in sorted(set(at[at > 0])):
-        rows, others = _sides(network, (np.abs(at - k) <= 1) & (at > 0), steady, weight.sum(axis=0))
+    reach = np.ceil(ONE_TURN * len(sign))
+    # pairs tell one turn in neighbouring windows: it must not be taken back twice
+    while at.any():
+        k = int(np.argmax(np.bincount(at, minlength=2)[1:])) + 1
+        about = (np.abs(at - k) <= reach) & (at > 0)
+        rows, others = _sides(network, about, steady, weight.sum(axis=0))
+        at[about] = 0
         if rows:
             start, stop = _located(y, rows, others, k, length)
             later = start + stop >= EARLIER * y.shape[1]
@@ -132,9 +139,8 @@ def _turn(sign: FloatArray) -> int:
     (3, 0)
     """
     n = len(sign)
-    fits = {
-        k: float(sign[:k].sum() - sign[k:].sum()) / n for k in range(FEWEST_TURNED, n - FEWEST_TURNED + 1)
-    }
+    least = int(np.ceil(FEWEST_TURNED * n))
+    fits = {k: float(sign[:k].sum() - sign[k:].sum()) / n for k in range(least, n - least + 1)}
     best = max(fits, key=lambda k: fits[k], default=0)
     return best if best and fits[best] >= 2.0 * CONSISTENT - 1.0 and sign[best:].mean() < 0.0 else 0
 

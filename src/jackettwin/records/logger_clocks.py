@@ -9,13 +9,14 @@ the same pairs.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.records.another_time import lost_time, may_be_compared, spanning_pairs, strangers
+from jackettwin.records.another_time import may_be_compared, spanning_pairs, strangers
 from jackettwin.records.channel_delays import (
     REACH_RAD,
     Network,
@@ -25,7 +26,7 @@ from jackettwin.records.channel_delays import (
     ties,
     without_gaps,
 )
-from jackettwin.records.clocks import ClockJump, LoggerClocks
+from jackettwin.records.clocks import ClockJump, LoggerClocks, Strangers
 from jackettwin.records.delays import (
     Phases,
     aligned,
@@ -35,9 +36,11 @@ from jackettwin.records.delays import (
     phases,
     trajectories,
 )
+from jackettwin.records.filters import bridge
 from jackettwin.records.gain_changes import gain_changes, sign_turns
 from jackettwin.records.jumps import runs, steps
 from jackettwin.records.late_clocks import EXPLAINED, drifts, late_clocks
+from jackettwin.records.lost_time import lost_time, rejoined
 
 LEAST_WEIGHT = 20.0
 """Sum of the weights of a pair that says anything: two bins of full coherence, or twenty of half."""
@@ -64,6 +67,7 @@ def logger_clocks(
     velocity: Sequence[bool],
     places: Sequence[object],
     directions: Sequence[Sequence[float]] = (),
+    losses: int = 2,
 ) -> LoggerClocks:
     """Return which channels are late, jump or drift against the others, or are of another time.
 
@@ -77,6 +81,8 @@ def logger_clocks(
         Where each channel sits; None if it is not known.
     directions : (n_channels, 3), optional
         Which way it points; zeros if that is not known.
+    losses : int
+        Of seconds, that are given back at most.
     """
     whole = LoggerClocks(stop=y.shape[1])
     if len(y) < 2:
@@ -87,12 +93,21 @@ def logger_clocks(
         return whole
     tree = spanning_pairs(first_look)
     compared = may_be_compared(directions, len(y))
+    again = partial(logger_clocks, sample_rate_hz=sample_rate_hz)
     apart = strangers(y, sample_rate_hz, first_look, tree, compared)
     if apart:
-        return replace(whole, strangers=apart)
-    lost = lost_time(y, sample_rate_hz, tree, _near_s(first_look))
-    if lost:
-        return replace(whole, jumps=lost, judged=False)
+        return _without_strangers(y, apart, again, velocity, places, directions)
+    lost, parted = lost_time(y, sample_rate_hz, first_look, same_place)
+    if parted and (lost is None or not losses):
+        return replace(whole, judged=False)
+    if lost is not None:
+        moved = y.copy()
+        for i in lost.rows:
+            moved[i] = bridge(rejoined(y[i], lost))
+        found = again(
+            moved, velocity=velocity, places=places, directions=directions, losses=losses - 1
+        )
+        return replace(found, lost=(lost, *found.lost))
     far = _long_delays(y, sample_rate_hz, first_look, same_place)
     near = phases(_moved(y, far, sample_rate_hz), sample_rate_hz, turn) if far.any() else first_look
     seen = _seen(near, len(y), same_place)
@@ -129,6 +144,29 @@ def logger_clocks(
         still, seen.network, far, (slope / window_s, slope_std / window_s), (first + 0.5) * window_s
     )
     return replace(whole, late=late, jumps=jumps, start=start, stop=stop)
+
+
+def _without_strangers(
+    y: FloatArray,
+    apart: tuple[Strangers, ...],
+    again: Callable[..., LoggerClocks],
+    velocity: Sequence[bool],
+    places: Sequence[object],
+    directions: Sequence[Sequence[float]],
+) -> LoggerClocks:
+    """Judge the channels again, those stored backwards turned, those of another time left out."""
+    turned = [i for one in apart if one.backwards for i in one.rows]
+    out = {i for one in apart if not one.backwards for i in one.rows}
+    rows = [i for i in range(len(y)) if i not in out]
+    y = y.copy()
+    y[turned] = y[turned, ::-1]
+    found = again(
+        y[rows],
+        velocity=[velocity[i] for i in rows],
+        places=[places[i] for i in rows],
+        directions=[directions[i] for i in rows] if len(directions) else (),
+    ).of_rows(rows)
+    return replace(found, strangers=(*apart, *found.strangers))
 
 
 def _long_delays(y: FloatArray, sample_rate_hz: float, seen: Phases, same_place: IntArray) -> FloatArray:

@@ -17,7 +17,7 @@ from jackettwin.records.zero_steps import without_step, zero_step
 Findings = tuple[Finding, ...]
 
 UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
-"""What is found of a record that makes every mode of it doubtful."""
+"""What is found of a record that makes every mode of it doubtful, unless it was repaired."""
 
 
 def each_sample_once(record: Record) -> tuple[Record, Findings]:
