@@ -64,7 +64,8 @@ CATALOGUE: dict[str, Kind] = {
         "not of the same minutes; left out if they are fewer than the others",
     ),
     "stored_backwards": Kind(
-        "alarm", "{channels}: moves with the other channels only if read from the end to the beginning; turned"
+        "alarm",
+        "{channels}: moves with the other channels only if read from the end to the beginning; turned",
     ),
     "coarse_quantiser": Kind(
         "warning",

@@ -33,7 +33,6 @@ BOW = 3
 """Degree of the polynomial that is the slope and bow of a spectrum."""
 
 
-
 def spanning_pairs(seen: Phases) -> IntArray:
     """Return the pairs that join all channels and have most in common, (n_channels − 1, 2)."""
     n = int(seen.pairs.max()) + 1

@@ -104,9 +104,7 @@ def logger_clocks(
         moved = y.copy()
         for i in lost.rows:
             moved[i] = bridge(rejoined(y[i], lost))
-        found = again(
-            moved, velocity=velocity, places=places, directions=directions, losses=losses - 1
-        )
+        found = again(moved, velocity=velocity, places=places, directions=directions, losses=losses - 1)
         return replace(found, lost=(lost, *found.lost))
     far = _long_delays(y, sample_rate_hz, first_look, same_place)
     near = phases(_moved(y, far, sample_rate_hz), sample_rate_hz, turn) if far.any() else first_look
