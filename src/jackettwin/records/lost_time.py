@@ -8,6 +8,7 @@ most in common afterwards (``delays.in_common``), and it is believed if, moved b
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,7 +70,7 @@ def lost_time(
         return None, False
     length = y.shape[1] // len(seen.coherency)
     best: LostTime | None = None
-    go_on = GO_ON
+    go_on, least = GO_ON, seen.search_s[-1] * sample_rate_hz
     for samples in _likely(y, sample_rate_hz, seen, parting, length):
         tried = _tried(y, sample_rate_hz, parting, samples, length)
         if (
@@ -226,7 +227,7 @@ def _tried(
 
 
 def _located(y: FloatArray, parting: _Parting, samples: int, length: int) -> LostTime:
-    """Return where the samples are lost: up to there the group follows the others, from there moved by them."""
+    """Return where the samples are lost: up to there the group follows the others, then moved."""
     rows, others = list(parting.rows), list(parting.others)
     start, stop = max(parting.window - 2, 0) * length, min((parting.window + 2) * length, y.shape[1])
     before = y[:, : max(parting.window - 1, 1) * length]
