@@ -73,11 +73,7 @@ def lost_time(
     go_on, least = GO_ON, seen.search_s[-1] * sample_rate_hz
     for samples in _likely(y, sample_rate_hz, seen, parting, length):
         tried = _tried(y, sample_rate_hz, parting, samples, length)
-        if (
-            tried is not None
-            and tried[1] > go_on
-            and abs(tried[0].samples) > seen.search_s[-1] * sample_rate_hz
-        ):
+        if tried is not None and tried[1] > go_on and abs(tried[0].samples) > least:
             best, go_on = tried
     # one channel that parts and is nowhere found again may have fallen silent
     return best, best is not None or len(parting.rows) > 1
@@ -171,9 +167,7 @@ def _before(explained: FloatArray, k: int) -> FloatArray:
     return np.asarray(explained[1:k].mean(axis=0) if k > 1 else explained[0])
 
 
-def _between(
-    pairs: IntArray, one: list[int] | tuple[int, ...], other: list[int] | tuple[int, ...]
-) -> BoolArray:
+def _between(pairs: IntArray, one: Sequence[int], other: Sequence[int]) -> BoolArray:
     i, j = pairs.T
     return np.asarray((np.isin(i, one) & np.isin(j, other)) | (np.isin(j, one) & np.isin(i, other)))
 
