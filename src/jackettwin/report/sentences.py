@@ -24,8 +24,6 @@ MARGIN = 0.10
 excitation range with a margin; ten per cent is its usual size)."""
 SMALL = 0.10
 """A source that gives less of a mode's damping is not named first."""
-_SHOWN_GAINS = 2
-"""Parameters that a sentence on a further measurement names; the table has all."""
 _MOST = 4
 """Parameters of the ground on the first page; what there is of single legs follows."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
@@ -428,10 +426,13 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _step(a: Answers, step: NextStep) -> str:
-    gains = sorted(step.factors.items(), key=lambda item: item[1])
+    kinds = {g.name: g.kind for g in a.ground}
+    gains: dict[str, tuple[str, float]] = {}  # of stiffness and of damping, the one that becomes surest
+    for name, factor in sorted(step.factors.items(), key=lambda item: item[1]):
+        gains.setdefault(kinds.get(name, ""), (name, factor))
     texts = [
         f"{parameter_words(name)} to a factor of {factor:.2g} (now {_factor(a, name)})"
-        for name, factor in gains[:_SHOWN_GAINS]
+        for name, factor in gains.values()
     ]
     what = step_words(a, step)
     return f"{what[0].upper()}{what[1:]}. It narrows the 90 % interval of {listed(texts)}."

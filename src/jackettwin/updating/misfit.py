@@ -10,9 +10,9 @@ from scipy.stats import chi2
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
 
-UNLIKELY = 1e-3
+UNLIKELY = 0.01
 """Probability of so large a χ² below which the model is wrong or the data surer of themselves than they may
-be: one run in a thousand of a true model is called wrong."""
+be: one run in a hundred of a true model is called wrong."""
 _SEEN = 0.5
 """Standard deviations of the data that a parameter's prior standard deviation must move to be fitted."""
 
