@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from threading import Timer
 from typing import Any
 
 import click
@@ -19,6 +20,8 @@ from jackettwin.errors import InputError, JackettwinError
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
+_PATIENCE_S = 0.8
+"""Time after which a command that is still being read says so: on a cold disk SciPy takes seconds."""
 messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
@@ -47,7 +50,13 @@ class Commands(click.Group):
         if cmd_name not in self.summaries:
             return None
         name = cmd_name.replace("-", "_")
-        command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
+        waiting = Timer(_PATIENCE_S, messages.print, ["reading the numerical libraries"])
+        waiting.daemon = True
+        waiting.start()
+        try:
+            command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
+        finally:
+            waiting.cancel()
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -7,14 +7,12 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-EVERY_S = 2.0
-"""Shortest time between two lines: a thousand records are not a thousand lines."""
-SILENCE_S = 15.0
-"""Time after which a step that goes on says so again."""
+EVERY_S = 1.8
+"""Time between two lines: a thousand records are not a thousand lines, and no silence is longer."""
 
 
 class PlainProgress:
-    """Says which step is running, at most every ``EVERY_S``, and that it still does after ``SILENCE_S``.
+    """Says which step is running, at most every ``EVERY_S``, and that it still does.
 
     Parameters
     ----------
@@ -35,23 +33,23 @@ class PlainProgress:
         with self._lock:
             self._step, self._what, self._within = self._step + 1, what, ""
             self._begun = time.monotonic()
-            self._line(EVERY_S)
+            self._line()
 
     def within(self, what: str) -> None:
         """Say how far the present step is."""
         with self._lock:
             self._within = what
-            self._line(EVERY_S)
+            self._line()
 
     def remind(self) -> None:
         """Say that the present step goes on, if nothing was said for a while."""
         with self._lock:
             if self._what:
-                self._line(SILENCE_S)
+                self._line()
 
-    def _line(self, after_s: float) -> None:
+    def _line(self) -> None:
         now = time.monotonic()
-        if now - self._said < after_s:
+        if now - self._said < EVERY_S:
             return
         self._said, lasts = now, now - self._begun
         going = f", {lasts:.0f} s" if lasts >= 1.0 else ""
@@ -64,7 +62,7 @@ def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[PlainProg
     progress, done = PlainProgress(total, say), threading.Event()
 
     def remind() -> None:
-        while not done.wait(EVERY_S):
+        while not done.wait(0.05 * EVERY_S):
             progress.remind()
 
     thread = threading.Thread(target=remind, daemon=True)
