@@ -27,9 +27,9 @@ FACTORS = (G0, 1.0 / G0, 1e3, 1e-3, 1e3 / G0)
 
 def named(record: Record, fault: str) -> set[str]:
     """Return the channels with a fault, and those that are as likely."""
-    findings = [f for f in assess(record).findings if f.fault == fault]
+    findings = [f for f in assess(record).findings if f.code.startswith(fault)]
     doubt = fault == "sign" and not all(f.repaired for f in findings)
-    words = {f.channel for f in findings} | {word for f in findings for word in f.text.split()}
+    words = {f.subject for f in findings} | {word for f in findings for word in f.text.split()}
     return {name for name in record.channel_names if doubt or name in words}
 
 

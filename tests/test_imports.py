@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -39,3 +40,13 @@ def test_a_circle_of_types_alone_is_seen(tmp_path: Path) -> None:
     (tmp_path / "b.py").write_text("if TYPE_CHECKING:\n    from a import T\n")
     with pytest.raises(CycleError):
         TopologicalSorter(imported(tmp_path)).prepare()
+
+
+def test_no_public_class_name_stands_for_two_things() -> None:
+    names = Counter(
+        node.name
+        for path in SOURCE.rglob("*.py")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    )
+    assert [name for name, times in names.items() if times > 1] == []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 Severity = Literal["info", "warning", "alarm"]
 Value = float | int | str | bool | None
@@ -100,23 +100,38 @@ CATALOGUE: dict[str, Kind] = {
         "the clocks of the loggers wander against each other: no stretch is long enough to bring them into "
         "step",
     ),
-    **{code: Kind("info", "{text}") for code in ("drift", "file", "held", "spikes", "stuck")},
-    **{
-        code: Kind("warning", "{text}")
-        for code in (
-            "changed",
-            "clipped",
-            "clock",
-            "dead",
-            "empty",
-            "outliers",
-            "sign",
-            "unit",
-            "unreadable",
-            "unsteady",
-            "weak",
-        )
-    },
+    "file": Kind("info", "{text}"),
+    "dead": Kind("warning", "does not vary at all; left out"),
+    "empty": Kind("warning", "{share:.0%} of the samples are missing; left out"),
+    "outliers": Kind("warning", "{share:.1%} of the samples stand out, too many to be spikes; kept"),
+    "spikes": Kind("info", "{share:.3%} of the samples are spikes; declared missing"),
+    "clipped": Kind(
+        "warning", "{share:.2%} of the samples are at the range's end; kept, amplitudes are too small"
+    ),
+    "stuck": Kind("info", "reading is frozen for {share:.2%} of the time; declared missing"),
+    "held": Kind(
+        "info", "every value is repeated {times} times: the sensor is read at a lower rate and lags"
+    ),
+    "drift": Kind("info", "drifts over {ratio:.1f} times the rms of its vibration; slow part removed"),
+    "unsteady": Kind(
+        "warning",
+        "is {ratio:.3g} times stronger in one tenth of the record than usual: not stationary",
+    ),
+    "sign_turned": Kind("warning", "moves against all parallel channels; sign turned"),
+    "sign_unclear": Kind(
+        "warning", "moves against a parallel channel, and nothing says which of them is wrong; kept"
+    ),
+    "unit": Kind("warning", "{which} is {size} beside its like: {units}? kept, correct the unit"),
+    "weak": Kind("warning", "rms is {ratio:.2g} times that of its like: sensor or unit wrong?"),
+    "strong": Kind("warning", "rms is {ratio:.2g} times that of its like: sensor or unit wrong?"),
+    "unreadable": Kind("warning", "{samples} samples are infinite or beyond {limit:g}; declared missing"),
+    "changed": Kind("warning", "{what}; declared missing there"),
+    "changed_unclear": Kind("warning", "{what}, or a channel like it changes; kept"),
+    "stamps_jitter": Kind(
+        "warning", "time stamps jitter by {share:.0%} of a step (rms); interpolated to a regular grid"
+    ),
+    "stamps_missing": Kind("warning", "{samples} samples have no time stamp; declared missing"),
+    "stamps_disordered": Kind("warning", "{samples} time stamps repeat or run backwards; left out"),
     # identification
     "not_refined": Kind("warning", "modes at {frequencies_hz} Hz not refined: {obstacle}"),
     "hidden_mode": Kind(
@@ -300,11 +315,14 @@ class Finding:
         The channel, mode, record or parameter it concerns; None if it concerns the whole.
     params : mapping
         Numbers and names the sentence is made from, SI units.
+    repaired : bool
+        Whether what was found is taken out of the record.
     """
 
     code: str
     subject: str | None = None
     params: Mapping[str, Value] = field(default_factory=dict)
+    repaired: bool = False
 
     def __post_init__(self) -> None:
         if self.code not in CATALOGUE:
@@ -319,6 +337,18 @@ class Finding:
     def text(self) -> str:
         """The sentence, without its subject."""
         return CATALOGUE[self.code].sentence.format(**self.params)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """It as plain JSON data, with its severity and its sentence."""
+        return {
+            "code": self.code,
+            "severity": self.severity,
+            "subject": self.subject,
+            "params": dict(self.params),
+            "text": self.text,
+            "repaired": self.repaired,
+        }
 
     def __str__(self) -> str:
         """The sentence, with its subject."""

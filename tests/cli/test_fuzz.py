@@ -194,7 +194,7 @@ def test_signals_that_carry_nothing(name: str, case: Case, clean: np.ndarray) ->
 def test_signals_with_faults(name: str, case: Case, clean: np.ndarray) -> None:
     change, fault = FLAGGED_SIGNALS[name]
     document = flagged(identify(signals(case, change(clean.copy(), np.random.default_rng(3)))))
-    assert not fault or fault in {finding["fault"] for finding in document["quality"]["findings"]}
+    assert not fault or fault in {finding["code"] for finding in document["quality"]["findings"]}
     if name == "tones alone":
         assert document["modes"] == []
 

@@ -106,7 +106,7 @@ def test_methods_side_by_side(tmp_path: Path) -> None:
 
 def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
     def record(*findings: tuple[str | None, str, str]) -> dict[str, object]:
-        keys = ("channel", "fault", "text")
+        keys = ("subject", "code", "text")
         return {"quality": {"findings": [dict(zip(keys, f, strict=True)) for f in findings]}}
 
     left = (None, "file", "vectors of another length are left out: wind (6)")

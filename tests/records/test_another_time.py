@@ -16,7 +16,7 @@ UPPER = [0, 1, 4, 5]
 def alarms(record: Record) -> list[tuple[str, str]]:
     quality = assess(record)
     codes = ("another_time", "stored_backwards", "clock_jump", "clocks_wander", "time_lost")
-    return [(f.fault, f.text.split(":")[0]) for f in quality.findings if f.fault in codes]
+    return [(f.code, f.text.split(":")[0]) for f in quality.findings if f.code in codes]
 
 
 def without_directions(record: Record) -> Record:

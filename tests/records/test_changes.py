@@ -97,7 +97,7 @@ def test_a_sign_that_turned_is_that_of_the_longer_side(tower: SimpleNamespace) -
     record = changed(sound, 2, 4_200, -1.0, before=True)
     quality = assess(record)
     (finding,) = quality.findings
-    assert (finding.fault, finding.repaired) == ("sign_turns", True)
+    assert (finding.code, finding.repaired) == ("sign_turns", True)
     ready = repair(record, quality).data[2]
     known = np.isfinite(ready)
     assert known.mean() > 0.9
@@ -113,7 +113,7 @@ def test_a_gain_that_jumps_is_scaled_back(rows: list[int], factor: float, tower:
     data[rows, :4_200] *= factor
     quality = assess(replace(sound, data=data))
     (finding,) = quality.findings
-    assert (finding.fault, finding.repaired) == ("gain_jump", True)
+    assert (finding.code, finding.repaired) == ("gain_jump", True)
     ready = repair(replace(sound, data=data), quality).data
     known = np.isfinite(ready)
     # a window of a tenth of the record at most is lost; noise of two per cent moves the gain by less

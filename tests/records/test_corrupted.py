@@ -142,7 +142,7 @@ def test_absurd_numbers_are_flagged() -> None:
     data[0, 3], data[0, 9] = np.inf, 1e200
     record = Record(data, 20.0, (Channel("a"), Channel("b")))
     quality = assess(record)
-    assert [(f.channel, f.fault) for f in quality.findings] == [("a", "gaps"), ("a", "unreadable")]
+    assert [(f.subject, f.code) for f in quality.findings] == [("a", "gaps"), ("a", "unreadable")]
     assert np.flatnonzero(np.isnan(repair(record, quality).data[0])).tolist() == [3, 9]
 
 

@@ -29,7 +29,7 @@ CODES = (
 
 
 def said(record: Record) -> list[str]:
-    return [f.fault for f in assess(record).findings if f.fault in CODES]
+    return [f.code for f in assess(record).findings if f.code in CODES]
 
 
 def moved(record: Record, rows: list[int], samples: int, start: int = 0) -> Record:

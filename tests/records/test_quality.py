@@ -13,7 +13,7 @@ from jackettwin.records.quality import Quality
 
 
 def faults_of(quality: Quality) -> set[tuple[str | None, str]]:
-    return {(finding.channel, finding.fault) for finding in quality.findings}
+    return {(finding.subject, finding.code) for finding in quality.findings}
 
 
 def with_row(record: Record, i: int, row: np.ndarray) -> Record:
@@ -103,7 +103,7 @@ def test_a_swapped_sign_is_found_and_turned_back(i: int, tower: SimpleNamespace)
         record = tower.record(seed)
         swapped = with_row(record, i, -record.data[i])
         quality = assess(swapped)
-        assert faults_of(quality) == {(record.channels[i].name, "sign")}
+        assert faults_of(quality) == {(record.channels[i].name, "sign_turned")}
         assert np.array_equal(repair(swapped, quality).data, record.data)
 
 
@@ -118,7 +118,7 @@ def test_with_two_sensors_nobody_knows_which_is_wrong(tower: SimpleNamespace) ->
     record = tower.record(8).select(["acc_144_x", "acc_77_x"])
     swapped = with_row(record, 0, -record.data[0])
     quality = assess(swapped)
-    assert len(quality.findings) == 1 and quality.findings[0].fault == "sign"
+    assert len(quality.findings) == 1 and quality.findings[0].code == "sign_unclear"
     assert not quality.findings[0].repaired
     assert np.array_equal(repair(swapped, quality).data, swapped.data)
 
@@ -164,8 +164,8 @@ def test_steady_wind_and_yaw_are_not_dead(tower: SimpleNamespace) -> None:
 def test_a_record_that_is_not_stationary_is_flagged(tower: SimpleNamespace) -> None:
     record = tower.record(16)
     grown = replace(record, data=record.data * np.exp(np.linspace(0.0, 8.0, record.data.shape[1])))
-    assert {f.fault for f in assess(grown).findings} >= {"unsteady"}
-    assert "unsteady" not in {f.fault for f in assess(record).findings}
+    assert {f.code for f in assess(grown).findings} >= {"unsteady"}
+    assert "unsteady" not in {f.code for f in assess(record).findings}
 
 
 def test_a_blow_that_rings_down_is_not_stationary(tower: SimpleNamespace) -> None:
@@ -174,7 +174,7 @@ def test_a_blow_that_rings_down_is_not_stationary(tower: SimpleNamespace) -> Non
     t = np.arange(12_000) / 20.0 - 200.0
     ringing = np.where(t > 0.0, np.exp(-t / 90.0) * np.sin(2.0 * np.pi * 0.178 * t), 0.0)
     struck = replace(record, data=record.data + 20.0 * record.data.std(axis=1, keepdims=True) * ringing)
-    assert {f.fault for f in assess(struck).findings} == {"unsteady"}
+    assert {f.code for f in assess(struck).findings} == {"unsteady"}
 
 
 def test_faults_lower_the_score(tower: SimpleNamespace) -> None:

@@ -17,7 +17,7 @@ UP = (0.0, 0.0, 1.0)
 
 
 def sign_findings(record: Record) -> dict[str | None, bool]:
-    return {f.channel: f.repaired for f in assess(record).findings if f.fault == "sign"}
+    return {f.subject: f.repaired for f in assess(record).findings if f.code.startswith("sign_")}
 
 
 def two_spans(tower: SimpleNamespace, **place: object) -> Record:

@@ -11,7 +11,7 @@ from jackettwin.records import Channel, Record, assess
 
 
 def unit_findings(record: Record) -> dict[str | None, str]:
-    return {f.channel: f.text for f in assess(record).findings if f.fault == "unit"}
+    return {f.subject: f.text for f in assess(record).findings if f.code == "unit"}
 
 
 def times(record: Record, i: int, factor: float) -> Record:

@@ -129,7 +129,7 @@ def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
     found = seen(replace(record, data=data, channels=record.channels[:4]), tmp_path / "a.parquet")
     dead = record.channel_names[1]
     assert found.record.channel_names == (record.channel_names[0], *record.channel_names[2:4])
-    assert [f.channel for f in found.quality.findings if f.fault == "dead"] == [dead]
+    assert [f.subject for f in found.quality.findings if f.code == "dead"] == [dead]
     nothing = replace(record, data=np.ones((1, 6000)), channels=record.channels[:1])
     with pytest.raises(InputError, match="no channel carries a signal"):
         seen(nothing, tmp_path / "b.parquet")

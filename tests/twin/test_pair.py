@@ -241,11 +241,26 @@ def test_a_mean_covers_the_truth_as_often_as_it_says() -> None:
     assert inside / 400 < 0.995
 
 
+def test_an_observation_of_the_version_before_is_read(seen: Observation) -> None:
+    document = OBSERVATION.dump(seen)
+    fault = {"fault": "sign", "text": "moves against all parallel channels; sign turned", "channel": "a"}
+    old = {
+        **document,
+        "schema_version": 1,
+        "quality": {**document["quality"], "findings": [{**fault, "repaired": True, "params": {}}]},
+        "findings": [{"code": "sign", "subject": "a", "params": {"text": fault["text"]}}],
+    }
+    now = OBSERVATION.load(old)
+    assert [str(f) for f in now.findings] == [f"a: {fault['text']}"]
+    assert now.findings[0].severity == "warning"
+    assert now.quality["findings"][0]["subject"] == "a"
+
+
 def test_documents_of_another_kind_or_version_are_refused(seen: Observation) -> None:
     document = OBSERVATION.dump(seen)
     with pytest.raises(InputError, match="another kind of document"):
         STATE.load(document)
-    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 1"):
+    with pytest.raises(InputError, match=r"schema_version: unknown version.*allowed: 1 to 2"):
         OBSERVATION.load({**document, "schema_version": 99})
     with pytest.raises(InputError, match=r"identification\.modes\.0\.frequency_hz: not a number"):
         damaged = json.loads(json.dumps(document))

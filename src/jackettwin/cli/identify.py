@@ -270,7 +270,7 @@ def _print_one(document: Mapping[str, Any]) -> None:
         output.print(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
     _print_rejected(document["rejected"])
     for finding in document["quality"]["findings"]:
-        output.print(f"quality: {finding['channel'] or 'record'}: {finding['text']}")
+        output.print(f"quality: {finding['subject'] or 'record'}: {finding['text']}")
     for note in document["notes"]:
         output.print(f"note: {note}")
     for warning in document["warnings"]:
@@ -320,8 +320,8 @@ def _print_findings(records: Iterable[Mapping[str, Any]], n: int) -> None:
     seen: dict[tuple[str | None, str], list[str]] = {}
     for record in records:
         for finding in record["quality"]["findings"]:
-            name, fault, text = finding["channel"], finding["fault"], finding["text"]
-            about = text.partition(":")[0] if fault == "file" else fault
+            name, code, text = finding["subject"], finding["code"], finding["text"]
+            about = text.partition(":")[0] if code == "file" else code
             seen.setdefault((name, about), []).append(text)
     often = sorted(seen.items(), key=lambda item: -len(item[1]))
     for (name, _), texts in often[:_SHOWN]:

@@ -75,20 +75,16 @@ class SensorChange:
 def described(change: SensorChange, step_s: float) -> str:
     """Return a change in words.
 
-    >>> described(Change(0, 6000, 12000, 3.02, True), 0.05)
-    'is 3.0 times as sensitive from 300 s on as before; declared missing there'
+    >>> described(SensorChange(0, 6000, 12000, 3.02, True), 0.05)
+    'is 3.0 times as sensitive from 300 s on as before'
     """
     at, than = (change.start, "before") if change.start else (change.stop, "afterwards")
     when = f"from {at * step_s:.0f} s on" if change.start else f"until {at * step_s:.0f} s"
     if change.gain == 0.0:
-        what = f"shows nothing of what the other channels do {when}"
-    elif change.gain < 0.0:
-        what = f"moves against its own sense {when}, {-change.gain:.1f} times as strong as {than}"
-    else:
-        what = f"is {change.gain:.1f} times as sensitive {when} as {than}"
-    if change.certain:
-        return f"{what}; declared missing there"
-    return f"{what}, or a channel like it changes; kept"
+        return f"shows nothing of what the other channels do {when}"
+    if change.gain < 0.0:
+        return f"moves against its own sense {when}, {-change.gain:.1f} times as strong as {than}"
+    return f"is {change.gain:.1f} times as sensitive {when} as {than}"
 
 
 def changes(y: FloatArray) -> list[SensorChange]:

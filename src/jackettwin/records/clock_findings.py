@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.findings import CATALOGUE
+from jackettwin.findings import Finding
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records.clocks import LateClock, LoggerClocks
 from jackettwin.records.faults import is_constant
 from jackettwin.records.filters import bridge
-from jackettwin.records.findings import Finding
 from jackettwin.records.logger_clocks import logger_clocks
 from jackettwin.records.lost_time import rejoined
 from jackettwin.records.time_shift import earlier
@@ -174,7 +173,7 @@ def _late(record: Record, late: LateClock) -> Finding:
 
 
 def _said(code: str, repaired: bool = False, **params: float | str) -> Finding:
-    return Finding(code, CATALOGUE[code].sentence.format(**params), None, repaired, params)
+    return Finding(code, None, params, repaired)
 
 
 def _names(record: Record, rows: tuple[int, ...]) -> str:

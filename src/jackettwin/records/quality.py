@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.findings import Finding
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import faults, filters, sensor_polarity
 from jackettwin.records.changes import SensorChange, changes, described
 from jackettwin.records.clock_findings import clock_findings, clocks_of, in_step
-from jackettwin.records.findings import ChannelQuality, Finding, channel_findings
+from jackettwin.records.findings import ChannelQuality, channel_findings
 from jackettwin.records.record import LARGEST
 from jackettwin.records.unit_errors import wrong_units
 
@@ -70,7 +71,7 @@ class Quality:
         """Return everything but the samples as plain JSON data."""
         return {
             "score": self.score,
-            "findings": [asdict(finding) for finding in self.findings],
+            "findings": [f.document for f in self.findings],
             "channels": [asdict(channel) for channel in self.channels],
         }
 
@@ -98,8 +99,8 @@ def assess(record: Record) -> Quality:
     channels = tuple(quality for quality, _, _ in judged)
     findings = [finding for _, _, found in judged for finding in found]
     units = wrong_units(record, groups)
-    findings += [Finding("unit", str(wrong), name) for name, wrong in units.items()]
-    findings += [Finding("file", str(text)) for text in record.metadata.get("remarks", ())]
+    findings += [Finding("unit", name, wrong.words) for name, wrong in units.items()]
+    findings += [Finding("file", params={"text": str(text)}) for text in record.metadata.get("remarks", ())]
     findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
     findings += clock_findings(record, clocks)
     vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
@@ -176,8 +177,11 @@ def _judge(
     )
     findings = list(channel_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
     if change is not None and not quality.dead:
-        text = described(change, 1.0 / record.sample_rate_hz)
-        findings.append(Finding("changed", text, channel.name, change.certain))
+        code, what = (
+            "changed" if change.certain else "changed_unclear",
+            described(change, 1.0 / record.sample_rate_hz),
+        )
+        findings.append(Finding(code, channel.name, {"what": what}, repaired=change.certain))
     suspect = (none if outliers else spikes) | stuck | changed
     return replace(quality, score=_score(quality, sign)), suspect, findings
 
@@ -203,8 +207,8 @@ def _unreadable(record: Record, unreadable: BoolArray) -> Iterator[Finding]:
     """Yield channels with infinite or absurdly large samples."""
     for channel, row in zip(record.channels, unreadable, strict=True):
         if row.any():
-            text = f"{row.sum()} samples are infinite or beyond {LARGEST:g}; declared missing"
-            yield Finding("unreadable", text, channel.name, True)
+            params = {"samples": int(row.sum()), "limit": LARGEST}
+            yield Finding("unreadable", channel.name, params, repaired=True)
 
 
 def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
@@ -215,8 +219,7 @@ def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Find
         like = [rms[j] for j in live if record.channels[j].quantity == record.channels[i].quantity]
         ratio = rms[i] / float(np.median(like))
         if not WEAK_RATIO <= ratio <= 1.0 / WEAK_RATIO:
-            text = f"rms is {ratio:.2g} times that of its like: sensor or unit wrong?"
-            yield Finding("weak" if ratio < 1.0 else "unit", text, channels[i].name)
+            yield Finding("weak" if ratio < 1.0 else "strong", channels[i].name, {"ratio": float(ratio)})
 
 
 def _clock(record: Record) -> Iterator[Finding]:
@@ -226,10 +229,7 @@ def _clock(record: Record) -> Iterator[Finding]:
         return
     jitter = float(clock.get("jitter_s") or 0.0) * record.sample_rate_hz
     if jitter > JITTER:
-        yield Finding(
-            "clock", f"time stamps jitter by {jitter:.0%} of a step (rms); interpolated to a regular grid"
-        )
-    if clock.get("missing"):
-        yield Finding("clock", f"{clock['missing']} samples have no time stamp; declared missing")
-    if clock.get("disordered"):
-        yield Finding("clock", f"{clock['disordered']} time stamps repeat or run backwards; left out")
+        yield Finding("stamps_jitter", params={"share": jitter})
+    for what in ("missing", "disordered"):
+        if clock.get(what):
+            yield Finding(f"stamps_{what}", params={"samples": int(clock[what])})

@@ -37,11 +37,11 @@ def repair(record: Record, quality: Quality) -> Record:
     ):
         raise InputError("quality is of another record", file=record.name, remedy="assess this record first")
     data = np.where(quality.suspect, np.nan, record.data)
-    fixed = {(f.channel, f.fault) for f in quality.findings if f.repaired}
+    fixed = {(f.subject, f.code) for f in quality.findings if f.repaired}
     for i, name in enumerate(record.channel_names):
         if (name, "drift") in fixed:
             data[i : i + 1] = filters.remove_slow(data[i : i + 1], DRIFT_CYCLES / data.shape[1])
-        if (name, "sign") in fixed:
+        if (name, "sign_turned") in fixed:
             data[i] = -data[i]
     data = in_step(data, quality.clocks, record.sample_rate_hz)
     apart = {i for one in quality.clocks.strangers if one.fewer and not one.backwards for i in one.rows}
@@ -54,7 +54,7 @@ def repair(record: Record, quality: Quality) -> Record:
             allowed="at least one channel that varies",
             remedy="check sensors and logger",
         )
-    done = [f.text if f.channel is None else f"{f.channel}: {f.text}" for f in quality.findings if f.repaired]
+    done = [str(f) for f in quality.findings if f.repaired]
     return replace(
         record,
         data=data[alive],

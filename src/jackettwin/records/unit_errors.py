@@ -62,15 +62,16 @@ class WrongUnit:
     factor: float
     others: tuple[str, ...] = ()
 
-    def __str__(self) -> str:
-        """Return it in words."""
+    @property
+    def words(self) -> dict[str, str]:
+        """Which channel, how much too large, and the units that are mixed up."""
         which = f"it or {' or '.join(self.others)}" if self.others else "it"
         size = (
             f"{self.factor:.3g} times too large"
             if self.factor > 1.0
             else f"{1 / self.factor:.3g} times too small"
         )
-        return f"{which} is {size} beside its like: {WORDS[self.factor]}? kept, correct the unit"
+        return {"which": which, "size": size, "units": WORDS[self.factor]}
 
 
 def wrong_units(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, WrongUnit]:

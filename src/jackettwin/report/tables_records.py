@@ -21,7 +21,7 @@ def quality_table(seen: Examination) -> PageTable:
     channels = {channel.name: channel for channel in seen.record.channels}
     rows = []
     for q in seen.quality.channels:
-        findings = [f.text for f in seen.quality.findings if f.channel == q.name]
+        findings = [f.text for f in seen.quality.findings if f.subject == q.name]
         rms, unit = UNKNOWN, ""
         if q.name in channels:
             unit = plain(channels[q.name].unit)
@@ -39,7 +39,7 @@ def quality_table(seen: Examination) -> PageTable:
         "spikes [%]",
         "clipped [%]",
     )
-    whole = "".join(f" {f.text[0].upper()}{f.text[1:]}." for f in seen.quality.findings if f.channel is None)
+    whole = "".join(f" {f.text[0].upper()}{f.text[1:]}." for f in seen.quality.findings if f.subject is None)
     return PageTable(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
 
 

@@ -125,7 +125,7 @@ def examine(
     chosen, stepped = zeros_in_line(chosen)
     quality = assess(chosen)
     alarms = (f for f in (*repeated, *stepped, *too_short(chosen)) if f.severity == "alarm")
-    doubts = (*alarms, *(f.coded for f in quality.findings if f.fault in UNFIT and not f.repaired))
+    doubts = (*alarms, *(f for f in quality.findings if f.code in UNFIT and not f.repaired))
     steps: tuple[Step, ...] = (
         partial(repaired, quality=quality),
         partial(in_rotor_axes, source=source),

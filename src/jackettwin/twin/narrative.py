@@ -115,7 +115,7 @@ def cautions(
 
 def _place(record: str, finding: Mapping[str, Any]) -> str:
     """Return where a finding was made: a record, or a channel of it."""
-    return f"{record}, {finding['channel']}" if finding["channel"] else record
+    return f"{record}, {finding['subject']}" if finding["subject"] else record
 
 
 def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[MeasuredMode, ...]) -> list[str]:

@@ -106,5 +106,27 @@ class Observation:
         return None if value is None else float(value)
 
 
-OBSERVATION = StoredSchema("observation", Observation)
+_QUIET = ("drift", "file", "gaps", "held", "spikes", "stuck")
+"""Faults of version 1 that limit no conclusion."""
+
+
+def _findings_have_codes(document: dict[str, Any]) -> dict[str, Any]:
+    """Return version 2: what the quality of a record says has ``code`` and ``subject``.
+
+    Sentences of version 1 were made when a fault was found; they stay as they are.
+    """
+    quality = document["quality"]
+    said = [
+        {"code": f["fault"], "subject": f["channel"], "text": f["text"], "repaired": f["repaired"]}
+        for f in quality.get("findings", ())
+    ]
+    kept = [
+        f if "text" not in f["params"] else {**f, "code": "file" if f["code"] in _QUIET else "identification"}
+        for f in document["findings"]
+    ]
+    quality = {**quality, "findings": said} if quality else quality
+    return {**document, "quality": quality, "findings": kept}
+
+
+OBSERVATION = StoredSchema("observation", Observation, (_findings_have_codes,))
 """How observations are kept."""

@@ -86,7 +86,7 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         held=known.held,
         sensors=model.placed(seen.record),
         findings=(
-            *(f.coded for f in seen.quality.findings),
+            *seen.quality.findings,
             *seen.findings,
             *found.findings,
             *others,

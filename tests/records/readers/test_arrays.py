@@ -179,7 +179,7 @@ def test_vectors_of_another_length_are_left_out_with_a_remark(tmp_path: Path) ->
     record = read_record(tmp_path / "r.mat", Unsaid(unit="g"))
     assert record.channel_names == ("acc_x", "acc_y")
     assert record.metadata["remarks"] == ["vectors of another length than 60 are left out: wind (6)"]
-    assert [f.text for f in assess(record).findings if f.fault == "file"] == record.metadata["remarks"]
+    assert [f.text for f in assess(record).findings if f.code == "file"] == record.metadata["remarks"]
 
 
 def test_times_of_another_length_are_refused(tmp_path: Path) -> None:
