@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +40,9 @@ from jackettwin.structure.subdyn_deck import write_subdyn
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-KELVIN_VOIGT = "kelvin-voigt:k=2.5e9,c=7.6e8"
+KELVIN_VOIGT, SOFTER = "kelvin-voigt:k=2.5e9,c=7.6e8", "kelvin-voigt:k=8e8,c=1e8"
+PITCHES_DEG = (45.0, 0.0)
+"""Of blades that are not feathered: the flap bends fore-aft then."""
 DEPTH_M = 72.0
 MODES = 24
 BAND_HZ = 1.0
@@ -58,11 +60,11 @@ def main() -> None:
         return
     lines = introduction()
     with tempfile.TemporaryDirectory() as folder:
-        for k, (title, structure, support) in enumerate(assets()):
-            for flexible in (False, True):
-                place = Path(folder) / f"{k}{flexible:d}"
-                place.mkdir()
-                lines += compared(program, place, title, structure, support, flexible=flexible)
+        for k, (asset, flexible) in enumerate(cases()):
+            place = Path(folder) / str(k)
+            place.mkdir()
+            sys.stderr.write(f"{asset.title}, {'bending' if flexible else 'rigid'} blades\n")
+            lines += compared(program, place, asset, flexible=flexible)
         lines += subdyn(program, Path(folder))
     write_page("openfast", lines)
 
@@ -81,24 +83,48 @@ def introduction() -> list[str]:
     ]
 
 
-def turbine() -> Turbine:
+def turbine(pitch_deg: float = 90.0) -> Turbine:
     """Return the IEA 15 MW turbine: its ElastoDyn file's nacelle, yaw bearing and hub."""
-    rotor = read_flexible_rotor("iea15")
+    rotor = replace(read_flexible_rotor("iea15"), pitch=np.radians(pitch_deg))
     return Turbine(rotor, 644857.0, -5.125, 4.315, 32929058.0, 28249.0, 69131.0, 969952.0)
 
 
-def assets() -> Iterator[tuple[str, Structure, Support]]:
+@dataclass(frozen=True)
+class Asset:
+    """A turbine on a supported structure whose top carries the turbine's body."""
+
+    title: str
+    turbine: Turbine
+    structure: Structure
+    support: Support
+
+
+def cases() -> Iterator[tuple[Asset, bool]]:
+    """Return assets, each with whether its blades bend."""
+    feet = f"Kelvin–Voigt feet ({KELVIN_VOIGT.removeprefix('kelvin-voigt:')})"
+    for asset in (on_feet(feet, KELVIN_VOIGT), on_piles()):
+        yield from ((asset, False), (asset, True))
+    for pitch in PITCHES_DEG:
+        yield on_feet(f"{feet}, pitch {pitch:g}°", KELVIN_VOIGT, pitch), True
+    yield on_feet(f"softer feet ({SOFTER.removeprefix('kelvin-voigt:')})", SOFTER), True
+
+
+def on_feet(title: str, support: str, pitch_deg: float = 90.0) -> Asset:
+    machine = turbine(pitch_deg)
     steel = read_structure("jacket15")
-    steel = steel.with_masses((turbine().body(steel.top_node),))
-    yield "Kelvin–Voigt feet (k 2.5e9, c 7.6e8)", steel, read_support(KELVIN_VOIGT, steel)
-    piled, support = read_foundation("jacket15_records").lumped(steel)
-    yield "the records' piles", piled, support
+    steel = steel.with_masses((machine.body(steel.top_node),))
+    return Asset(title, machine, steel, read_support(support, steel))
 
 
-def compared(
-    program: str, folder: Path, title: str, structure: Structure, support: Support, *, flexible: bool
-) -> list[str]:
+def on_piles() -> Asset:
+    asset = on_feet("the records' piles", KELVIN_VOIGT)
+    structure, support = read_foundation("jacket15_records").lumped(asset.structure)
+    return replace(asset, structure=structure, support=support)
+
+
+def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> list[str]:
     """Return the table of a case: linearised, and with rigid blades in free decay."""
+    structure, support = asset.structure, asset.support
     rigid = assemble(structure, gravity=True)
     foundation, _ = at_interface(structure)
     base = build_system(assemble(foundation, gravity=True, weight=rigid.weight), support)
@@ -109,14 +135,15 @@ def compared(
         float(v) for node in (structure.interface_nodes[0], structure.top_node) for v in u[rigid.dofs(node)]
     )
     run = Run(flexible=flexible, linearise=True, rest=rest)
-    columns = {"linearised": linearised(program, folder, structure, run)}
+    columns = {"linearised": linearised(program, folder, asset, run)}
     if not flexible:
         decay = replace(run, linearise=False, duration_s=DECAY_S, offset_m=0.3)
-        columns[DECAY] = decayed(program, folder, structure, decay)
-    whole = with_rotor(structure, turbine().rotor, structure.top_node) if flexible else structure
+        columns[DECAY] = decayed(program, folder, asset, decay)
+    whole = with_rotor(structure, asset.turbine.rotor, structure.top_node) if flexible else structure
     assembly = assemble(whole, gravity=True)
     system = build_system(assembly, support, spread=own_damping(assembly, Rayleigh()))
-    return table(f"{title}, {'bending' if flexible else 'rigid'} blades", pairs(system, structure), columns)
+    heading = f"{asset.title}, {'bending' if flexible else 'rigid'} blades"
+    return table(heading, pairs(system, structure), columns)
 
 
 def pairs(system: System, structure: Structure) -> dict[str, complex]:
@@ -175,9 +202,16 @@ def execute(program: str, primary: Path) -> None:
         raise SystemExit(f"OpenFAST refused {primary}:\n{log.read_text(errors='replace')[-2000:]}")
 
 
-def linearised(program: str, folder: Path, structure: Structure, run: Run) -> ComplexArray:
+def ready(folder: Path, asset: Asset, run: Run) -> Path:
+    """Write the files of a case; return its ``.fst``."""
+    return write_case(
+        folder, asset.structure, asset.turbine, run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M
+    )
+
+
+def linearised(program: str, folder: Path, asset: Asset, run: Run) -> ComplexArray:
     """Return the oscillating poles of the linearised system [rad/s]."""
-    primary = write_case(folder, structure, turbine(), run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M)
+    primary = ready(folder, asset, run)
     execute(program, primary)
     lines = (folder / "case.1.lin").read_text().splitlines()
     at = next(k for k, line in enumerate(lines) if line.strip().startswith("A:"))
@@ -189,9 +223,9 @@ def linearised(program: str, folder: Path, structure: Structure, run: Run) -> Co
     return np.asarray(values[values.imag > 0.0])
 
 
-def decayed(program: str, folder: Path, structure: Structure, run: Run) -> ComplexArray:
+def decayed(program: str, folder: Path, asset: Asset, run: Run) -> ComplexArray:
     """Return the poles of a free decay by a subspace of each direction's accelerations [rad/s]."""
-    primary = write_case(folder, structure, turbine(), run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M)
+    primary = ready(folder, asset, run)
     execute(program, primary)
     found = read_text(folder / "case.out")
     started = found.times_s > 5.0
