@@ -8,10 +8,13 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.records import read_record, write_record
 from jackettwin.response.energy import energy
+from jackettwin.response.time import Hold, first_order_hold, march_with_feedback, state_space
 from jackettwin.simulate import loads_document, read_scenario, simulate
+from jackettwin.simulate.driving import loads_on
 from jackettwin.simulate.model import aerodynamics
 from jackettwin.simulate.motion import simulate_motion
 from jackettwin.simulate.resultant import resultants
+from jackettwin.simulate.rotor_march import march_with_rotor
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.simulate.wind import rotor_loads_in, wind_field
 
@@ -256,6 +259,30 @@ def test_a_path_that_stays_is_a_yaw(scenario_file) -> None:
     for one, other in zip(first.metadata["true_modes"], second.metadata["true_modes"], strict=True):
         assert other["damping_ratio"] == pytest.approx(one["damping_ratio"], rel=1e-9)
     assert second.conditions["yaw_deg"] == pytest.approx(20.0)
+
+
+def test_the_compiled_march_is_the_general_one_with_the_rotor_as_its_feedback(scenario_file) -> None:
+    """One scheme, written twice: to rounding, along a path of headings."""
+    wind = {**WIND, "yaw_path": [[0.0, -20.0], [30.0, 40.0]]}
+    scenario = read_scenario(scenario_file(**PILES, wind=wind))
+    loads = loads_on(scenario, round(scenario.clock.total_s / scenario.clock.load_step_s))
+    assert loads.rotor is not None
+    space, top, n = state_space(loads.model.reduced.pencil), loads.model.top, loads.model.reduced.n
+    hold = first_order_hold(space.A, space.B, 0.1)
+    # the rotor's mean damping is known to neither: twice the feedback
+    change, start = loads.rotor.change(np.zeros((6, 6))), np.zeros(space.A.shape[0])
+    times = loads.rotor.still.shape[0]
+    expected, force = march_with_feedback(
+        hold,
+        Hold(hold.E, hold.P0 @ top.T, hold.P1 @ top.T),
+        start,
+        loads.repeating[:241],
+        lambda k, x: change(k % times, top @ x[n : 2 * n]),
+    )
+    states, extra = march_with_rotor(hold, start, loads.repeating[:241], loads.rotor, np.zeros((6, 6)), top)
+    assert np.abs(force).max() > 1e3
+    np.testing.assert_allclose(extra, force, atol=1e-9 * np.abs(force).max())
+    np.testing.assert_allclose(states, expected, atol=1e-9 * np.abs(expected).max())
 
 
 def test_rotor_loads_follow_a_yaw_path(scenario_file) -> None:

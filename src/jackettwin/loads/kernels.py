@@ -10,39 +10,70 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+_BLOCK = 64
+"""Times at once: what is read and written of them stays in the cache."""
+
 compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 
 
 @compiled
-def between_levels(level, middle, half, nodes, fields, mixing):
-    """Return mixing @ fields at a moving level, (n_times, n_points, n_mixed).
+def between_levels(level, middle, half, nodes, fields, mixing, points, out):
+    """Write mixing @ fields at a moving level to ``points`` of ``out`` (n_times, all points, n_mixed).
 
     ``fields`` (n_fields, n_nodes, n_points, n_times) are known at middle + nodes·half of each point;
-    Lagrange interpolation to ``level`` (n_times, n_points).
+    Lagrange interpolation to ``level`` (n_times, all points); the other arrays are of all points too.
     """
     n_fields, n_nodes, n_points, n_times = fields.shape
-    out = np.zeros((n_times, n_points, mixing.shape[0]))
-    weight, value = np.empty(n_nodes), np.empty(n_fields)
-    for p in range(n_points):
-        for t in range(n_times):
-            _lagrange((level[t, p] - middle[p]) / half[p], nodes, weight)
+    scale = _lagrange_scale(nodes)
+    x, weight = np.empty(_BLOCK), np.empty((n_nodes, _BLOCK))
+    value = np.empty((n_fields, _BLOCK))
+    for start in range(0, n_times, _BLOCK):
+        n = min(_BLOCK, n_times - start)
+        for p in range(n_points):
+            at = points[p]
+            for t in range(n):
+                x[t] = (level[start + t, at] - middle[at]) / half[at]
+            _lagrange(x[:n], nodes, scale, weight)
+            value[:, :n] = 0.0
             for f in range(n_fields):
-                value[f] = 0.0
                 for j in range(n_nodes):
-                    value[f] += weight[j] * fields[f, j, p, t]
-            for m in range(mixing.shape[0]):
-                for f in range(n_fields):
-                    out[t, p, m] += mixing[m, f] * value[f]
-    return out
+                    known = fields[f, j, p, start : start + n]
+                    for t in range(n):
+                        value[f, t] += weight[j, t] * known[t]
+            _mix(mixing, value[:, :n], out[start : start + n, at])
 
 
 @compiled
-def _lagrange(x, nodes, weight):
+def _lagrange(x, nodes, scale, weight):
+    """Write Lagrange's weights of the nodes at every x to ``weight`` (n_nodes, at least as many)."""
     for j in range(nodes.size):
-        weight[j] = 1.0
+        weight[j, : x.size] = scale[j]
         for i in range(nodes.size):
             if i != j:
-                weight[j] *= (x - nodes[i]) / (nodes[j] - nodes[i])
+                for t in range(x.size):
+                    weight[j, t] *= x[t] - nodes[i]
+
+
+@compiled
+def _mix(mixing, value, out):
+    """Write mixing @ value (n_fields, n) to ``out`` (n, n_mixed)."""
+    for t in range(value.shape[1]):
+        for m in range(mixing.shape[0]):
+            total = 0.0
+            for f in range(value.shape[0]):
+                total += mixing[m, f] * value[f, t]
+            out[t, m] = total
+
+
+@compiled
+def _lagrange_scale(nodes):
+    """Return 1/Π(x_j − x_i) of every node."""
+    scale = np.ones(nodes.size)
+    for j in range(nodes.size):
+        for i in range(nodes.size):
+            if i != j:
+                scale[j] /= nodes[j] - nodes[i]
+    return scale
 
 
 @compiled
@@ -68,79 +99,91 @@ def morison(drag, inertia, normal, u, du, length, out):
 
 @compiled
 def blade_elements(
-    arm,
-    chordwise,
-    normal,
-    station,
-    scale,
-    cl,
-    cd,
-    first_alpha,
-    alpha_step,
-    induced,
-    shaft,
-    hub,
-    rotor_speed,
-    free,
-    azimuth,
-    wind,
-    motion,
-    out,
-):
-    """Write force and moment at the tower top, (n, 6), of blade elements in wind (n, n_elements, 3).
+    along, across, own, station, scale, polar, first_alpha, alpha_step, shaft, hub, free,
+    first, place, share, angle, wind, motion, out,
+):  # fmt: skip
+    """Write force and moment at the tower top, (n, 6), of blade elements in wind (n, n_places, 3).
 
-    ``arm``, ``chordwise``, ``normal`` (n_elements, 3) stand at azimuth zero; ``azimuth`` (n,) turns them
-    about ``shaft``. ``scale`` is ½ρ c dr; ``induced`` (n_elements, 2) axial and tangential; ``motion`` (n, 6)
-    of the tower top.
+    Element e sees ``share`` of the places ``place`` from ``first[e]`` to ``first[e + 1]``.
+    ``along`` and ``across`` (n_elements, 6) are the directions of chord and normal, and their moments about
+    the hub, before the rotor turns by ``angle`` (n,) about ``shaft``; ``own`` (n_elements, 2) is the flow on
+    both that its speed and wake take away. ``scale`` is ½ρ c dr; ``motion`` (n, 6) that of the tower top.
     """
     turn = np.empty((3, 3))
-    a, c, m, w = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    spin, at_hub = np.empty(3), np.empty(3)
+    v, load, w = np.empty(6), np.empty(6), np.empty(3)
     for k in range(wind.shape[0]):
-        _turn(shaft, azimuth[k], turn)
-        for i in range(3):
-            spin[i] = motion[k, 3 + i]
-        _cross(spin, hub, at_hub)
-        about = spin[0] * shaft[0] + spin[1] * shaft[1] + spin[2] * shaft[2] if free else 0.0
-        for i in range(3):
-            at_hub[i] += motion[k, i]
-            spin[i] += (rotor_speed - about) * shaft[i]
-        total, moment = np.zeros(3), np.zeros(3)
-        for e in range(arm.shape[0]):
-            _times(turn, arm[e], a)
-            _times(turn, chordwise[e], c)
-            _times(turn, normal[e], m)
-            _cross(spin, a, w)
-            for i in range(3):
-                w[i] = wind[k, e, i] - at_hub[i] - w[i] - induced[e, 0] * shaft[i]
-            if induced[e, 1] != 0.0:
-                t0 = shaft[1] * a[2] - shaft[2] * a[1]
-                t1 = shaft[2] * a[0] - shaft[0] * a[2]
-                t2 = shaft[0] * a[1] - shaft[1] * a[0]
-                swirl = induced[e, 1] / np.sqrt(t0 * t0 + t1 * t1 + t2 * t2)
-                w[0] -= swirl * t0
-                w[1] -= swirl * t1
-                w[2] -= swirl * t2
-            wc = w[0] * c[0] + w[1] * c[1] + w[2] * c[2]
-            wn = w[0] * m[0] + w[1] * m[1] + w[2] * m[2]
-            at = (np.arctan2(wn, wc) - first_alpha) / alpha_step
-            low = min(max(int(at), 0), cl.shape[1] - 2)
-            share, s = at - low, station[e]
-            lift = cl[s, low] * (1.0 - share) + cl[s, low + 1] * share
-            drag = cd[s, low] * (1.0 - share) + cd[s, low + 1] * share
+        turned = angle[k] != 0.0
+        _turn(shaft, angle[k], turn)
+        _to_rotor(turn, shaft, hub, free, motion[k], v)
+        load[:] = 0.0
+        for e in range(along.shape[0]):
+            x = y = z = 0.0
+            for j in range(first[e], first[e + 1]):
+                seen, part = wind[k, place[j]], share[j]
+                x += part * seen[0]
+                y += part * seen[1]
+                z += part * seen[2]
+            if turned:
+                w[0], w[1], w[2] = x, y, z
+                _back(turn, w, w)
+                x, y, z = w[0], w[1], w[2]
+            x, y, z = x - v[0], y - v[1], z - v[2]
+            c, m = along[e], across[e]
+            wc = c[0] * x + c[1] * y + c[2] * z - c[3] * v[3] - c[4] * v[4] - c[5] * v[5] - own[e, 0]
+            wn = m[0] * x + m[1] * y + m[2] * z - m[3] * v[3] - m[4] * v[4] - m[5] * v[5] - own[e, 1]
+            at = (_arctan2(wn, wc) - first_alpha) / alpha_step
+            low = min(max(int(at), 0), polar.shape[1] - 2)
+            high, s = at - low, station[e]
+            lift = polar[s, low, 0] * (1.0 - high) + polar[s, low + 1, 0] * high
+            drag = polar[s, low, 1] * (1.0 - high) + polar[s, low + 1, 1] * high
             speed = scale[e] * np.sqrt(wc * wc + wn * wn)
-            along, across = speed * (drag * wc - lift * wn), speed * (lift * wc + drag * wn)
-            for i in range(3):
-                w[i] = along * c[i] + across * m[i]
-                total[i] += w[i]
-            _cross(a, w, c)
-            for i in range(3):
-                moment[i] += c[i]
-        about = moment[0] * shaft[0] + moment[1] * shaft[1] + moment[2] * shaft[2] if free else 0.0
-        _cross(hub, total, c)
+            fc, fn = speed * (drag * wc - lift * wn), speed * (lift * wc + drag * wn)
+            for i in range(6):
+                load[i] += fc * c[i] + fn * m[i]
+        _to_top(turn, shaft, hub, free, load, out[k])
+
+
+@compiled
+def _arctan2(y, x):
+    """Return the angle of (x, y) to 2e-8 rad (Abramowitz & Stegun 1964, eq. 4.4.49): a third of the work."""
+    low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
+    t = low / high if high > 0.0 else 0.0
+    q = t * t
+    p = 0.0429096138 + q * (-0.0161657367 + q * 0.0028662257)
+    p = -0.1420889944 + q * (0.1065626393 + q * (-0.0752896400 + q * p))
+    angle = t * (1.0 + q * (-0.3333314528 + q * (0.1999355085 + q * p)))
+    if abs(y) > abs(x):
+        angle = 0.5 * np.pi - angle
+    if x < 0.0:
+        angle = np.pi - angle
+    return -angle if y < 0.0 else angle
+
+
+@compiled
+def _to_rotor(turn, shaft, hub, free, motion, out):
+    """Write the hub's velocity and turning in the rotor's axes from the motion (6,) of the tower top."""
+    spin, at_hub = motion[3:], np.empty(3)
+    _cross(spin, hub, at_hub)
+    for i in range(3):
+        at_hub[i] += motion[i]
+    _back(turn, at_hub, out[:3])
+    _back(turn, spin, out[3:])
+    if free:
+        about = spin[0] * shaft[0] + spin[1] * shaft[1] + spin[2] * shaft[2]
         for i in range(3):
-            out[k, i] = total[i]
-            out[k, 3 + i] = moment[i] - about * shaft[i] + c[i]
+            out[3 + i] -= about * shaft[i]
+
+
+@compiled
+def _to_top(turn, shaft, hub, free, load, out):
+    """Write force and moment at the tower top from those at the hub in the rotor's axes (6,)."""
+    arm = np.empty(3)
+    _times(turn, load[:3], out[:3])
+    _times(turn, load[3:], out[3:])
+    about = out[3] * shaft[0] + out[4] * shaft[1] + out[5] * shaft[2] if free else 0.0
+    _cross(hub, out[:3], arm)
+    for i in range(3):
+        out[3 + i] += arm[i] - about * shaft[i]
 
 
 @compiled
@@ -163,6 +206,14 @@ def _turn(axis, angle, out):
 def _times(matrix, vector, out):
     for i in range(3):
         out[i] = matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
+
+
+@compiled
+def _back(matrix, vector, out):
+    """Write matrixᵀ vector; ``out`` may be the vector itself."""
+    x, y, z = vector[0], vector[1], vector[2]
+    for i in range(3):
+        out[i] = matrix[0, i] * x + matrix[1, i] * y + matrix[2, i] * z
 
 
 @compiled

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
@@ -120,13 +121,19 @@ def rotor_loads(
     motion = np.zeros(6) if motion is None else motion
     leading = np.broadcast_shapes(wind.shape[:-3], motion.shape[:-1])
     compiled = compiled_rotor(
-        rotor, pitch=pitch, rotor_speed=rotor_speed, shaft=shaft, induced=induced, density=density
+        rotor,
+        pitch=pitch,
+        azimuth=azimuth,
+        rotor_speed=rotor_speed,
+        shaft=shaft,
+        induced=induced,
+        density=density,
     )
     n = int(np.prod(leading))
     out = compiled.loads(
         np.broadcast_to(wind, (*leading, rotor.n_blades, rotor.blade.z.size, 3)).reshape(n, -1, 3),
         np.broadcast_to(motion, (*leading, 6)).reshape(n, 6),
-        np.full(n, azimuth),
+        np.zeros(n),
     )
     return out.reshape(*leading, 6)
 
@@ -137,44 +144,62 @@ class CompiledRotor:
 
     fixed: tuple[Any, ...]
 
-    def loads(self, wind: FloatArray, motion: FloatArray, azimuth: FloatArray) -> FloatArray:
-        """Return loads (n, 6): wind at the elements (n, n_elements, 3), motion (n, 6), azimuth (n,)."""
+    def seeing(self, shares: FloatArray) -> CompiledRotor:
+        """Return the rotor in the wind of places of which its elements see ``shares`` (n_elements, n)."""
+        table = sp.csr_array(shares)
+        return CompiledRotor((*self.fixed[:_SEEN], table.indptr, table.indices, table.data))
+
+    def loads(self, wind: FloatArray, motion: FloatArray, angle: FloatArray) -> FloatArray:
+        """Return loads (n, 6): wind at the elements or places (n, n_places, 3), motion (n, 6).
+
+        ``angle`` (n,) is how far the rotor has turned from the azimuth it was made for [rad].
+        """
         out = np.empty((wind.shape[0], 6))
-        blade_elements(*(*self.fixed, azimuth, wind, motion, out))
+        blade_elements(*(*self.fixed, angle, wind, motion, out))
         return out
+
+
+_SEEN = 11
+"""Arrays of a compiled rotor before those that say which wind its elements see."""
 
 
 def compiled_rotor(
     rotor: Rotor,
     *,
     pitch: float,
+    azimuth: float = 0.0,
     rotor_speed: float = 0.0,
     shaft: str = "locked",
     induced: FloatArray | None = None,
     density: float = AIR_KG_M3,
 ) -> CompiledRotor:
     """Return the rotor ready for many times; arguments as in ``rotor_loads``."""
-    blade, B = rotor.blade, rotor.n_blades
-    arm, chordwise, normal = (np.ascontiguousarray(part.reshape(-1, 3)) for part in elements(rotor, pitch))
-    wake = np.zeros((blade.z.size, 2)) if induced is None else induced
-    return CompiledRotor(
+    blade, B, d = rotor.blade, rotor.n_blades, rotor.shaft
+    turn = rotation(d, azimuth)
+    arm, chordwise, normal = (part.reshape(-1, 3) @ turn.T for part in elements(rotor, pitch))
+    along, across = (np.hstack([part, np.cross(arm, part)]) for part in (chordwise, normal))
+    wake = np.zeros((arm.shape[0], 2)) if induced is None else np.tile(induced, (B, 1))
+    swirl = np.cross(d, arm)
+    swirl *= (wake[:, 1] / np.linalg.norm(swirl, axis=1))[:, None]
+    # seen by an element: the wake, and the air its own turning moves it through
+    lost = wake[:, :1] * d + swirl
+    own = [np.sum(lost * part[:, :3], axis=1) + rotor_speed * (part[:, 3:] @ d) for part in (along, across)]
+    rotor_alone = CompiledRotor(
         (
-            arm,
-            chordwise,
-            normal,
+            along,
+            across,
+            np.stack(own, axis=1),
             np.tile(np.arange(blade.z.size), B),
             np.tile(0.5 * density * blade.chord * blade.weight, B),
-            np.ascontiguousarray(blade.cl),
-            np.ascontiguousarray(blade.cd),
+            np.stack([blade.cl, blade.cd], axis=-1),
             float(ALPHA[0]),
             float(ALPHA[1] - ALPHA[0]),
-            np.tile(wake, (B, 1)),
-            rotor.shaft,
+            d,
             rotor.hub,
-            rotor_speed,
             shaft == "free",
         )
     )
+    return rotor_alone.seeing(np.eye(arm.shape[0]))
 
 
 class Linearised(NamedTuple):

@@ -8,6 +8,7 @@ along +x. Heights count from still water.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,13 @@ RINGS = (0.3, 0.55, 0.8, 1.0)
 SPOKES = 12
 PIECE_M = 10.0
 """Longest piece of blade or tower that has a wind of its own."""
+
+
+class SeenWind(NamedTuple):
+    """Wind at places (n_times, n_places, 3) [m/s], and what blade elements see: (n_elements, n_places)."""
+
+    wind: FloatArray
+    shares: FloatArray
 
 
 @dataclass(frozen=True)
@@ -61,7 +69,12 @@ class RotorWind:
         return np.asarray(self.hub + [self.wind.speed_m_s, 0.0, 0.0])
 
     def on_blades(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> FloatArray:
-        """Return the wind at the blade elements (n_times, n_elements, 3), in the nacelle's axes.
+        """Return the wind at the blade elements (n_times, n_elements, 3); arguments as in ``seen``."""
+        wind, shares = self.seen(rotor, azimuth, yaw=yaw)
+        return _spread(wind, shares)
+
+    def seen(self, rotor: Rotor, azimuth: FloatArray, *, yaw: float | FloatArray = 0.0) -> SeenWind:
+        """Return the wind in the nacelle's axes where it is known, and what the blade elements see of it.
 
         Parameters
         ----------
@@ -75,7 +88,11 @@ class RotorWind:
         if self.azimuth is not None:
             spokes = self.azimuth + 2.0 * np.pi * np.arange(n) / n
             height = self.wind.hub_height_m + np.outer(np.cos(spokes), r).ravel()
-            return np.asarray((self.shares @ self.rotor + self._mean(height)) @ turn)
+            # one place more whose wind is 1 m/s along the mean, of which every element has its mean
+            places = np.empty((self.n_times, self.rotor.shape[1] + 1, 3))
+            places[:, :-1], places[:, -1] = self.rotor, [1.0, 0.0, 0.0]
+            shares = np.hstack([self.shares, self.wind.mean(height)[:, None]])
+            return SeenWind(places @ turn if np.any(yaw) else places, shares)
         knots = np.array([0.0, *RINGS])
         share_of_radius = r / self.radius
         ring = np.clip(np.searchsorted(knots, share_of_radius, side="right") - 1, 0, len(RINGS) - 1)
@@ -83,26 +100,36 @@ class RotorWind:
         spoke = np.repeat(np.arange(n) * SPOKES / n, r.size)
         samples = self.rotor + self._mean(_disc(self.wind.hub_height_m, self.radius)[:, 1])
         turned = np.ascontiguousarray(samples @ turn)
-        return np.asarray(wind_on_blades(turned, azimuth, spoke, np.tile(ring, n), np.tile(share, n), SPOKES))
+        on_blades = wind_on_blades(turned, azimuth, spoke, np.tile(ring, n), np.tile(share, n), SPOKES)
+        return SeenWind(np.asarray(on_blades), np.eye(n * r.size))
 
     def at_heights(self, z: FloatArray) -> FloatArray:
         """Return the wind on the tower's axis at heights ``z`` (n,) [m], (n_times, n, 3)."""
+        shares = np.zeros((z.size, self.tower.shape[1]))
         if self.nodes_z is not None:
             at = np.interp(z, self.nodes_z, np.arange(self.nodes_z.size))
             low = np.minimum(at.astype(np.intp), max(self.nodes_z.size - 2, 0))
             high = np.minimum(low + 1, self.nodes_z.size - 1)
-            share = (at - low)[None, :, None]
-            return np.asarray(
-                (1.0 - share) * self.tower[:, low] + share * self.tower[:, high] + self._mean(z)
-            )
-        pieces = self.tower.shape[1]
-        piece = np.clip((z * pieces / self.wind.hub_height_m).astype(np.intp), 0, pieces - 1)
-        return np.asarray(self.tower[:, piece] + self._mean(z))
+            np.add.at(shares, (np.arange(z.size), low), 1.0 - (at - low))
+            np.add.at(shares, (np.arange(z.size), high), at - low)
+        else:
+            pieces = self.tower.shape[1]
+            piece = np.clip((z * pieces / self.wind.hub_height_m).astype(np.intp), 0, pieces - 1)
+            shares[np.arange(z.size), piece] = 1.0
+        found = _spread(self.tower, shares)
+        found[:, :, 0] += self.wind.mean(z)
+        return found
 
     def _mean(self, z: FloatArray) -> FloatArray:
         mean = np.zeros((z.size, 3))
         mean[:, 0] = self.wind.mean(z)
         return mean
+
+
+def _spread(samples: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return shares (m, n) of samples (n_times, n, 3): (n_times, m, 3), by one matrix product."""
+    flat = samples.reshape(samples.shape[0], -1) @ np.kron(shares.T, np.eye(3))
+    return np.asarray(flat.reshape(-1, shares.shape[0], 3))
 
 
 def rotor_wind(

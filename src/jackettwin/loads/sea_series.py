@@ -7,10 +7,12 @@ across the range of each point and interpolated between these.
 
 from __future__ import annotations
 
+from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.fft import irfft
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
@@ -18,7 +20,9 @@ from jackettwin.loads.kernels import between_levels
 from jackettwin.loads.waves import AirySea
 
 LEVELS = 5
-"""Chebyshev levels a point: 0.1 % of the particle motion under Hs = 8 m."""
+"""Most Chebyshev levels a point: 0.1 % of the particle motion under Hs = 8 m."""
+_ERROR = 3e-4
+"""Of a point's acceleration, which fewer levels may cost."""
 
 
 class SeaSeries(NamedTuple):
@@ -51,23 +55,56 @@ def sea_series(
     """
     lines = _lines(sea, period, n_times)
     inertia = np.ones(1) if scattered is None else scattered
-    along = np.outer(points[:, 0], np.cos(sea.direction)) + np.outer(points[:, 1], np.sin(sea.direction))
-    steady = sea.amplitude * np.exp(1j * (sea.phase - sea.k * along))
+    steady = _steady(sea, points)
     still = sea.stretching == "none"
     eta = np.zeros((n_times, points.shape[0])) if still else _transformed(steady, lines, n_times).T
     if sea.stretching != "wheeler":
-        fields = _fields(sea, steady, points[:, 2], lines, n_times, inertia)
-        both = np.einsum("mf,fpt->tpm", _mixing(sea), fields, optimize=True)
+        mixing = _mixing(sea)
+        fields = np.empty((mixing.shape[1], points.shape[0], n_times))
+        _fields(sea, steady, points[:, 2], lines, inertia, fields)
+        both = np.einsum("mf,fpt->tpm", mixing, fields, optimize=True)
         return SeaSeries(eta, both[..., :3], both[..., 3:])
     level = np.minimum((points[:, 2] - eta) * sea.depth / (sea.depth + eta), 0.0)
-    nodes = np.cos(np.pi * (np.arange(LEVELS) + 0.5) / LEVELS)
     middle, half = 0.5 * (level.max(0) + level.min(0)), 0.5 * np.ptp(level, axis=0) + 1e-9
-    mixing = _mixing(sea)
-    fields = np.empty((mixing.shape[1], LEVELS, points.shape[0], n_times))
-    for j, node in enumerate(nodes):
-        fields[:, j] = _fields(sea, steady, middle + node * half, lines, n_times, inertia)
-    both = between_levels(level, middle, half, nodes, fields, mixing)
+    mixing, wanted = _mixing(sea), _levels(sea, middle, half)
+    both = np.empty((n_times, points.shape[0], 6))
+    for number in np.unique(wanted):
+        here = np.flatnonzero(wanted == number)
+        nodes = np.cos(np.pi * (np.arange(number) + 0.5) / number)
+        fields = np.empty((mixing.shape[1], number, here.size, n_times))
+        extra = inertia if scattered is None else inertia[here]
+        for j, node in enumerate(nodes):
+            z = middle[here] + node * half[here]
+            _fields(sea, steady[here], z, lines, extra, fields[:, j])
+        between_levels(level, middle, half, nodes, fields, mixing, here, both)
     return SeaSeries(eta, both[..., :3], both[..., 3:])
+
+
+def surface_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int) -> FloatArray:
+    """Return the elevation (n_times, n) [m] at points (n, 3); arguments as in ``sea_series``."""
+    return _transformed(_steady(sea, points), _lines(sea, period, n_times), n_times).T
+
+
+def _steady(sea: AirySea, points: FloatArray) -> ComplexArray:
+    """Return the complex amplitude of every wave at points, (n, n_waves)."""
+    along = np.outer(points[:, 0], np.cos(sea.direction)) + np.outer(points[:, 1], np.sin(sea.direction))
+    return np.asarray(sea.amplitude * np.exp(1j * (sea.phase - sea.k * along)))
+
+
+def _levels(sea: AirySea, middle: FloatArray, half: FloatArray) -> IntArray:
+    """Return how many Chebyshev levels each point needs: few where the water hardly moves up and down.
+
+    Between n of them a wave of number k is off by (kh/2)ⁿ 2/n! over a half range h.
+    """
+    strength = (sea.amplitude * sea.omega**2) ** 2 * np.exp(
+        2.0 * np.outer(np.minimum(middle + half, 0.0), sea.k)
+    )
+    total = strength.sum(axis=1)
+    wanted = np.full(middle.size, LEVELS, dtype=np.intp)
+    for n in range(LEVELS - 1, 1, -1):
+        off = (2.0 / factorial(n) * (0.5 * np.outer(half, sea.k)) ** n) ** 2
+        wanted[(strength * off).sum(axis=1) < _ERROR**2 * total] = n
+    return wanted
 
 
 def _lines(sea: AirySea, period: float, n_times: int) -> IntArray:
@@ -98,10 +135,10 @@ def _fields(
     steady: ComplexArray,
     z: FloatArray,
     lines: IntArray,
-    n_times: int,
     inertia: npt.NDArray[Any],
-) -> FloatArray:
-    """Return velocity, then acceleration, at one level a point, (n_fields, n_points, n_times).
+    out: FloatArray,
+) -> None:
+    """Write velocity, then acceleration, at one level a point to ``out`` (n_fields, n_points, n_times).
 
     Waves of one direction have two components, along it and up; else three.
     """
@@ -110,11 +147,12 @@ def _fields(
     one = np.ptp(sea.direction) == 0.0
     components = [u, w] if one else [u * np.cos(sea.direction), u * np.sin(sea.direction), w]
     components += [1j * sea.omega * inertia * component for component in components]
-    return np.array([_transformed(component, lines, n_times) for component in components])
+    for field, component in zip(out, components, strict=True):
+        field[:] = _transformed(component, lines, out.shape[2])
 
 
 def _transformed(amplitude: ComplexArray, lines: IntArray, n_times: int) -> FloatArray:
     """Return Σ Re(c e^{iωt}) (n, n_times) from amplitudes (n, n_waves)."""
     spectrum = np.zeros((amplitude.shape[0], n_times // 2 + 1), dtype=np.complex128)
     spectrum[:, lines] = 0.5 * n_times * amplitude
-    return np.asarray(np.fft.irfft(spectrum, n=n_times, axis=1))
+    return np.asarray(irfft(spectrum, n=n_times, axis=1, overwrite_x=True))

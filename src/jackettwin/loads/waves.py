@@ -9,6 +9,7 @@ A sea is a sum of Airy waves. With :math:`θ = ωt − k(x\cos β + y\sin β) + 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -116,7 +117,7 @@ class AirySea:
                 allowed=", ".join(STRETCHING),
             )
 
-    @property
+    @cached_property
     def k(self) -> FloatArray:
         """Wave numbers [rad/m]."""
         return wave_number(self.omega, self.depth)

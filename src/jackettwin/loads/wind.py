@@ -82,7 +82,7 @@ def coherence(wind: Wind, frequency_hz: FloatArray | float, distance_m: FloatArr
     """Return the coherence |S_ij|/√(S_ii S_jj) of u between points ``distance_m`` apart across the wind."""
     L = SCALE_RATIOS[0] * wind.scale_m
     f, r = np.asarray(frequency_hz, dtype=np.float64), np.asarray(distance_m, dtype=np.float64)
-    return np.asarray(np.exp(-DECAY * np.hypot(f * r / wind.speed_m_s, SCALE_TERM * r / L)))
+    return np.asarray(np.exp(-DECAY * np.hypot(f / wind.speed_m_s, SCALE_TERM / L) * r))
 
 
 def tower_drag(grid: MorisonPoints, wind: FloatArray, *, velocity: FloatArray | None = None) -> FloatArray:
@@ -90,7 +90,8 @@ def tower_drag(grid: MorisonPoints, wind: FloatArray, *, velocity: FloatArray | 
 
     ``grid`` comes from ``morison_points`` with air's density; ``wind`` (..., n, 3) [m/s].
     """
-    return point_forces(grid, wind, np.zeros_like(wind), velocity=velocity)
+    # air's grid has no inertia: its acceleration, here the wind again, does not count
+    return point_forces(grid, wind, wind, velocity=velocity)
 
 
 def tower_drag_damping(grid: MorisonPoints, wind: FloatArray) -> sp.csr_array:

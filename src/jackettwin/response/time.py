@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as la
+from numba import njit
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
@@ -91,10 +92,16 @@ def first_order_hold(A: FloatArray, B: FloatArray, step_s: float) -> Hold:
 def march(hold: Hold, x0: FloatArray, f: FloatArray) -> FloatArray:
     """Return the states (n_steps + 1, n_states) under given forces ``f`` (n_steps + 1, m)."""
     gain = f[:-1] @ hold.P0.T + f[1:] @ hold.P1.T
-    x = np.empty((f.shape[0], x0.size))
+    return np.asarray(_steps(np.ascontiguousarray(hold.E), np.asarray(x0, dtype=np.float64), gain))
+
+
+@njit(cache=True)
+def _steps(E: FloatArray, x0: FloatArray, gain: FloatArray) -> FloatArray:
+    """Return x_{k+1} = E x_k + g_k from x_0, (n_steps + 1, n_states)."""
+    x = np.empty((gain.shape[0] + 1, x0.size))
     x[0] = x0
     for k in range(gain.shape[0]):
-        x[k + 1] = hold.E @ x[k] + gain[k]
+        x[k + 1] = E @ x[k] + gain[k]
     return x
 
 
@@ -108,12 +115,22 @@ def periodic_start(hold: Hold, f: FloatArray) -> FloatArray:
     NumericalError
         If a motion neither decays nor is driven: a mechanism.
     """
-    end = march(hold, np.zeros(hold.E.shape[0]), f)[-1]
-    left = np.eye(end.size) - np.linalg.matrix_power(hold.E, f.shape[0] - 1)
+    end, power = _end(hold.E, f[:-1] @ hold.P0.T + f[1:] @ hold.P1.T)
+    left = np.eye(end.size) - power
     x0 = np.linalg.solve(left, end)
     if not np.isfinite(x0).all():
         raise NumericalError("no periodic motion: a motion of the model is not damped")
     return np.asarray(x0)
+
+
+def _end(E: FloatArray, gain: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return Σ E^{n−1−k} g_k and Eⁿ for gains g (n, n_states): two steps become one, again and again."""
+    power, square = np.linalg.matrix_power(E, gain.shape[0]), E
+    while gain.shape[0] > 1:
+        if gain.shape[0] % 2:
+            gain = np.vstack([np.zeros_like(gain[:1]), gain])
+        gain, square = gain[0::2] @ square.T + gain[1::2], square @ square
+    return gain[0], power
 
 
 def march_with_feedback(

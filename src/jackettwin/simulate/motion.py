@@ -23,6 +23,7 @@ from jackettwin.simulate.driving import Loads, loads_on
 from jackettwin.simulate.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.model import BAND_HZ, Model, TrueMode, true_modes
 from jackettwin.simulate.naming import in_words_of
+from jackettwin.simulate.rotor_march import march_with_rotor
 from jackettwin.simulate.scenario import Scenario
 
 
@@ -79,20 +80,16 @@ def _motion(scenario: Scenario) -> Motion:
         x0 = x0 + periodic_start(own, np.vstack([series.loads, series.loads[:1]]))
         t = np.arange(n_steps + 1, dtype=np.float64) * clock.load_step_s
         force = force + loads.wave.at(t)
-    parts = _feedbacks(scenario, loads)
-    if parts:
-        try:
-            states, force = _with_feedback(parts, space, hold, x0, force)
-        except NumericalError as error:
-            raise InputError(
-                "the motion grows without bound",
-                field="time.load_step_s",
-                value=clock.load_step_s,
-                allowed="shorter steps, or loads that fit the structure",
-                remedy="halve it; if that does not help, check coefficients, current and wind",
-            ) from error
-    else:
-        states = march(hold, x0, force)
+    try:
+        states, force = _answered(scenario, loads, space, hold, x0, force)
+    except NumericalError as error:
+        raise InputError(
+            "the motion grows without bound",
+            field="time.load_step_s",
+            value=clock.load_step_s,
+            allowed="shorter steps, or loads that fit the structure",
+            remedy="halve it; if that does not help, check coefficients, current and wind",
+        ) from error
     return Motion(
         loads.model,
         space,
@@ -102,6 +99,20 @@ def _motion(scenario: Scenario) -> Motion:
         true_modes(loads.model, below_hz=BAND_HZ),
         loads.signals,
     )
+
+
+def _answered(
+    scenario: Scenario, loads: Loads, space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return states and forces, those that answer the motion included."""
+    parts = _feedbacks(scenario, loads)
+    if not parts:
+        return march(hold, x0, force), force
+    if loads.rotor is not None and len(parts) == 1:
+        top = loads.model.top
+        states, extra = march_with_rotor(hold, x0, force, loads.rotor, loads.damping, top)
+        return states, force + extra @ top
+    return _with_feedback(parts, hold, x0, force)
 
 
 class _Part(NamedTuple):
@@ -129,7 +140,7 @@ def _feedbacks(scenario: Scenario, loads: Loads) -> list[_Part]:
 
 
 def _with_feedback(
-    parts: list[_Part], space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
+    parts: list[_Part], hold: Hold, x0: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     rows = np.vstack([part.rows for part in parts])
     own = Hold(hold.E, hold.P0 @ rows.T, hold.P1 @ rows.T)

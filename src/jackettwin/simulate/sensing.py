@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response.sensors import observation_matrix
-from jackettwin.response.time import first_order_hold
+from jackettwin.response.time import StateSpace, first_order_hold
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import Instrument, Scenario
 
@@ -45,18 +45,35 @@ def _read(motion: Motion, scenario: Scenario, instruments: tuple[Instrument, ...
     clock, space = scenario.clock, motion.space
     C, D = _observation(motion, instruments)
     per_load = round(clock.load_step_s / clock.step_s)
-    x, f0, f1 = motion.states[:-1], motion.force[:-1], motion.force[1:]
-    out = np.empty((C.shape[0], x.shape[0], per_load))
-    for j in range(per_load):
-        share = j / per_load
-        fs = f0 + share * (f1 - f0)
-        if j == 0:
-            out[:, :, 0] = C @ x.T + D @ fs.T
-            continue
-        hold = first_order_hold(space.A, space.B, j * clock.step_s)
-        out[:, :, j] = (C @ hold.E) @ x.T + (C @ hold.P0) @ f0.T + (C @ hold.P1 + D) @ fs.T
+    weights = _weights(space, C, D, clock.step_s, per_load)
+    rows, n, m = weights.reshape(-1, weights.shape[2]), C.shape[1], D.shape[1]
+    read = rows[:, :n] @ motion.states[:-1].T
+    read += rows[:, n : n + m] @ motion.force[:-1].T
+    read += rows[:, n + m :] @ motion.force[1:].T
+    read = read.reshape(C.shape[0], per_load, -1).transpose(0, 2, 1)
     first = round(clock.discard_s / clock.step_s)
-    return out.reshape(C.shape[0], -1)[:, first:]
+    return np.asarray(read.reshape(C.shape[0], -1)[:, first:])
+
+
+def _weights(space: StateSpace, C: FloatArray, D: FloatArray, step_s: float, per_load: int) -> FloatArray:
+    """Return readings from a load step's first state, first and last forces: (n_instruments, per_load, ...).
+
+    The samples within a load step are so many steps of one hold.
+    """
+    n, m = C.shape[1], D.shape[1]
+    share = np.arange(per_load) / per_load
+    reached = np.hstack([np.eye(n), np.zeros((n, 2 * m))])
+    weights = np.empty((C.shape[0], per_load, n + 2 * m))
+    hold = first_order_hold(space.A, space.B, step_s) if per_load > 1 else None
+    for j, now in enumerate(share):
+        if hold is not None and j > 0:
+            before = share[j - 1]
+            reached = hold.E @ reached
+            reached[:, n : n + m] += (1.0 - before) * hold.P0 + (1.0 - now) * hold.P1
+            reached[:, n + m :] += before * hold.P0 + now * hold.P1
+        weights[:, j] = C @ reached
+        weights[:, j, n:] += np.hstack([(1.0 - now) * D, now * D])
+    return weights
 
 
 def _observation(motion: Motion, instruments: tuple[Instrument, ...]) -> tuple[FloatArray, FloatArray]:

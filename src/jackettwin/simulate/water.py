@@ -14,8 +14,9 @@ from jackettwin.loads.given_kinematics import Kinematics, TravellingKinematics
 from jackettwin.loads.given_waves import given_sea, require_cover
 from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
 from jackettwin.loads.regular_waves import regular_wave
+from jackettwin.loads.sea_series import surface_series
 from jackettwin.loads.wave_series import WaveSeries, wave_series
-from jackettwin.loads.waves import Waves, airy_wave, irregular_sea, wave_number
+from jackettwin.loads.waves import AirySea, Waves, airy_wave, irregular_sea, wave_number
 from jackettwin.simulate.scenario import Sea
 from jackettwin.structure import Assembly
 
@@ -42,8 +43,12 @@ class WaterLoads:
         """Return the elevation of the waves at the origin at times ``t`` [s]."""
         if self.waves is None:
             return np.zeros_like(t)
-        samples = np.arange(self.series.loads.shape[0], dtype=np.float64) * self.series.step_s
-        return self._between(self.waves.elevation(np.zeros((1, 3)), samples), t)[:, 0]
+        n, origin = self.series.loads.shape[0], np.zeros((1, 3))
+        if isinstance(self.waves, AirySea):
+            known = surface_series(self.waves, origin, period=self.series.period_s, n_times=n)
+        else:
+            known = self.waves.elevation(origin, np.arange(n, dtype=np.float64) * self.series.step_s)
+        return self._between(known, t)[:, 0]
 
     def _between(self, samples: FloatArray, t: FloatArray) -> FloatArray:
         """Return samples (n_times, n) at times ``t``, by a periodic cubic spline."""

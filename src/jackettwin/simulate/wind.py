@@ -18,7 +18,8 @@ from jackettwin.simulate.scenario import Air
 from jackettwin.structure import Assembly
 
 _UP = np.array([0.0, 0.0, 1.0])
-_TOWER_SPACING_M = 4.0
+_TOWER_SPACING_M = 8.0
+"""Longest piece of the tower under wind, which is known every 19 m."""
 _INSTANTS = 500
 """Times over which the damping is averaged."""
 _STEP_M_S = 0.05
@@ -32,8 +33,8 @@ class RotorLoads:
     Attributes
     ----------
     still : (n_times, 6) with the tower at rest
-    on_blades : (n_times, n_elements, 3) wind in the nacelle's axes
-    azimuth : (n_times,)
+    wind : (n_times, n_places, 3) that the blades see, in the nacelle's axes
+    angle : (n_times,) through which the rotor has turned [rad]
     radius : of the rotor [m]
     turn : (n_times, 6, 6) global from nacelle's axes; (1, 6, 6) if it does not yaw
     """
@@ -41,8 +42,8 @@ class RotorLoads:
     rotor: CompiledRotor
     radius: float
     still: FloatArray
-    on_blades: FloatArray
-    azimuth: FloatArray
+    wind: FloatArray
+    angle: FloatArray
     turn: FloatArray
 
     def change(self, damping: FloatArray) -> Callable[[int, FloatArray], FloatArray]:
@@ -51,9 +52,7 @@ class RotorLoads:
 
         def at(k: int, velocity: FloatArray) -> FloatArray:
             turn = self.turn[k % turns]
-            moving = self.rotor.loads(
-                self.on_blades[k : k + 1], (velocity @ turn)[None], self.azimuth[k : k + 1]
-            )[0]
+            moving = self.rotor.loads(self.wind[k : k + 1], (velocity @ turn)[None], self.angle[k : k + 1])[0]
             return np.asarray(turn @ moving - self.still[k] + damping @ velocity)
 
         return at
@@ -64,13 +63,13 @@ class RotorLoads:
         In a gust the flow leaves the blades' straight lift: 4 % less side-side damping than the mean wind's
         at 12 m/s in class B.
         """
-        every = max(1, self.azimuth.size // _INSTANTS)
-        wind, azimuth = self.on_blades[::every], self.azimuth[::every]
-        damping = np.empty((azimuth.size, 6, 6))
+        every = max(1, self.angle.size // _INSTANTS)
+        wind, angle = self.wind[::every], self.angle[::every]
+        damping = np.empty((angle.size, 6, 6))
         for j, step in enumerate((*[_STEP_M_S] * 3, *[_STEP_M_S / self.radius] * 3)):
-            velocity = np.zeros((azimuth.size, 6))
+            velocity = np.zeros((angle.size, 6))
             velocity[:, j] = step
-            ahead, behind = (self.rotor.loads(wind, sign * velocity, azimuth) for sign in (1.0, -1.0))
+            ahead, behind = (self.rotor.loads(wind, sign * velocity, angle) for sign in (1.0, -1.0))
             damping[:, :, j] = (behind - ahead) / (2.0 * step)
         turn = self.turn[::every] if self.turn.shape[0] > 1 else self.turn
         return np.asarray((turn @ damping @ turn.swapaxes(1, 2)).mean(axis=0))
@@ -100,17 +99,19 @@ def rotor_loads_in(
     rotor = compiled_rotor(
         turbine.rotor,
         pitch=turbine.pitch,
+        azimuth=turbine.azimuth,
         rotor_speed=speed,
         shaft="free" if turbine.state == "idling" else "locked",
         induced=None if operation is None else operation.induced,
     )
-    azimuth = turbine.azimuth + speed * field.step_s * np.arange(field.n_times, dtype=np.float64)
+    angle = speed * field.step_s * np.arange(field.n_times, dtype=np.float64)
     yaw = air.yaw if heading is None else heading
-    on_blades = field.on_blades(turbine.rotor, azimuth, yaw=yaw)
+    wind, shares = field.seen(turbine.rotor, turbine.azimuth + angle, yaw=yaw)
+    rotor = rotor.seeing(shares)
     turn = np.array([np.kron(np.eye(2), rotation(_UP, float(one))) for one in np.atleast_1d(yaw)])
-    still = rotor.loads(on_blades, np.zeros((field.n_times, 6)), azimuth)
+    still = rotor.loads(wind, np.zeros((field.n_times, 6)), angle)
     turned = (turn @ still[:, :, None])[:, :, 0]
-    return RotorLoads(rotor, turbine.rotor.radius, turned, on_blades, azimuth, turn)
+    return RotorLoads(rotor, turbine.rotor.radius, turned, wind, angle, turn)
 
 
 def tower_points(assembly: Assembly, air: Air) -> MorisonPoints | None:
