@@ -135,6 +135,16 @@ def hour(k: int) -> datetime:
     return NOON + timedelta(hours=k)
 
 
+def known(twin: Any, seen: Any) -> tuple[dict[str, Any], None]:
+    """Stand in for the posterior."""
+    k = 1e9 * seen.in_all[0]
+    parameters = {"k": {"median": k, "interval_90": [0.9 * k, 1.1 * k], "unit": "N/m"}}
+    budget = [
+        {"label": "mode_1", "measured": None, "sources": {"soil": {"value": 0.01, "low": 0.0, "high": 0.02}}}
+    ]
+    return {"status": "ok", "parameters": parameters, "records": seen.in_all[0], "budget": budget}, None
+
+
 @pytest.fixture
 def service(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Service]:
     yield from make_service(tmp_path / "store", None, monkeypatch)
@@ -148,9 +158,7 @@ def make_service(
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
-    monkeypatch.setattr(
-        engine, "known", lambda twin, state: {"status": "ok", "parameters": {"days": len(state.days)}}
-    )
+    monkeypatch.setattr(engine, "known", known)
     monkeypatch.setattr(engine, "watched", lambda twin, state, kept: ({"days": len(state.days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:

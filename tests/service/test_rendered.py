@@ -33,6 +33,7 @@ QUERIES = {
     "/assets/{asset}/modes": 4,
     "/assets/{asset}/twin": 7,
     "/assets/{asset}/damping-budget": 7,
+    "/assets/{asset}/comparison": 12,
     "/assets/{asset}/life": 3,
     "/assets/{asset}/findings": 4,
     "/assets/{asset}/alarms": 5,
@@ -57,7 +58,11 @@ def test_every_answer_about_assets_has_a_version() -> None:
 def filled(path: str, client: TestClient) -> str:
     items = client.get("/api/v1/assets/wtg/records").json()["items"]
     known = items[0]["record_id"] if items else "0123456789abcdef"
-    return "/api/v1" + path.format(asset="wtg", record_id=known)
+    return (
+        "/api/v1"
+        + path.format(asset="wtg", record_id=known)
+        + ("?version=1" if path.endswith("comparison") else "")
+    )
 
 
 @contextmanager

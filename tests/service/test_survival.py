@@ -70,7 +70,7 @@ def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[
                 server.kill()
                 server.start()
             if i == 3:
-                assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 10}
+                assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
                 assert server.kill_a_worker()
         server.wait_until_observed(RECORDS)
         assert server.states() == expected

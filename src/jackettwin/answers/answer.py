@@ -43,7 +43,8 @@ def answer(result: TwinResult) -> Answers:
     """Return what a run says to the five questions of its first page."""
     u = recommended(result.updates)
     laws, source = _laws(result.updates)
-    days = sum(seen.duration_s for seen in result.observations) / 86400.0
+    number, seconds = result.extent
+    days = seconds / 86400.0
     ground = () if u is None else tuple(_ground(u))
     open_ = [g.name for g in ground if g.verdict in ("weak", "unidentified")]
     speed = result.rotor_speed_hz
@@ -61,9 +62,9 @@ def answer(result: TwinResult) -> Answers:
         next_steps=()
         if u is None or not (fit is None or fit.fits)  # what a wrong model would learn is not known
         else next_steps(u, result.measured, open_, days=days),
-        records=len(result.observations),
+        records=number,
         minutes=days * 1440.0,
-        records_for=records_for(result.measured, len(result.observations), PRECISION),
+        records_for=records_for(result.measured, number, PRECISION),
         precision=PRECISION,
         usable=USABLE,
         fit=fit,

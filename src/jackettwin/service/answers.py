@@ -8,15 +8,17 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from fastapi import Path
 from sqlalchemy import Connection, select
 
+from jackettwin.answers.result import NORMAL_90
 from jackettwin.errors import InputError
 from jackettwin.service import engine
 from jackettwin.service.consequences import twin_folder
-from jackettwin.service.schemas import AlarmOut, FindingOut, ModeOut, Page, TwinOut
+from jackettwin.service.schemas import AlarmOut, Change, Comparison, FindingOut, ModeOut, Page, TwinOut
 from jackettwin.store import assets, results, tables
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
@@ -109,7 +111,7 @@ def twin(
     told = service.remembered.told(connection, version, model, last)
     known = engine.knowledge(model, told.sums)
     if at is None:
-        known["parameters"] = results.find_supports(connection, version.asset, version.model_hash)
+        known["parameters"] = results.find_supports(connection, version.asset, version.version)
     return TwinOut(
         asset=version.asset,
         version=version.version,
@@ -118,6 +120,59 @@ def twin(
         state_hash=told.state_hash,
         days=told.days,
         **known,
+    )
+
+
+def compared(
+    connection: Connection, service: Service, adopted: assets.Version, other: assets.Version
+) -> Comparison:
+    """Return what the adopted version knows beside another one, of the same records, and what differs."""
+    mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
+    changes = []
+    for name, unit in (("frequency_hz", "Hz"), ("damping_ratio", "-")):
+        std = name.replace("_hz", "_std_hz") if name.endswith("_hz") else f"{name}_std"
+        before = {m["label"]: (m[name], m[std]) for m in mine.modes}
+        after = {m["label"]: (m[name], m[std]) for m in theirs.modes}
+        changes += [
+            _change(f"{label} {name}", unit, before.get(label), after.get(label))
+            for label in {**before, **after}
+        ]
+    before, after = (_logarithms(known.parameters.get("parameters", {})) for known in (mine, theirs))
+    units = {
+        name: p["unit"] for k in (mine, theirs) for name, p in k.parameters.get("parameters", {}).items()
+    }
+    changes += [_change(f"ln {name}", units[name], before.get(name), after.get(name)) for name in units]
+    return Comparison(adopted=mine, other=theirs, changes=changes)
+
+
+def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
+    """Return the logarithm of every parameter's median with its standard deviation, of its 90 % interval."""
+    found = {}
+    for name, known in parameters.items():
+        span = known["interval_90"]
+        std = None if span is None else float(np.log(span[1] / span[0])) / (2.0 * NORMAL_90)
+        found[name] = (float(np.log(known["median"])), std)
+    return found
+
+
+def _change(
+    quantity: str,
+    unit: str,
+    before: tuple[float, float | None] | None,
+    after: tuple[float, float | None] | None,
+) -> Change:
+    """Return a quantity of two versions, and how far they are apart in what the adopted one is sure of."""
+    if before is None or after is None:
+        return Change(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
+    difference = after[0] - before[0]
+    sure = before[1] or after[1]
+    return Change(
+        quantity=quantity,
+        unit=unit,
+        adopted=before[0],
+        other=after[0],
+        difference=difference,
+        in_standard_deviations=difference / sure if sure else None,
     )
 
 

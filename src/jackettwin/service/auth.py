@@ -18,7 +18,7 @@ from sqlalchemy import Connection, Engine
 from jackettwin.errors import InputError
 from jackettwin.service.problems import ApiError
 from jackettwin.service.settings import ServiceSettings, is_loopback
-from jackettwin.store import people, reading
+from jackettwin.store import people, reading, writing
 
 COOKIE = "jackettwin_session"
 SESSION = timedelta(hours=12)
@@ -100,6 +100,17 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
     except (VerificationError, InvalidHashError):
         return None
     return None if user is None or user.disabled else user
+
+
+def opened_session(
+    database: Engine, name: str, password: str, key: str, now: datetime
+) -> tuple[people.User | None, str, str]:
+    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down."""
+    with writing(database) as connection:
+        user = checked_login(connection, name, password)
+        people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
+        grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
+    return user, *grant
 
 
 def new_grant(

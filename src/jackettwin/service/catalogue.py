@@ -75,6 +75,8 @@ def add_version(
     )
     for record in records.all_with_samples(connection, name):
         queue(connection, version, record.record_id, service.now())
+    if results.state_hashes(connection, name, model_hash):
+        ask_known(connection, service, version)  # the same model, asked under another law
     people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
     journal.tell(connection, "asset", name, {"version": version.version}, service.now())
     return version

@@ -19,7 +19,7 @@ from jackettwin.service.settings import ServiceSettings
 
 log = logging.getLogger(__name__)
 
-_NICE = 10
+_NICE = 5
 """Of workers of our own: readers are answered first, records are observed with what is left of the cores."""
 _DASK = {
     "distributed.worker.memory.target": False,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection, select
 
 from jackettwin.service import engine
-from jackettwin.service.intake.files import queue
+from jackettwin.service.intake.files import living, queue
 from jackettwin.service.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
@@ -22,6 +23,10 @@ from jackettwin.store.results import StoredObservation, StoredState
 if TYPE_CHECKING:
     from jackettwin.records import Channel
     from jackettwin.service.context import Place, Service
+
+
+NEWEST = 24
+"""Observations that the page on a turbine shows one by one; what it says is of all."""
 
 
 def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
@@ -67,10 +72,15 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
 
 def question_of(connection: Connection, service: Place, job: work.Job) -> Question:
     """Return what a worker must know to say what a turbine's state says of its supports."""
-    days = results.states_until(connection, job.asset, job.model_hash)
-    folder = twin_folder(connection, service, job.asset, job.version)
-    kept = results.find_knowledge(connection, job.asset, job.model_hash) or {}
-    return Question(str(folder), {state.day: state.document for state in days}, kept.get("judged"))
+    key = (job.asset, job.model_hash)
+    return Question(
+        str(twin_folder(connection, service, job.asset, job.version)),
+        {state.day: state.document for state in results.states_until(connection, *key)},
+        tuple(seen.document for seen in results.newest_observations(connection, *key, NEWEST)),
+        results.observed_time(connection, *key),
+        results.find_judged(connection, job.asset, job.version),
+        results.state_identity(connection, *key),
+    )
 
 
 def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
@@ -79,7 +89,13 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
     if not work.finish(connection, job, service.server_id, "done", now):
         return
     document = json.loads(outcome.document or "{}")
-    results.put_knowledge(connection, job.asset, job.model_hash, document, now)
+    results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
+    journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
+    if outcome.of != results.state_identity(connection, job.asset, job.model_hash):
+        ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
+    adopted = assets.found_version(connection, job.asset)
+    if job.version != adopted.version and job.model_hash == adopted.model_hash:
+        return  # what watching says of these days is the adopted version's to say
     key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
     rows = [
         _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
@@ -89,17 +105,16 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
         if new["severity"] != "info":
             said = {name: new[name] for name in ("code", "severity", "subject", "params", "text")}
             journal.tell(connection, "finding", job.asset, said, now)
-    journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
 
 
 def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
     """Queue the question what the state says now, behind everything that is observed.
 
-    An answer that is on its way knows less, and is not accepted.
+    It is asked again after an answer that is on its way, if that one knows less.
     """
-    number = queue(connection, version, "", service.now(), kind=work.KNOW, priority=-10)
-    if not work.try_again(connection, number):
-        work.renew(connection, number)
+    named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
+    number = queue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
+    work.try_again(connection, number)
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
@@ -154,7 +169,9 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
     )
     for finding in [f for f in outcome.findings if f["severity"] != "info"]:
         journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
-    ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
+    for version in living(connection, job.asset, adopted):
+        if version.model_hash == job.model_hash:
+            ask_known(connection, service, version)
     journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
 
 

@@ -5,21 +5,27 @@ Nothing below it knows of a store, nothing above it of a model.
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from jackettwin.answers import answer
+from jackettwin.answers.result import ModeAnswer
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
+from jackettwin.report.build import report_sections
+from jackettwin.report.page import write_page
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
     JUDGED,
     TwinConfig,
     TwinModel,
+    TwinResult,
     TwinState,
     advance,
     finding_of,
@@ -28,11 +34,14 @@ from jackettwin.twin import (
     read_twin,
     twin_model,
 )
-from jackettwin.twin.follow import estimate
-from jackettwin.twin.observation import OBSERVATION
+from jackettwin.twin.fitted import updating
+from jackettwin.twin.measure import Measured
+from jackettwin.twin.observation import OBSERVATION, Observation
+from jackettwin.twin.run import updated_twin
 from jackettwin.twin.state import ALL, Day, empty_state
 from jackettwin.twin.stored import StoredSchema, digest
 from jackettwin.twin.sums import average
+from jackettwin.version import __version__
 
 TWIN_FILE = "twin.yaml"
 DAY = StoredSchema("twin_day", Day)
@@ -189,25 +198,67 @@ def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
     }
 
 
-def known(twin: Twin, state: TwinState) -> dict[str, Any]:
-    """Return what a state says of the supports: per parameter the median, its 90 % interval and unit."""
-    found = estimate(twin.config, twin.model, state)
-    if found is None:
-        return {"status": "no mode of the model has been seen", "parameters": {}}
+@dataclass(frozen=True)
+class Seen:
+    """What a turbine's records showed: their state, and the newest observations alone.
+
+    ``in_all`` is how many records there are, and how long they are together [s].
+    """
+
+    state: TwinState
+    newest: tuple[Observation, ...] = ()
+    in_all: tuple[int, float] = (0, 0.0)
+
+
+def seen(state: TwinState, newest: Sequence[str], in_all: tuple[int, float]) -> Seen:
+    """Return what records showed, the newest observations from their documents."""
+    return Seen(state, tuple(OBSERVATION.load(json.loads(document)) for document in newest), in_all)
+
+
+def known(twin: Twin, seen: Seen) -> tuple[dict[str, Any], TwinResult | None]:
+    """Return what records say of the supports under the twin's first law, and the whole result.
+
+    Of every parameter the median, its 90 % interval and unit; of every mode whose damping it is.
+    """
+    state = updating(twin.config, seen.state)
+    if ALL not in state.totals or not state.totals[ALL].modes:
+        return {"status": "no mode of the model has been seen", "parameters": {}}, None
+    measured = Measured(seen.newest, seen.state, in_all=seen.in_all)
+    laws = twin.config.update.laws[:1]
+    result = updated_twin(twin.config, twin.model, measured, laws=laws, posteriors="likely")
+    if not result.updates:
+        return {"status": "no law can explain what was measured", "parameters": {}}, result
+    (u,) = result.updates
+    sure = u.uncertainty
+    median = u.best.theta if sure is None else sure.median
+    spans = [None] * len(median) if sure is None else sure.interval_90.tolist()
     return {
-        "law": found.law,
-        "status": found.known.status,
-        "records": found.known.records,
-        "until_utc": found.known.time_utc.isoformat(),
+        "law": u.law,
+        "status": "without standard deviations, no interval" if sure is None else sure.status,
+        "records": seen.in_all[0],
+        "until_utc": max(day.time_utc for day in state.days.values() if day.time_utc).isoformat(),
         "parameters": {
-            name: {
-                "median": value,
-                "interval_90": list(found.known.interval_90[name]),
-                "unit": found.units[name],
-            }
-            for name, value in found.known.median.items()
+            p.name: {"median": float(value), "interval_90": span, "unit": p.unit}
+            for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
         },
+        "budget": [_budget(mode) for mode in answer(result).modes],
+    }, result
+
+
+def _budget(mode: ModeAnswer) -> dict[str, Any]:
+    """Return whose damping a mode's is: damping ratios by source, with 90 % intervals."""
+    measured = mode.measured_damping
+    return {
+        "label": mode.label,
+        "measured": None if measured is None else asdict(measured),
+        "sources": {name: asdict(span) for name, span in mode.sources.items()},
     }
+
+
+def report(result: TwinResult, path: Path) -> bytes:
+    """Return the page on a result, compressed; it is written to a path on the way."""
+    write_page(report_sections(result), path, title=result.name, subtitle=f"jackettwin {__version__}")
+    return gzip.compress(path.read_bytes(), mtime=0)
 
 
 def watched(

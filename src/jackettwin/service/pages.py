@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from importlib.resources import files
 from typing import Literal
 
@@ -10,11 +11,20 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from jackettwin.service import auth, catalogue
-from jackettwin.service.problems import answers
-from jackettwin.service.routes.common import AssetName, Reads, Transaction, known_asset
+from jackettwin.service.problems import ApiError, answers
+from jackettwin.service.routes.common import AssetName, Reads, Transaction, known_asset, known_version
+from jackettwin.store import results
 
 router = APIRouter(include_in_schema=False, route_class=Transaction)
 
+_SANDBOX = {
+    "Content-Security-Policy": (
+        "sandbox allow-scripts allow-downloads; default-src 'none'; style-src 'unsafe-inline'; "
+        "script-src 'unsafe-inline' 'unsafe-eval' blob:; img-src data: blob:; font-src data:; "
+        "worker-src blob:; frame-src blob: data: 'self'; frame-ancestors 'self'"
+    ),
+    "X-Frame-Options": "SAMEORIGIN",
+}
 _templates = Environment(
     loader=PackageLoader("jackettwin.service", "templates"), autoescape=True, undefined=StrictUndefined
 )
@@ -42,6 +52,19 @@ def asset_page(asset: AssetName, connection: Reads) -> HTMLResponse:
     known_asset(connection, asset)
     page = _templates.get_template("asset.html.j2")
     return HTMLResponse(page.render(asset=catalogue.one(connection, asset)))
+
+
+@router.get("/assets/{asset}/report", dependencies=[auth.VIEWER], responses=answers(401, 404))
+def report(asset: AssetName, connection: Reads, version: int | None = None) -> Response:
+    """The newest report on a turbine, as ``jackettwin run`` writes it, of all records in the store.
+
+    It brings its own scripts; in a sandbox they can reach nothing of ours, whatever a twin file is called.
+    """
+    known = known_version(connection, asset, version)
+    page = results.find_report(connection, asset, known.version)
+    if page is None:
+        raise ApiError(404, "no report yet: it is written when no record waits", field="asset", value=asset)
+    return HTMLResponse(gzip.decompress(page), headers=_SANDBOX)
 
 
 @router.get("/static/{name}")

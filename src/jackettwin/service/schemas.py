@@ -263,6 +263,45 @@ class TwinOut(BaseModel):
     status: str
 
 
+class Value(BaseModel):
+    """A number with its 90 % interval, null where it is not known."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+class Budget(BaseModel):
+    """Whose damping a mode's is: damping ratios by source (structure, soil, rotor, water)."""
+
+    label: str
+    measured: Value | None
+    sources: dict[str, Value]
+
+
+class Change(BaseModel):
+    """A quantity under two versions; null where one does not know it.
+
+    The records are the same: the difference is the model's. It is told in standard deviations, too, of what
+    the adopted version is sure of.
+    """
+
+    quantity: str
+    unit: str
+    adopted: float | None
+    other: float | None
+    difference: float | None = None
+    in_standard_deviations: float | None = None
+
+
+class Comparison(BaseModel):
+    """What two versions of a twin know of the same records."""
+
+    adopted: TwinOut
+    other: TwinOut
+    changes: list[Change]
+
+
 class Health(BaseModel):
     """Whether the server turns."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -33,12 +34,17 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a task: a document, or a problem (field, value, remedy) of the record itself."""
+    """What came of a task: a document, or a problem (field, value, remedy) of the record itself.
+
+    ``page`` is the report on a turbine's state, and ``of`` the identity of that state.
+    """
 
     document: str | None
     modes: tuple[dict[str, Any], ...] = ()
     findings: tuple[dict[str, Any], ...] = ()
     problem: dict[str, Any] | None = None
+    page: bytes | None = None
+    of: str = ""
 
 
 @dataclass(frozen=True)
@@ -133,28 +139,42 @@ def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
 
 @dataclass(frozen=True)
 class Question:
-    """The days of a turbine, of which it is asked what they say of the supports and of a change.
+    """What a turbine's records showed, of which it is asked what that says of the supports and of a change.
 
-    ``judged`` is what is kept of watching them.
+    Attributes
+    ----------
+    days : {day: document}
+    newest : documents of the newest observations, for the page
+    in_all : how many records there are, and how long they are together [s]
+    judged : what is kept of watching the days
+    of : identity of the state
     """
 
     twin_folder: str
     days: Mapping[str, str]
+    newest: tuple[str, ...] = ()
+    in_all: tuple[int, float] = (0, 0.0)
     judged: Mapping[str, Any] | None = None
+    of: str = ""
 
 
 def know(question: Question) -> Outcome:
-    """Answer a question about a turbine's days."""
+    """Answer a question about what a turbine's records showed, and write the page on it."""
     from jackettwin.service import engine
 
     twin = engine.load_twin(Path(question.twin_folder))
-    state = engine.state_of(twin.model, question.days)
+    state, page = engine.state_of(twin.model, question.days), None
     try:
-        known = engine.known(twin, state)
+        known, result = engine.known(twin, engine.seen(state, question.newest, question.in_all))
+        if result is not None:
+            with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
+                page = engine.report(result, Path(folder) / "report.html")
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
     judged, findings = engine.watched(twin, state, question.judged) if question.days else (None, ())
-    return Outcome(json.dumps({"known": known, "judged": judged}), findings=findings)
+    return Outcome(
+        json.dumps({"known": known, "judged": judged}), findings=findings, page=page, of=question.of
+    )
 
 
 def observe_stored(task: Task) -> Outcome:

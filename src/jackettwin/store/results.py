@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Select, and_, delete, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Select, and_, delete, func, insert, select
 
 from jackettwin.store.tables import (
     acknowledgements,
@@ -17,6 +17,7 @@ from jackettwin.store.tables import (
     knowledge,
     modes,
     observations,
+    records,
     states,
     versions,
 )
@@ -88,6 +89,25 @@ def observations_between(
         yield StoredObservation(**row._mapping)
 
 
+def newest_observations(
+    connection: Connection, asset: str, model_hash: str, limit: int
+) -> list[StoredObservation]:
+    """Return the observations of the records that began last, oldest first."""
+    same = (observations.c.asset == asset, observations.c.model_hash == model_hash)
+    order = (observations.c.start_utc.desc(), observations.c.record_id)
+    rows = connection.execute(select(observations).where(*same).order_by(*order).limit(limit)).all()
+    return [StoredObservation(**row._mapping) for row in reversed(rows)]
+
+
+def observed_time(connection: Connection, asset: str, model_hash: str) -> tuple[int, float]:
+    """Return how many records a model observed, and how long they are together [s]."""
+    own = (observations.c.asset == records.c.asset) & (observations.c.record_id == records.c.record_id)
+    query = select(func.count(), func.sum(records.c.duration_s)).select_from(observations.join(records, own))
+    same = (observations.c.asset == asset, observations.c.model_hash == model_hash)
+    number, seconds = connection.execute(query.where(*same)).one()
+    return number, seconds or 0.0
+
+
 def find_observation(
     connection: Connection, asset: str, record_id: str, model_hash: str
 ) -> StoredObservation | None:
@@ -145,6 +165,12 @@ def state_hashes(
     if day is not None:
         query = query.where(states.c.day <= day)
     return {day: found for day, found in connection.execute(query)}
+
+
+def state_identity(connection: Connection, asset: str, model_hash: str, day: str | None = None) -> str:
+    """Return the identity of a turbine's state, or of that up to a day: one hash of those of its days."""
+    hashes = state_hashes(connection, asset, model_hash, day)
+    return hashlib.sha256(repr(tuple(hashes.items())).encode()).hexdigest()
 
 
 def drop_state(connection: Connection, asset: str, model_hash: str, day: str) -> None:
@@ -245,26 +271,38 @@ def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping
 
 
 def put_knowledge(
-    connection: Connection, asset: str, model_hash: str, document: Mapping[str, Any], now: datetime
+    connection: Connection,
+    asset: str,
+    version: int,
+    document: Mapping[str, Any],
+    report: bytes | None,
+    now: datetime,
 ) -> None:
-    """Keep what a state says of the supports in place of what one before said."""
-    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
-    connection.execute(delete(knowledge).where(same))
-    row = {"asset": asset, "model_hash": model_hash, "computed_utc": now, "document": dict(document)}
-    connection.execute(insert(knowledge).values(**row))
+    """Keep what a state says of the supports under a version, and the page on it, in place of others."""
+    connection.execute(delete(knowledge).where(*_of_version(asset, version)))
+    key = {"asset": asset, "version": version, "computed_utc": now}
+    connection.execute(insert(knowledge).values(**key, document=dict(document), report=report))
 
 
-def find_knowledge(connection: Connection, asset: str, model_hash: str) -> Mapping[str, Any] | None:
-    """Return what the days say of the supports and of a change, or None."""
-    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
-    row = connection.execute(select(knowledge.c.document).where(same)).one_or_none()
-    return None if row is None else row.document
+def find_judged(connection: Connection, asset: str, version: int) -> Mapping[str, Any] | None:
+    """Return what is kept of watching the days, or None."""
+    return connection.scalar(select(knowledge.c.document["judged"]).where(*_of_version(asset, version)))
 
 
-def find_supports(connection: Connection, asset: str, model_hash: str) -> dict[str, Any]:
+def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:
     """Return what the days say of the supports alone, empty if nothing yet: without what watching keeps."""
-    same = and_(knowledge.c.asset == asset, knowledge.c.model_hash == model_hash)
-    return connection.scalar(select(knowledge.c.document["known"]).where(same)) or {}
+    query = select(knowledge.c.document["known"]).where(*_of_version(asset, version))
+    return connection.scalar(query) or {}
+
+
+def find_report(connection: Connection, asset: str, version: int) -> bytes | None:
+    """Return the page on what the days say, compressed, or None."""
+    found: bytes | None = connection.scalar(select(knowledge.c.report).where(*_of_version(asset, version)))
+    return found
+
+
+def _of_version(asset: str, version: int) -> tuple[ColumnElement[bool], ...]:
+    return knowledge.c.asset == asset, knowledge.c.version == version
 
 
 def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> dict[str, int]:

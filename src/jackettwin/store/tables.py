@@ -196,12 +196,13 @@ knowledge = Table(
     "knowledge",
     metadata,
     Column("asset", ForeignKey("assets.name"), primary_key=True),
-    Column("model_hash", String(64), primary_key=True),
+    Column("version", Integer, primary_key=True),
     Column("computed_utc", Utc, nullable=False),
     Column("document", JSON, nullable=False),
+    Column("report", LargeBinary),
 )
-"""What the newest state says, found when there is time since it is costly: ``known`` of the supports;
-``judged`` is what is kept of watching the days."""
+"""What the newest state says under a version, found when there is time since it is costly: ``known`` of the
+supports; ``judged`` is what is kept of watching the days; ``report`` is the page on it, compressed."""
 
 findings = Table(
     "findings",

@@ -8,7 +8,7 @@ how many days there were, since the state holds their sums.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from typing import Literal
@@ -136,42 +136,6 @@ def follow_observations(
         state=state,
         warnings=tuple(findings),
     )
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """What a whole state says of the supports under one law.
-
-    Attributes
-    ----------
-    law : str
-    units : {parameter: unit}
-    known : Known
-        Median, 90 % interval and status.
-    """
-
-    law: str
-    units: Mapping[str, str]
-    known: Known
-
-
-def estimate(
-    config: TwinConfig, model: TwinModel, state: TwinState, *, law: str | None = None
-) -> Estimate | None:
-    """Return what a state says of the supports; None while it has no mode of the model.
-
-    Raises
-    ------
-    InputError
-        If the twin's settings ask for what a state cannot answer.
-    """
-    state = updating(config, state)
-    days = [day.time_utc for day in state.days.values() if day.time_utc is not None]
-    if not days or not state.totals[ALL].modes:
-        return None
-    question = _question(config, model, state, law, None)
-    moment = Known(max(state.days), max(days), sum(len(d.records) for d in state.days.values()), "", {}, {})
-    return Estimate(question.support.family.name, question.units, question._known(state, moment))
 
 
 def _observed(

@@ -37,6 +37,8 @@ class Measured:
     findings : tuple of Finding
         Of making the state: records that are known already, or overlap.
     failed : records that could not be identified, and why; the others go on without them
+    in_all : (number, seconds), optional
+        Of the state's records and of their durations, if the observations are the newest of them alone.
     """
 
     observations: tuple[Observation, ...]
@@ -44,6 +46,7 @@ class Measured:
     shown: Examination | None = None
     findings: tuple[Finding, ...] = ()
     failed: tuple[Failed, ...] = ()
+    in_all: tuple[int, float] | None = None
 
     @property
     def sensors(self) -> tuple[Sensor, ...]:

@@ -136,6 +136,8 @@ class TwinResult:
     rotor_speed_hz : (lowest, highest) or None
         Of the rotor in operation, where the twin says it or its rotor does.
     blades : int
+    in_all : (number, seconds), optional
+        Of all records that were measured and of their durations, if ``observations`` are some of them.
     """
 
     name: str
@@ -153,6 +155,7 @@ class TwinResult:
     relaxations: tuple[MeasuredRelaxation, ...] = ()
     rotor_speed_hz: tuple[float, float] | None = None
     blades: int = 3
+    in_all: tuple[int, float] | None = None
 
     def __repr__(self) -> str:
         modes = ", ".join(f"{m.label} {m.frequency_hz or float('nan'):.4g} Hz" for m in self.measured)
@@ -161,6 +164,11 @@ class TwinResult:
             f"TwinResult({self.name!r}, {len(self.observations)} records, measured: {modes or 'nothing'}; "
             f"updated under {laws or 'no law'})"
         )
+
+    @property
+    def extent(self) -> tuple[int, float]:
+        """How many records were measured, and how long they are together [s]."""
+        return self.in_all or (len(self.observations), sum(seen.duration_s for seen in self.observations))
 
     @property
     def record(self) -> Record | None:

@@ -11,8 +11,8 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes, updating
 from jackettwin.twin.kept import NOT_KEPT, Keep
-from jackettwin.twin.measure import measure
-from jackettwin.twin.model import twin_model
+from jackettwin.twin.measure import Measured, measure
+from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
 from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
@@ -60,12 +60,31 @@ def run_twin(
     """
     progress("assemble the structure")
     model = twin_model(config)
-    assembly, numbered, labels = model.structure, model.modes, model.labels
     found = (
         measure(config, model, compare=compare, workers=workers, progress=progress, keep=keep)
         if config.records
         else None
     )
+    return updated_twin(config, model, found, laws=laws, posteriors=posteriors, progress=progress)
+
+
+def updated_twin(
+    config: TwinConfig,
+    model: TwinModel,
+    found: Measured | None,
+    *,
+    laws: tuple[str, ...] | None = None,
+    posteriors: Posteriors = "all",
+    progress: Progress = SILENT,
+) -> TwinResult:
+    """Return a twin updated to what its records show, or to its targets if there are none.
+
+    Raises
+    ------
+    InputError
+        If what was measured does not fit the structure, or is out of the supports' reach.
+    """
+    assembly, numbered, labels = model.structure, model.modes, model.labels
     state = None if found is None else updating(config, found.state)
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
@@ -104,6 +123,7 @@ def run_twin(
         relaxations=relaxations,
         rotor_speed_hz=speed,
         blades=blades,
+        in_all=None if found is None else found.in_all,
     )
 
 

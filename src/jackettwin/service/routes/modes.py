@@ -10,14 +10,33 @@ from fastapi import APIRouter, Query, Response
 from jackettwin.service import answers as said
 from jackettwin.service import auth, signals
 from jackettwin.service.problems import ApiError, answers
-from jackettwin.service.routes.common import Asker, AssetName, Parts, Told, Transaction, Writes, known_asset
-from jackettwin.service.schemas import Acknowledgement, AlarmOut, FindingOut, ModeOut, Page, TwinOut
+from jackettwin.service.routes.common import (
+    Asker,
+    AssetName,
+    Parts,
+    Told,
+    Transaction,
+    Writes,
+    known_asset,
+    known_version,
+)
+from jackettwin.service.schemas import (
+    Acknowledgement,
+    AlarmOut,
+    Budget,
+    Comparison,
+    FindingOut,
+    ModeOut,
+    Page,
+    TwinOut,
+)
 from jackettwin.store import journal, people, results
 
 router = APIRouter(tags=["answers"], route_class=Transaction)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]
+AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
 When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
 
 
@@ -38,17 +57,33 @@ def modes(
 
 
 @router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-def twin(asset: AssetName, parts: Parts, connection: Told, at: When = None) -> TwinOut:
+def twin(
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+) -> TwinOut:
     """Return what the twin knows at a time: mean modes and parameters with their intervals."""
-    return said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
+    asked = known_version(connection, asset, version)
+    return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
+
+
+@router.get("/assets/{asset}/comparison", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def comparison(
+    asset: AssetName,
+    version: Annotated[int, Query(ge=1, le=1_000_000)],
+    parts: Parts,
+    connection: Told,
+) -> Comparison:
+    """Return what another version of the twin knows of the same records beside the adopted one."""
+    adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
+    return said.compared(connection, parts, adopted, other)
 
 
 @router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def damping_budget(
-    asset: AssetName, parts: Parts, connection: Told, at: When = None
-) -> Page[dict[str, object]]:
-    """Return whose damping it is, mode by mode."""
-    found = said.twin(connection, parts, known_asset(connection, asset), signals.with_zone(at, "at"))
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+) -> Page[Budget]:
+    """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
+    asked = known_version(connection, asset, version)
+    found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
     return Page(items=found.parameters.get("budget", []))
 
 

@@ -11,7 +11,7 @@ from jackettwin.service import auth
 from jackettwin.service.problems import ApiError, answers
 from jackettwin.service.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.schemas import Login, Me, NewToken, NewUser, Page, Token, UserOut
-from jackettwin.store import people, writing
+from jackettwin.store import people
 
 router = APIRouter(tags=["people"], route_class=Transaction)
 
@@ -23,12 +23,7 @@ def login(body: Login, request: Request, response: Response, parts: Parts) -> Me
     wait = parts.guesses.wait_s(key)
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
-    now = parts.now()
-    with writing(parts.database) as connection:
-        user = auth.checked_login(connection, body.name, body.password)
-        people.note_down(connection, body.name, "login", key, "ok" if user else "refused", now)
-        if user is not None:
-            secret, csrf = auth.new_grant(connection, user.name, "session", "browser", now, auth.SESSION)
+    user, secret, csrf = auth.opened_session(parts.database, body.name, body.password, key, parts.now())
     if user is None:
         parts.guesses.failed(key)
         raise ApiError(401, "name or password is wrong")

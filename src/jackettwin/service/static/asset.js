@@ -24,6 +24,17 @@ function fill(id, rows, numeric) {
   document.querySelector(`#${id} tbody`).replaceChildren(...rows.map((cells) => row(cells, numeric)));
 }
 
+let reported = null;
+function report(state, version) {
+  if (!state || state === reported) return;
+  reported = state;
+  const frame = document.getElementById("report"), link = document.createElement("a");
+  link.href = frame.src = `/assets/${asset}/report?version=${version}`;
+  link.textContent = "The newest report by itself";
+  frame.hidden = false;
+  document.getElementById("reported").replaceChildren(link);
+}
+
 async function twin() {
   const known = await api("/twin");
   fill("modes", known.modes.map((m) => [
@@ -32,7 +43,11 @@ async function twin() {
     fixed(m.damping_ratio_std === null ? null : 100 * m.damping_ratio_std, 2), m.records]), [1, 2, 3, 4, 5]);
   const supports = known.parameters.parameters || {};
   fill("supports", Object.entries(supports).map(([name, p]) => [
-    words(name), p.median.toPrecision(3), `${p.interval_90[0].toPrecision(3)} to ${p.interval_90[1].toPrecision(3)}`, p.unit]), [1, 2]);
+    words(name), p.median.toPrecision(3), p.interval_90 ? `${p.interval_90[0].toPrecision(3)} to ${p.interval_90[1].toPrecision(3)}` : null, p.unit]), [1, 2]);
+  const percent = (v) => !v ? null : `${(100 * v.value).toFixed(2)}${v.low === null ? "" : ` (${(100 * v.low).toFixed(2)} to ${(100 * v.high).toFixed(2)})`}`;
+  fill("budget", (known.parameters.budget || []).map((m) => [words(m.label), percent(m.measured),
+    ...["structure", "soil", "rotor", "water"].map((source) => percent(m.sources[source]))]), [1, 2, 3, 4, 5]);
+  report(known.parameters.law && `${known.version} ${known.parameters.until_utc} ${known.parameters.records}`, known.version);
   document.getElementById("law").textContent = known.parameters.law
     ? `Law ${known.parameters.law}, from ${known.parameters.records} records; posterior: ${known.parameters.status}.`
     : "Not estimated yet: this is done when no record waits.";
