@@ -186,6 +186,11 @@ CATALOGUE: dict[str, Kind] = {
         "the sensors do not move in phase (modal phase collinearity {mpc:.2f}) and no close mode explains it",
     ),
     "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
+    "sensor_beside": Kind(
+        "warning",
+        "together with the mode beside it, its shape holds one sensor that moves alone, {share:.0%} of its "
+        "own motion: a mount or a cable",
+    ),
     "shape_of_neighbours": Kind(
         "warning",
         "its shape is a combination of those of the modes below and above: a peak of the forces, or of "

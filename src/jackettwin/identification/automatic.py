@@ -122,7 +122,7 @@ def identify(
         judged = cleared(judged, known)
     chosen = chosen_modes(judged, tones, ready, settings)
     if known is not None:
-        chosen = screened_choice(chosen, judged, known, rescue=not wanted)
+        chosen = screened_choice(chosen, judged, known, rescue=not wanted, drifting=tones.drifting)
     label = poles.cluster.copy()
     for number, index in enumerate(chosen.candidate):
         label[judged[index].cluster.poles] = number

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.candidates import Candidate, Tones
     from jackettwin.identification.selection.screening import Evidence
     from jackettwin.identification.settings import IdentificationSettings
+    from jackettwin.identification.tones.phase_track import PhaseTrack
 
 
 MOST_MISSING = 0.01
@@ -115,7 +116,12 @@ def cleared(judged: Sequence[Candidate], known: Evidence) -> list[Candidate]:
 
 
 def screened_choice(
-    chosen: Choice, judged: Sequence[Candidate], known: Evidence, *, rescue: bool = True
+    chosen: Choice,
+    judged: Sequence[Candidate],
+    known: Evidence,
+    *,
+    rescue: bool = True,
+    drifting: Sequence[PhaseTrack] = (),
 ) -> Choice:
     """Give every mode its status; bring back those whose frequency is known, leave out what is no mode.
 
@@ -123,15 +129,19 @@ def screened_choice(
     ----------
     rescue : bool
         Whether modes are brought back.
+    drifting : sequence of PhaseTrack
+        Tones that were taken out: what still stands out where one passed is a mode, or what is left of it.
     """
     modes = dict(zip(chosen.candidate, screened(chosen.modes, known), strict=True))
     rejected = list(chosen.rejected)
     for i, c in enumerate(judged if rescue else ()):
-        if i in modes or c.objection is not None or not known.inside(c.mode.frequency_hz):
+        f = c.mode.frequency_hz
+        passing = next((tone for tone in drifting if tone.passes(f)), None) if c.is_tone else None
+        if i in modes or (c.objection is not None and passing is None) or not known.inside(f):
             continue
         if worth_keeping(c.mode, list(modes.values()), known):
             rejected = [r for r in rejected if not _about(r, c.mode)]
-            modes[i] = rescued(c.mode)
+            modes[i] = rescued(c.mode) if passing is None else beside_tones(c.mode, [passing.swept_hz])
     forced = {i: m for i, m in modes.items() if not m.status.is_a_mode}
     order = sorted((i for i in modes if i not in forced), key=lambda i: modes[i].frequency_hz)
     left_out = [

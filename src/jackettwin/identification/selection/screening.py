@@ -22,12 +22,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
 from jackettwin.identification.selection.neighbours import apart, of_neighbours
+from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
+from jackettwin.records.another_time import may_be_compared
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -128,6 +130,8 @@ class Evidence:
         1/Tp where the conditions say it.
     band_hz : (low, high)
         Of interest.
+    comparable : (n_channels, n_channels)
+        Which channels may show the same motion.
     sensors : bool
         Whether channels are sensors: a mode may well move one component of many alone.
     """
@@ -138,6 +142,7 @@ class Evidence:
     duration_s: float
     peak_of_sea_hz: float | None
     band_hz: tuple[float, float]
+    comparable: BoolArray
     sensors: bool = True
 
     def inside(self, frequency_hz: float) -> bool:
@@ -167,6 +172,7 @@ def evidence(
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
         band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
+        comparable=may_be_compared([c.direction for c in ready.channels], len(y)),
         sensors=sensors,
     )
 
@@ -176,6 +182,11 @@ def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstim
     judged = [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
     for i in of_neighbours(judged, known.scale, CLOSE):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
+    if known.sensors and len(known.scale) >= ENOUGH_SENSORS:
+        for i, share in of_one_sensor(judged, known.scale, known.comparable, CLOSE).items():
+            judged[i] = judged[i].flagged(
+                ModeStatus.DOUBTFUL, Finding("sensor_beside", params={"share": share})
+            )
     return judged
 
 
@@ -255,7 +266,9 @@ def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> It
     share = np.abs(shape) ** 2 / np.sum(np.abs(shape) ** 2)
     if not known.sensors or len(share) < ENOUGH_SENSORS or share.max() <= ONE_SENSOR:
         return
-    others = np.arange(len(share)) != share.argmax()
+    others = known.comparable[share.argmax()] & (np.arange(len(share)) != share.argmax())
+    if others.sum() < FEWEST_PEERS:
+        return
     ratio, excess = contrast(known.lines[others], known.duration_s, mode, shape[others])
     seen = ratio > LEAST_CONTRAST and excess > LEAST_CONTRAST_STD
     status = ModeStatus.DOUBTFUL if seen else ModeStatus.LOCAL
