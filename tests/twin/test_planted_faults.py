@@ -24,6 +24,8 @@ SYSTEM = ModalSystem(
     np.diag([1.0, 1.5, 3.0, 6.0]),
 )
 T = np.arange(int(RATE * DURATION_S)) / RATE
+WANDERING = 2.0 * np.pi * np.cumsum(1.1 * (1.0 + 0.02 * np.sin(2.0 * np.pi * T / 400.0))) / RATE
+"""Phase of a tone around the third mode that drifts by ±2 %."""
 
 
 def read_late(y: np.ndarray, delay_s: np.ndarray) -> np.ndarray:
@@ -53,6 +55,7 @@ PLANTED: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "a gain that grows": lambda y: y * np.where(FIRST, np.linspace(1.0, 4.0, y.shape[1]), 1.0),
     "half turned": lambda y: y * np.where(UPPER & (T > 350.0), -1.0, 1.0),
     "zeros that step": lambda y: y + 5.0 * rms(y) * (T > 200.0),
+    "a tone that drifts through a mode": lambda y: y + 0.5 * rms(y) * np.sin(WANDERING),
     "a steady tone": lambda y: y + 0.7 * rms(y) * np.sin(2.0 * np.pi * 0.8 * T),
     "not stationary": lambda y: y * np.where(T > 300.0, 10.0, 1.0),
 }
