@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jackettwin.answers import Answers, Span, answer
-from jackettwin.answers.next_steps import records_for
+from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import NORMAL_90
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.structure import Rayleigh, assemble, read_structure
@@ -134,6 +134,17 @@ def test_further_measurements_never_widen_what_is_known(answers: Answers) -> Non
     for step in answers.next_steps:
         for name, factor in step.factors.items():
             assert 1.0 <= factor <= (now[name] or np.inf) * (1.0 + 1e-9)
+
+
+def test_the_second_bending_tells_more_of_the_ground_s_damping_than_torsion(result: TwinResult) -> None:
+    """Torsion hardly moves the feet (2e-4 a ln k); the second bending's damping is mostly the ground's."""
+    model = result.updates[1].problem.model
+    alone = update(single(model, Residuals(TARGETS[:2], relative=False)), starts=2, particles=60)
+    found = {
+        step.what: step.factors["c"]
+        for step in next_steps(alone, result.measured[:2], ["c"], result.labels, days=0.0)
+    }
+    assert found["second_bending"] < 0.9 * found["torsion"]
 
 
 def test_the_number_of_records_goes_with_the_square_of_the_precision(result: TwinResult) -> None:

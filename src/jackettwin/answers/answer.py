@@ -61,7 +61,7 @@ def answer(result: TwinResult) -> Answers:
         ground=ground,
         next_steps=()
         if u is None or not (fit is None or fit.fits)  # what a wrong model would learn is not known
-        else next_steps(u, result.measured, open_, days=days),
+        else next_steps(u, result.measured, open_, result.labels, days=days),
         records=number,
         minutes=days * 1440.0,
         records_for=records_for(result.measured, number, PRECISION),

@@ -32,18 +32,21 @@ _DECAY = 0.03
 _MOST = 4096
 """Times as many records up to which their number is sought."""
 _FIRST_PAIR = (1, 2)
+_MORE_MODES = {"torsion": ("torsion_1",), "second_bending": ("fore_aft_2", "side_side_2")}
+"""Modes that more sensors would show."""
 _FOOT_AMPLITUDE, _FOOT_PHASE_RAD = 0.1, 0.01
 """How well low-noise accelerometers in step get a foot's motion beside the tower's: 10 % and 0.6°."""
 
 
 def next_steps(
-    u: Update, measured: Sequence[MeasuredMode], names: Sequence[str], *, days: float
+    u: Update, measured: Sequence[MeasuredMode], names: Sequence[str], labels: Sequence[str], *, days: float
 ) -> tuple[NextStep, ...]:
     """Return what could be measured for parameters that are not identified, the most telling first.
 
     Parameters
     ----------
     names : of the parameters that are to become known
+    labels : of the model's modes, by number
     days : of records that there are; 0 without any
     """
     known = u.uncertainty
@@ -66,7 +69,7 @@ def next_steps(
 
     steps = [
         NextStep(what, found)
-        for what, changed in _candidates(problem, own).items()
+        for what, changed in _candidates(problem, own, labels, draws.mean(axis=0)).items()
         if (found := factors(changed)) is not None
     ]
     steps.append(NextStep("feet", _at_the_feet(u, names, now)))
@@ -107,7 +110,9 @@ def _more_records(factors: Callable[[float], dict[str, float] | None], days: flo
     return NextStep("records", found, days * k)
 
 
-def _candidates(problem: Problem, own: Mapping[int, MeasuredMode]) -> dict[str, Problem]:
+def _candidates(
+    problem: Problem, own: Mapping[int, MeasuredMode], labels: Sequence[str], z: FloatArray
+) -> dict[str, Problem]:
     """Return the problem after each further measurement."""
     first = problem.states[0]
     found = {"model": _without_model_error(problem, own)}
@@ -116,9 +121,38 @@ def _candidates(problem: Problem, own: Mapping[int, MeasuredMode]) -> dict[str, 
     if pair and not first.errors.any():
         decays = tuple(Target(m.mode, None, None, m.damping_ratio, _DECAY * _ratio(m)) for m in pair)
         found["decays"] = _with_state(problem, decays, rotor)
+    for what, wanted in _MORE_MODES.items():
+        modes = tuple(n for n, label in enumerate(labels, 1) if label in wanted and n not in own)
+        if modes:
+            found[what] = _with_modes(problem, modes, z)
     if "model" in found and _same(found["model"], problem):
         del found["model"]
     return found
+
+
+def _with_modes(problem: Problem, modes: tuple[int, ...], z: FloatArray) -> Problem:
+    """Return a problem with more modes, known as well as those that are measured are on average."""
+    first = problem.states[0]
+    reaching = replace(problem, model=problem.model.reaching(max(modes)))
+    pole = reaching.model.predict_many(reaching.vectors(z[None], first), modes).poles[0]
+    f, zeta = np.abs(pole) / (2.0 * np.pi), -pole.real / np.abs(pole)
+    known = first.residuals.targets
+    of_f = [_share(t.frequency_std_hz, t.frequency_hz) for t in known if t.frequency_hz]
+    of_zeta = [_share(t.damping_ratio_std, t.damping_ratio) for t in known if t.damping_ratio]
+    targets = tuple(
+        Target(
+            mode,
+            *(float(f[i]), float(f[i] * np.mean(of_f))) if of_f else (None, None),
+            *(float(zeta[i]), float(zeta[i] * np.mean(of_zeta))) if of_zeta else (None, None),
+        )
+        for i, mode in enumerate(modes)
+        if np.isfinite(pole[i])
+    )
+    return _with_state(reaching, targets, []) if targets else problem
+
+
+def _share(std: float | None, value: float) -> float:
+    return (std or 0.0) / value
 
 
 def _ratio(m: MeasuredMode) -> float:
@@ -130,13 +164,13 @@ def _same(a: Problem, b: Problem) -> bool:
 
 
 def _with_state(problem: Problem, targets: tuple[Target, ...], rotor: list[int]) -> Problem:
-    """Return a problem with one more state, in a calm."""
+    """Return a problem with one more state, in which these dashpots do as little as in a calm."""
     first = problem.states[0]
     residuals = Residuals(targets, relative=False)
     shifts = first.shifts.copy()
     shifts[rotor] += log(_CALM)
-    calm = State("calm", residuals, first.weights, shifts, np.zeros((residuals.count, first.errors.shape[1])))
-    return replace(problem, states=(*problem.states, calm))
+    more = State("more", residuals, first.weights, shifts, np.zeros((residuals.count, first.errors.shape[1])))
+    return replace(problem, states=(*problem.states, more))
 
 
 def _without_model_error(problem: Problem, own: Mapping[int, MeasuredMode]) -> Problem:

@@ -31,12 +31,16 @@ _STEPS = {
     "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
     "amplitude (to 10 %) gives the stiffness, its lag (to 0.6°) the damping",
     "decays": "stop the rotor in a calm and record a few free decays: the rotor then damps next to nothing",
+    "torsion": "measure torsion as well: two accelerometers at one height on opposite sides of the tower",
+    "second_bending": "measure the second bending modes as well: accelerometers half-way up the tower",
     "model": "make the model surer (weigh the nacelle, check the drawings) and say so under "
     "update.model_error; one without any error would do this",
 }
 _GERUNDS = {
     "feet": "motion measured at the feet, in step with the tower's",
     "decays": "free decays in a calm",
+    "torsion": "torsion, from two accelerometers at one height",
+    "second_bending": "the second bending modes, from accelerometers half-way up",
     "model": "a model with less error of its own",
 }
 

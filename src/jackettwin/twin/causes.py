@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -23,7 +24,6 @@ from jackettwin.response.system import build_system
 from jackettwin.soil.support import Spring, Support
 from jackettwin.structure import Structure, assemble
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
-from jackettwin.updating.next_measurement import Measurement
 from jackettwin.watching import (
     Cause,
     CauseVerdict,
@@ -301,6 +301,13 @@ def seen_causes(
     return SeenCauses((*causes, sensor_noise(kept)), known, further, model)
 
 
+class Measurement(NamedTuple):
+    """A further quantity, and the information [nats] to expect of it on which cause it is."""
+
+    what: str
+    gain_nats: float
+
+
 def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measurement, ...]:
     """Return which further quantity would tell the likely causes apart, the most telling first.
 
@@ -319,7 +326,7 @@ def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measureme
         each = [_predicted(c, by_name[c.name], column, float(noise)) for c in likely]
         mean, std = np.array(each).T
         gain = expected_information(share / share.sum(), mean, std)
-        found.append(Measurement(what, gain, np.zeros(0)))
+        found.append(Measurement(what, gain))
     return tuple(sorted(found, key=lambda m: -m.gain_nats)[:_SHOWN])
 
 

@@ -208,14 +208,6 @@ def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
             }
             for v in known.verdicts
         },
-        "next_measurements": [
-            {
-                "what": m.what,
-                "gain_nats": m.gain_nats,
-                "posterior_over_prior_std": dict(zip(names, m.ratio.tolist(), strict=True)),
-            }
-            for m in known.next_measurements
-        ],
         "predictions": [
             {
                 "mode": mode,

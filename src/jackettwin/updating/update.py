@@ -18,7 +18,6 @@ from jackettwin.updating.laplace import laplace_draws, log_covariance
 from jackettwin.updating.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
 from jackettwin.updating.nested import sample_nested
-from jackettwin.updating.next_measurement import Measurement, next_measurements
 from jackettwin.updating.posterior import Posterior, sample_posterior
 from jackettwin.updating.predictive import Predictive, predict_quantities
 from jackettwin.updating.problem import Problem
@@ -52,7 +51,6 @@ class Uncertainty:
     laplace_log_std: FloatArray
     log_theta: FloatArray
     verdicts: tuple[Verdict, ...]
-    next_measurements: tuple[Measurement, ...]
     predictive: Predictive
     profiles: tuple[Profile, ...]
 
@@ -246,7 +244,6 @@ def _uncertainty(
         verdicts=identifiability(
             problem, z, seed=seed, converged=posterior is not None, misfit=misfit(problem, best.theta)
         ),
-        next_measurements=next_measurements(problem, z),
         predictive=predict_quantities(
             model, _first(problem, _thinned(z)), (*known, *beyond), problem.states[0].relaxations
         ),
