@@ -1,20 +1,23 @@
 """Who may do what: roles over every route, sessions, tokens, forged requests, guessing."""
 
+import gzip
 import re
 from collections.abc import Iterator
 from datetime import timedelta
+from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
-from tests.service.conftest import NOON, upload
+from tests.service.conftest import NOON, Done, make_service, upload
 
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, auth, pages
 from jackettwin.service.app import API, ROUTERS, create_app
 from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
-from jackettwin.store import people, writing
+from jackettwin.store import people, results, writing
 
 PASSWORD = "three small words"
 OPEN = {
@@ -185,3 +188,53 @@ def test_answers_forbid_what_a_page_of_ours_does_not_need(client: TestClient) ->
     assert "unsafe-eval" not in headers["content-security-policy"]
     assert headers["x-content-type-options"] == "nosniff"
     assert headers["x-frame-options"] == "DENY"
+
+
+def test_a_file_that_expands_beyond_the_limit_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for small in make_service(tmp_path, None, monkeypatch, samples_limit=100):
+        with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:
+            answer = upload(client, 1)
+        assert (answer.status_code, answer.json()["field"]) == (422, "file")
+        assert "expands" in answer.json()["detail"]
+        assert not list(small.settings.store.glob("records/**/*.parquet"))
+
+
+def test_a_file_that_is_read_too_long_is_given_up(client: TestClient, service: Service, monkeypatch) -> None:
+    monkeypatch.setattr(service.compute, "submit", lambda *_, **__: Done(error=TimeoutError()))
+    answer = upload(client, 1)
+    assert answer.status_code == 422 and "in time" in answer.json()["detail"]
+    assert service.compute.restarts == 1  # its worker is started anew
+
+
+@pytest.mark.parametrize(
+    "word", ["'; drop table modes; --", '" or 1=1 --', "%' union select * from users --"]
+)
+def test_words_are_never_statements(client: TestClient, word: str) -> None:
+    upload(client, 1)
+    assert client.get("/api/v1/assets/wtg/modes", params={"label": word}).json()["items"] == []
+    assert client.get(f"/api/v1/assets/{quote(word, safe='')}/twin").status_code in (404, 422)
+    assert client.post("/api/v1/login", json={"name": word, "password": word}).status_code == 401
+    assert client.get("/api/v1/assets/wtg/modes").status_code == 200
+
+
+@pytest.mark.parametrize("bearer", ["", "x", "é" * 50, "a" * 5000, "' or '1'='1"])
+def test_a_token_that_is_none_is_nobody(stranger: TestClient, bearer: str) -> None:
+    headers = {"Authorization": f"Bearer {bearer}".encode()}
+    assert stranger.get("/api/v1/assets", headers=headers).status_code == 401
+
+
+def test_the_report_reaches_nothing_of_ours(client: TestClient, service: Service) -> None:
+    """It brings scripts of its own, and names of the user's."""
+    assert client.get("/assets/wtg/report").status_code == 404
+    with writing(service.database) as connection:
+        page = gzip.compress(b"<script>1</script>")
+        results.put_knowledge(connection, "wtg", 1, {"known": {}, "judged": None}, page, service.now())
+    answer = client.get("/assets/wtg/report")
+    assert answer.text == "<script>1</script>"
+    policy = answer.headers["content-security-policy"]
+    assert "sandbox" in policy and "default-src 'none'" in policy and "allow-same-origin" not in policy
+    assert (
+        "'unsafe-inline'" not in client.get("/").headers["content-security-policy"].partition("script-src")[2]
+    )

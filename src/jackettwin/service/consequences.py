@@ -74,6 +74,8 @@ def question_of(connection: Connection, service: Place, job: work.Job) -> Questi
     """Return what a worker must know to say what a turbine's state says of its supports."""
     key = (job.asset, job.model_hash)
     return Question(
+        job.asset,
+        job.version,
         str(twin_folder(connection, service, job.asset, job.version)),
         {state.day: state.document for state in results.states_until(connection, *key)},
         tuple(seen.document for seen in results.newest_observations(connection, *key, NEWEST)),

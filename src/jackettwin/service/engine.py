@@ -255,9 +255,9 @@ def _budget(mode: ModeAnswer) -> dict[str, Any]:
     }
 
 
-def report(result: TwinResult, path: Path) -> bytes:
+def report(result: TwinResult, path: Path, *, title: str, subtitle: str) -> bytes:
     """Return the page on a result, compressed; it is written to a path on the way."""
-    write_page(report_sections(result), path, title=result.name, subtitle=f"jackettwin {__version__}")
+    write_page(report_sections(result), path, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
     return gzip.compress(path.read_bytes(), mtime=0)
 
 

@@ -150,6 +150,8 @@ class Question:
     of : identity of the state
     """
 
+    asset: str
+    version: int
     twin_folder: str
     days: Mapping[str, str]
     newest: tuple[str, ...] = ()
@@ -168,7 +170,8 @@ def know(question: Question) -> Outcome:
         known, result = engine.known(twin, engine.seen(state, question.newest, question.in_all))
         if result is not None:
             with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
-                page = engine.report(result, Path(folder) / "report.html")
+                said = {"title": question.asset, "subtitle": f"version {question.version}"}
+                page = engine.report(result, Path(folder) / "report.html", **said)
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
     judged, findings = engine.watched(twin, state, question.judged) if question.days else (None, ())

@@ -1,0 +1,65 @@
+"""What a turbine's days say of its supports, whose damping it is, and the page on it, without a stand-in."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+from tests.service.conftest import NOON
+from tests.support.observations import estimate, observation
+
+from jackettwin.service import engine
+from jackettwin.service.tasks import Question, know
+from jackettwin.twin import OBSERVATION
+
+TWIN = """structure: jacket15
+gravity: true
+damping: {rayleigh: {ratio: 0.0055, frequency_hz: 0.183}}
+update: {laws: [kelvin-voigt], particles: 20, starts: 2, damping_of: all}
+"""
+MODES = {1: estimate(0.1755, 0.012, 2e-3, 0.1), 2: estimate(0.1785, 0.011, 2e-3, 0.1)}
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
+    folder: Path = tmp_path_factory.mktemp("twin")
+    (folder / engine.TWIN_FILE).write_text(TWIN)
+    model = engine.load_twin(folder).model
+    documents = []
+    for k in range(3):
+        made = observation(MODES, NOON + timedelta(minutes=10 * k), name=f"r{k}")
+        made = type(made)(**{**vars(made), "model_hash": model.model_hash})
+        documents.append(json.dumps(OBSERVATION.dump(made)))
+    folded = engine.advance_day(model, "2025-03-01", None, documents)
+    asked = Question(
+        "wtg", 1, str(folder), {"2025-03-01": folded.document}, tuple(documents[:2]), (3, 1800.0), of="it"
+    )
+    outcome = know(asked)
+    assert outcome.page is not None and outcome.of == "it"
+    return json.loads(outcome.document)["known"], gzip.decompress(outcome.page).decode()
+
+
+def test_parameters_have_intervals_and_units(answered: tuple[dict, str]) -> None:
+    known, _ = answered
+    assert (known["law"], known["records"]) == ("kelvin-voigt", 3)
+    for found in known["parameters"].values():
+        low, high = found["interval_90"]
+        assert low < found["median"] < high
+    assert {found["unit"] for found in known["parameters"].values()} == {"N/m", "N·s/m"}
+
+
+def test_sources_make_up_the_damping(answered: tuple[dict, str]) -> None:
+    known, _ = answered
+    first = known["budget"][0]
+    assert first["measured"]["value"] == pytest.approx(0.012, rel=0.05)
+    total = sum(source["value"] for source in first["sources"].values())
+    assert total == pytest.approx(0.012, rel=0.25)  # 10 % each of three records, and of the model
+    assert first["sources"]["structure"]["value"] == pytest.approx(0.0055, rel=0.1)  # Rayleigh's, at 0.183 Hz
+
+
+def test_the_page_is_of_all_records(answered: tuple[dict, str]) -> None:
+    _, page = answered
+    assert "3 records, 30 minutes" in page  # two of them are shown one by one
