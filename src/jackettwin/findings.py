@@ -196,6 +196,10 @@ CATALOGUE: dict[str, Kind] = {
         "its shape is a combination of those of the modes below and above: a peak of the forces, or of "
         "something that is not measured, seen through these",
     ),
+    "unlike_model": Kind(
+        "warning",
+        "no mode of the model has such a shape ({mac:.2f} at most), and the refinement could not confirm it",
+    ),
     "shape_twice": Kind(
         "warning", "another mode so near has the same shape: one peak told twice, or one that is not a mode's"
     ),

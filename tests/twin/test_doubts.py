@@ -6,11 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from observations import estimate, observation
 
 from jackettwin.identification import IdentificationSettings
+from jackettwin.identification.estimate import ModalEstimate
+from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
+from jackettwin.twin.doubts import unlike_model
 from jackettwin.twin.examine import examine
+from jackettwin.updating.pairing import Held
 
 PLAIN = IdentificationSettings(refine=False)
 SYSTEM = ModalSystem(
@@ -72,3 +77,24 @@ def test_a_step_of_one_rms_gives_nothing_that_is_ok(sound: Record) -> None:
     step = sound.data.std(axis=1, keepdims=True)
     modes = examine(replace(sound, data=step * np.round(sound.data / step)), PLAIN).identification.modes
     assert all(mode.status != "ok" for mode in modes)
+
+
+def mode_of(method: str, unrefined: ModalEstimate | None = None) -> ModalEstimate:
+    found = estimate(0.5, 0.01)
+    return replace(found, method=method, unrefined=unrefined, status=ModeStatus.OK)
+
+
+def test_what_the_model_has_not_and_the_refinement_left_is_doubted() -> None:
+    """A peak of the waves between the pairs was ``ok`` on symmetric jackets; a refined blade mode stays."""
+    paired = Held(0, 0.25, 0.0, 0.99, "paired")
+    unlike, far = Held(0, 0.25, 1.0, 0.46, "shape"), Held(0, 0.25, 1.0, 0.95, "frequency")
+    plain = mode_of("ssi-cov")
+    refined = mode_of("maximum-likelihood", plain)
+    seen = observation({1: plain}, None).identification
+    found = replace(seen, modes=(plain, plain, refined, plain))
+    held = (paired, unlike, unlike, far)
+    now = unlike_model(found, held).modes
+    assert [mode.status for mode in now] == ["ok", "doubtful", "ok", "ok"]
+    assert [reason.code for reason in now[1].reasons] == ["unlike_model"]
+    # a record that shows nothing of the model tells nothing against it
+    assert unlike_model(found, (unlike,) * 4) is found

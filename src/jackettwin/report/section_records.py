@@ -34,10 +34,9 @@ def further_records(result: TwinResult) -> list[Block]:
     if result.shown is None or result.record is None:
         return []
     first, names = result.shown.identification, result.names[0]
-    blocks: list[Block] = [tables.identified_table(first, names)]
-    blocks += [
-        tables.identified_table(found, names, folded=True)
-        for found, names in zip(result.identifications[1:], result.names[1:], strict=True)
+    blocks: list[Block] = [
+        tables.identified_table(found, labels, folded=i > 0)
+        for i, (found, labels) in enumerate(zip(result.identifications, result.names, strict=True))
     ]
     blocks.append(tables.pairing_table(result))
     compared = result.shown.comparison

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from jackettwin.records import Record
 from jackettwin.records.length import CYCLES, SHARE, slow_share
 from jackettwin.records.repeats import without_repeats
 from jackettwin.records.zero_steps import without_step, zero_step
+from jackettwin.updating.pairing import Held
 
 Findings = tuple[Finding, ...]
 
@@ -49,6 +51,23 @@ def too_short(record: Record) -> Findings:
         return ()
     params = {"share": share, "cycles": CYCLES, "duration_s": record.duration_s}
     return (Finding("too_short", params=params),)
+
+
+def unlike_model(found: Identification, held: Sequence[Held]) -> Identification:
+    """Doubt what no mode of the model resembles and what the refinement left as it was.
+
+    Waves and the rotor make peaks between the modes, which subspace methods take for modes. One that the
+    refinement confirmed stays: a model may lack modes, as of blades.
+    """
+    if not any(one.verdict == "paired" for one in held):
+        return found  # nothing of the model is in this record: it tells nothing of what is left
+    modes = [
+        mode.flagged(ModeStatus.DOUBTFUL, Finding("unlike_model", params={"mac": one.mac}))
+        if one.verdict == "shape" and mode.unrefined is None and mode.method != "decay"
+        else mode
+        for mode, one in zip(found.modes, held, strict=True)
+    ]
+    return replace(found, modes=tuple(modes))
 
 
 def doubted(found: Identification, reasons: Findings) -> Identification:

@@ -8,6 +8,7 @@ from jackettwin.findings import Finding
 from jackettwin.records import Record
 from jackettwin.records.identity import record_id
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
+from jackettwin.twin.doubts import unlike_model
 from jackettwin.twin.examine import Examination, examine
 from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel
@@ -70,6 +71,8 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
     """
     found = seen.identification
     known = _known(seen, model, model.likest_feet(seen))
+    if model.identification.refine and known.held:
+        found = unlike_model(found, known.held)
     said = {str(f) for f in (*seen.findings, *found.findings)}
     others = (Finding("identification", params={"text": t}) for t in found.warnings if t not in said)
     return Observation(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.identification import Identification, ModalEstimate
@@ -183,8 +183,11 @@ class TwinResult:
     @property
     def identifications(self) -> tuple[Identification, ...]:
         """What was identified, one a record; only that of the first has poles and spectra."""
-        others = tuple(seen.identification for seen in self.observations[1:])
-        return others if self.shown is None else (self.shown.identification, *others)
+        found = tuple(seen.identification for seen in self.observations)
+        if self.shown is None or not found:
+            return found[1:]
+        # with what the model says of its modes
+        return (replace(self.shown.identification, modes=found[0].modes), *found[1:])
 
     @property
     def unpaired(self) -> tuple[tuple[ModalEstimate, Held], ...]:
