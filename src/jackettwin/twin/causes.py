@@ -39,6 +39,9 @@ MODES = 8
 _DRAWS = 6
 _TYPICAL_STIFFNESS = 2.5e9
 """Of a foot [N/m], before anything is known: give or take a factor e."""
+_FEET_APART = 0.15
+"""Standard deviation of ln stiffness from foot to foot: no site is the same at all of them, and in a nearly
+round structure that turns the axes of a pair."""
 _MODEL_ERROR = 0.01
 """Relative standard deviation by which the model misses frequencies."""
 _LOSS = (0.08, 0.4)
@@ -200,7 +203,13 @@ def _standings(
     covariance = np.linalg.inv(slope.T @ slope)
     points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
     best = _Modes.of(at(fit.x), gravity, like=named)
-    return [at(x) for x in points], best.modes.frequency_hz
+    drawn = [at(x) for x in points]
+    apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
+    drawn = [
+        replace(s, horizontal=s.horizontal * h, vertical=s.vertical * v)
+        for s, (h, v) in zip(drawn, apart, strict=True)
+    ]
+    return drawn, best.modes.frequency_hz
 
 
 def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:

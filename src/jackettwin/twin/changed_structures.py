@@ -22,6 +22,9 @@ lose 8 to
 16 % of lateral and 2 to 4 % of axial stiffness."""
 _SPLASH = (-3.0, 6.0)
 """Splash zone about mean sea level [m]."""
+_WEAKENED = "× 30 % off"
+"""Unit of a brace's loss: what 30 % less of its stiffness does. Twice the effect is no 60 %: what a brace
+carries goes over to its neighbours the faster, the less is left of it."""
 _GONE = 1e-3
 """Share of a lost member's stiffness that is kept, so that no node hangs loose."""
 
@@ -108,7 +111,7 @@ def _braces(structure: Structure) -> Iterator[Happening]:
     for members in braces(structure):
         name = members[0]
         yield Happening("brace lost", f"{name} lost", _scaled(members, _GONE), 1.0, 1.0, 0.05, "-")
-        yield Happening("brace weakened", f"{name} weakened", _scaled(members, 0.7), 0.3, 0.3, 0.5, "-")
+        yield Happening("brace weakened", f"{name} weakened", _scaled(members, 0.7), 1.0, 1.0, 0.8, _WEAKENED)
         yield Happening("flooded", f"{name} flooded", _flooded(members), 1.0, 1.0, 0.05, "-")
 
 

@@ -25,8 +25,10 @@ from jackettwin.watching.watch import Change
 INSEPARABLE = 2.0
 """Causes that differ by fewer than so many standard deviations of data and model are not told apart."""
 _OTHER_PRIOR = 1.0
-MISFIT = 0.1
+MISFIT = 0.12
 """A model's direction is not the structure's: it may miss by so much of its length, in any quantity."""
+SHIFTS = (0.1, 0.3, 1.0)
+"""What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +87,8 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
     begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
     if cause.louder.size:
         return _noisy(change, cause, begins), np.nan, (np.nan, np.nan)
-    logs = _likelihood(change.info, change.score, cause, kinds) + begins[:, None, None]
-    by_size = np.logaddexp.reduce(np.logaddexp.reduce(logs, axis=0), axis=0) - np.log(len(cause.draws))
-    by_size = by_size + cause.log_size_weights
+    logs = _likelihood(change.info, change.score, cause, kinds) + begins[:, None]
+    by_size = np.logaddexp.reduce(logs, axis=0) + cause.log_size_weights
     total = float(np.logaddexp.reduce(by_size))
     order = np.argsort(cause.sizes)
     share = np.cumsum(np.exp(by_size[order] - total))
@@ -98,34 +99,34 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
 
 
 def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str]) -> FloatArray:
-    r"""Return ln Λ by begin, draw and size, (n_begins, n_draws, n_sizes); the direction may miss a little.
+    r"""Return ln Λ by begin and size, (n_begins, n_sizes); the direction is as uncertain as the structure.
 
-    With δ = θ(J + ε), ε ~ N(0, D²) and A' = DAD = QΛQᵀ, c = QᵀD(b − θAJ):
+    With δ = θ(J + Rε), ε ~ N(0, I) and RᵀAR = QΛQᵀ, c = QᵀRᵀ(b − θAJ):
 
     .. math:: \ln Λ = θ J^T b - \tfrac12 θ^2 J^T A J + \tfrac12 Σ \frac{θ^2 c_i^2}{1 + θ^2 Λ_i}
               - \tfrac12 Σ \ln (1 + θ^2 Λ_i)
     """
-    J, size = cause.draws, cause.sizes
-    moved = np.einsum("tij,dj->tdi", info, J)
-    a = np.einsum("di,tdi->td", J, moved)[..., None]
-    plain = (score @ J.T)[..., None] * size - 0.5 * a * size**2
-    misfit = _misfit(J, kinds)
-    values, vectors = np.linalg.eigh(misfit[:, None] * info * misfit)
-    turned = np.swapaxes(vectors, 1, 2) * misfit  # QᵀD
-    first = np.einsum("tij,tj->ti", turned, score)[:, None, None, :]
-    second = np.einsum("tij,tdj->tdi", turned, moved)[:, :, None, :]
+    J, size, root = cause.draws.mean(axis=0), cause.sizes, _misfit(cause.draws, kinds)
+    moved = info @ J
+    plain = (score @ J)[:, None] * size - 0.5 * (moved @ J)[:, None] * size**2
+    values, vectors = np.linalg.eigh(root.T @ info @ root)
+    turned = np.swapaxes(vectors, 1, 2) @ root.T
+    first, second = (np.einsum("tij,tj->ti", turned, x)[:, None, :] for x in (score, moved))
     square = (size[:, None] * (first - size[:, None] * second)) ** 2
-    wide = 1.0 + size[:, None] ** 2 * values[:, None, None, :]
+    wide = 1.0 + size[:, None] ** 2 * np.maximum(values, 0.0)[:, None, :]
     return np.asarray(plain + 0.5 * np.sum(square / wide - np.log(wide), axis=-1))
 
 
-def _misfit(J: FloatArray, kinds: Sequence[str]) -> FloatArray:
-    """Return the standard deviation by which a unit of a cause may miss each quantity, (m,)."""
-    kind = np.array(kinds)
-    out = np.zeros(len(kind))
+def _misfit(draws: FloatArray, kinds: Sequence[str]) -> FloatArray:
+    """Return R, (m, r), by which a unit of a cause may miss its mean direction: RRᵀ is the covariance.
+
+    Draws of the structure's state tell how quantities miss together; what no state explains is independent.
+    """
+    kind, J = np.array(kinds), draws.mean(axis=0)
+    alone = np.zeros(len(kind))
     for one in np.unique(kind):
-        out[kind == one] = MISFIT * np.sqrt(np.mean(J[:, kind == one] ** 2))
-    return out
+        alone[kind == one] = MISFIT * np.sqrt(np.mean(draws[:, kind == one] ** 2))
+    return np.concatenate([np.diag(alone), (draws - J).T / np.sqrt(max(len(draws) - 1, 1))], axis=1)
 
 
 def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
@@ -146,13 +147,18 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
     # that none is louder is no failing sensor
     none = -np.log(2.0) * len(np.unique(cause.louder))
     total += np.log(np.maximum(-np.expm1(np.minimum(none - total, 0.0)), 1e-12)) - np.log(-np.expm1(none))
-    moved = cause.draws
     info = change.info / (louder[:, :, None] * louder[:, None, :])
-    wide = np.eye(len(moved)) + moved.T @ info @ moved
-    turned = (change.score / louder**2) @ moved
+    score = change.score / louder**2
+    shift = np.logaddexp.reduce([_free(info, score, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
+    return float(np.logaddexp.reduce(begins + total + shift - np.log(len(SHIFTS))))
+
+
+def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
+    """Return ln of the evidence of δ ~ N(0, std²) by begin, (n_begins,)."""
+    wide = np.eye(len(std)) + std[:, None] * info * std
+    turned = std * score
     solved = np.linalg.solve(wide, turned[..., None])[..., 0]
-    shift = 0.5 * np.einsum("ti,ti->t", turned, solved) - 0.5 * np.linalg.slogdet(wide)[1]
-    return float(np.logaddexp.reduce(begins + total + shift))
+    return np.asarray(0.5 * np.einsum("ti,ti->t", turned, solved) - 0.5 * np.linalg.slogdet(wide)[1])
 
 
 def _something(change: Change, kinds: Sequence[str]) -> float:
@@ -164,11 +170,7 @@ def _something(change: Change, kinds: Sequence[str]) -> float:
             std = np.array([SIZES[q][min(k, len(SIZES[q]) - 1)] if q in chosen else 0.0 for q in kinds])
             if not std.any():
                 continue
-            wide = np.eye(len(kinds)) + std[:, None] * change.info * std
-            turned = std * change.score
-            solved = np.linalg.solve(wide, turned[..., None])[..., 0]
-            one = 0.5 * np.einsum("ti,ti->t", turned, solved) - 0.5 * np.linalg.slogdet(wide)[1]
-            spans.append(float(np.logaddexp.reduce(begins + one)))
+            spans.append(float(np.logaddexp.reduce(begins + _free(change.info, change.score, std))))
     return float(np.logaddexp.reduce(spans) - np.log(len(spans)))
 
 
@@ -182,12 +184,13 @@ def _groups(
     with_size = [c for c in causes if not c.louder.size]
     best = change.info[_best(change)]
     steps = {c.name: verdicts[c.name].size * c.draws.mean(axis=0) for c in with_size}
+    roots = {c.name: verdicts[c.name].size * _misfit(c.draws, kinds) for c in with_size}
     groups: list[set[str]] = []
     for i, one in enumerate(with_size):
         for other in with_size[:i]:
             difference = steps[one.name] - steps[other.name]
-            miss = _misfit(steps[one.name][None], kinds) ** 2
-            known = best @ np.linalg.inv(np.eye(len(miss)) + miss[:, None] * best)
+            miss = sum((r @ r.T for r in (roots[one.name], roots[other.name])), np.zeros_like(best))
+            known = best @ np.linalg.inv(np.eye(len(best)) + miss @ best)
             if np.sqrt(difference @ known @ difference) < INSEPARABLE:
                 joined = {one.name, other.name}
                 for group in [g for g in groups if g & joined]:
