@@ -6,8 +6,9 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.structure import read_structure
 from jackettwin.twin import causes
-from jackettwin.twin.causes import MODES, ModelCauses, model_causes, seen_causes
+from jackettwin.twin.causes import MODES, ModelCauses, _looks, model_causes, next_measurements, seen_causes
 from jackettwin.twin.changed_structures import braces
+from jackettwin.watching import CauseVerdict, Diagnosis
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
 
@@ -62,3 +63,21 @@ def test_watched_quantities_are_found_by_label(model: ModelCauses) -> None:
 def test_labels_that_no_mode_has_are_refused() -> None:
     with pytest.raises(InputError, match="no mode of the model"):
         model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))
+
+
+def judged(shares: dict[str, float]) -> Diagnosis:
+    verdicts = [CauseVerdict(name, p, 1.0, (0.8, 1.2), "-") for name, p in shares.items()]
+    return Diagnosis(tuple(verdicts), ())
+
+
+def test_a_look_tells_what_it_can_show() -> None:
+    """Two equally likely causes: the survey settles them, ln 2 but for what a look may miss."""
+    (survey,) = _looks(list(judged({"scour at all feet": 0.5, "soil softening": 0.5}).verdicts))
+    assert survey.what == "a survey of the seabed at the feet"
+    assert 0.5 * np.log(2.0) < survey.gain_nats < np.log(2.0)
+
+
+def test_what_cannot_settle_anything_is_not_advised(model: ModelCauses) -> None:
+    shares = {c.name: 0.0 for c in model.causes} | {"soil softening": 1.0}
+    seen = seen_causes(model, (("frequency", 0),), ("fore_aft_1",))
+    assert next_measurements(seen, judged(shares)) == ()

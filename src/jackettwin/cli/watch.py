@@ -16,7 +16,7 @@ from jackettwin.report.watch_page import build_watch_page
 from jackettwin.structure import read_structure
 from jackettwin.twin.modal_table import ModalTable, read_modal_table
 from jackettwin.twin.watched import watch_table
-from jackettwin.twin.watched_document import statement, watched_document
+from jackettwin.twin.watched_document import next_sentence, statement, watched_document
 
 _SHOWN = 4
 """Causes printed at most."""
@@ -87,6 +87,10 @@ def watch_command(
     output.print(statement(watched))
     for alarm in document["alarms"]:
         output.print(_causes(alarm))
+        for group in alarm["inseparable"]:
+            output.print(f"not told apart by these data: {', '.join(group)}")
+        if alarm["next_measurements"]:
+            output.print(next_sentence(alarm))
     for limit in watched.limits:
         output.print(f"limit: {limit}")
     if out is not None:

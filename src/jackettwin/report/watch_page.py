@@ -16,7 +16,7 @@ from jackettwin.report.figures_watch import (
 from jackettwin.report.numbers import count
 from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
 from jackettwin.twin.watched import Alarm, Watched
-from jackettwin.twin.watched_document import alarm_document, statement
+from jackettwin.twin.watched_document import alarm_document, next_sentence, statement
 from jackettwin.version import __version__
 
 
@@ -80,8 +80,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
         said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
         blocks.append(Text(said, "list"))
     if document["next_measurements"]:
-        said = tuple(f"{m['what']}: {m['gain_nats']:.2f} nats" for m in document["next_measurements"])
-        blocks.append(Text(("What would tell the causes apart, the most telling first:", *said), "list"))
+        blocks.append(Text((next_sentence(document),)))
     return blocks
 
 

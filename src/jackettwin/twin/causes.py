@@ -6,6 +6,7 @@ model misses, makes the draws of every direction.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
@@ -50,6 +51,22 @@ _ALIKE = 0.995
 """Cosine between directions of one family from which they are one cause."""
 _RECORDS, _RECORD_S, _SHOWN = 144, 600.0, 5
 """Ten-minute records of a further measurement, and how many are named."""
+_USUAL_ZETA, _TELLING, _LOOK_STD = 0.01, 0.01, 0.3
+"""Damping ratio of a further mode; nats below which nothing is worth measuring; and by how much of what there
+is to be seen a look may err: one in twenty does not tell."""
+LOOKS = (
+    (r"^scour", "a survey of the seabed at the feet"),
+    (r" (lost|weakened)( |$)", "a look at {0} and those alike"),
+    (r" flooded( |$)", "flooded-member detection at {0} and those alike"),
+    (r"^marine growth", "the thickness of the growth under water"),
+    (r"^mass of the RNA", "the log of what was changed on top of the tower"),
+    (r"^corrosion", "plate thickness in the splash zone"),
+    (r"^grouted", "a look at the grouted or bolted connection"),
+    (r"^sensor: clock", "the logger's clock beside a reference"),
+    (r"^sensor: yaw", "the yaw reading beside the nacelle's position"),
+    (r"^sensor: more scatter", "a second accelerometer beside the one in doubt"),
+)
+"""Where causes show to who looks, by their names; what is in the ground does not."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -311,32 +328,48 @@ def seen_causes(
 
 
 class Measurement(NamedTuple):
-    """A further quantity, and the information [nats] to expect of it on which cause it is."""
+    """What could be measured or looked at, and the information [nats] to expect on which cause it is."""
 
     what: str
     gain_nats: float
 
 
 def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measurement, ...]:
-    """Return which further quantity would tell the likely causes apart, the most telling first.
+    """Return what could be measured or looked at to tell likely causes apart, the most telling first.
 
-    Each as 144 ten-minute records before and after tell it at the precision no method can beat (Au 2014).
+    A further quantity is known as 144 ten-minute records before and after tell it at the precision no method
+    can beat (Au 2014). A look at a place tells whether the causes that show there are it.
     """
     by_name = {v.cause: v for v in diagnosis.verdicts}
     likely = [c for c in seen.model.causes if by_name[c.name].probability > 0.01]
-    if len(likely) < 2:
-        return ()
+    found = _looks([v for v in diagnosis.verdicts if v.probability > 0.01])
     share = np.array([by_name[c.name].probability for c in likely])
-    zeta = 0.01
-    limits = np.sqrt(2.0) * long_data_limits(seen.model.frequency_hz, zeta, _RECORDS * _RECORD_S)
-    found = []
-    for what, column in seen.further:
+    limits = np.sqrt(2.0) * long_data_limits(seen.model.frequency_hz, _USUAL_ZETA, _RECORDS * _RECORD_S)
+    for what, column in seen.further if len(likely) > 1 else ():
         noise = limits[0 if column < MODES else 1][column % MODES]
         each = [_predicted(c, by_name[c.name], column, float(noise)) for c in likely]
         mean, std = np.array(each).T
-        gain = expected_information(share / share.sum(), mean, std)
-        found.append(Measurement(what, gain))
-    return tuple(sorted(found, key=lambda m: -m.gain_nats)[:_SHOWN])
+        # what is left for other causes is not told by a further mode
+        gain = share.sum() * expected_information(share / share.sum(), mean, std)
+        found.append(Measurement(f"the {what}, of a day of records", float(gain)))
+    told = [m for m in found if m.gain_nats > _TELLING]
+    return tuple(sorted(told, key=lambda m: -m.gain_nats)[:_SHOWN])
+
+
+def _looks(verdicts: Sequence[CauseVerdict]) -> list[Measurement]:
+    """Return what looking somewhere tells: the entropy of whether the causes that show there are it."""
+    share = np.array([v.probability for v in verdicts])
+    places: dict[str, list[float]] = {}
+    for i, verdict in enumerate(verdicts):
+        place = next((text for start, text in LOOKS if re.search(start, verdict.cause)), None)
+        if place is not None:
+            text = place.format(verdict.cause.split(" ")[0])
+            places.setdefault(text, [0.0] * len(verdicts))[i] = 1.0
+    doubt = np.full(len(verdicts), _LOOK_STD)
+    return [
+        Measurement(text, expected_information(share / share.sum(), np.array(shows), doubt))
+        for text, shows in places.items()
+    ]
 
 
 def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -> tuple[float, float]:
@@ -345,5 +378,6 @@ def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -
     low, high = verdict.interval_90
     size_std = (high - low) / 3.29
     spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
-    misfit = MISFIT * np.sqrt(np.mean(cause.draws**2)) * abs(verdict.size) if column < MODES else 0.0
+    kind = slice(0, MODES) if column < MODES else slice(MODES, None)
+    misfit = MISFIT * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
     return float(np.mean(per) * verdict.size), float(np.sqrt(spread**2 + noise**2 + misfit**2))

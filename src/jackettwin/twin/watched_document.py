@@ -65,9 +65,26 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "by_quantity": moved,
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
-        "next_measurements": [{"what": what, "gain_nats": gain} for what, gain in alarm.next_measurements],
+        "next_measurements": [
+            {"what": what, "gain_nats": gain, "share_of_doubt": min(gain / _doubt(alarm), 1.0)}
+            for what, gain in alarm.next_measurements
+        ],
         "ln_evidence": change.log_r,
     }
+
+
+def _doubt(alarm: Alarm) -> float:
+    """Return the entropy of which cause it was [nats]."""
+    p = np.array([v.probability for v in alarm.diagnosis.verdicts if v.probability > 0.0])
+    return max(float(-p @ np.log(p)), 1e-12)
+
+
+def next_sentence(alarm: dict[str, Any]) -> str:
+    """Return what an alarm's document says to measure next, or nothing."""
+    told = [f"{m['what']} ({100.0 * m['share_of_doubt']:.0f} %)" for m in alarm["next_measurements"]]
+    if not told:
+        return ""
+    return f"Would tell the causes apart, by the share of the doubt that it settles: {'; '.join(told)}."
 
 
 def _sized(size: float, std: float) -> dict[str, Any]:

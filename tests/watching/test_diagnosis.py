@@ -1,0 +1,48 @@
+"""Evidence of a cause whose direction is uncertain, against the densities that it is a ratio of."""
+
+import numpy as np
+from scipy.stats import multivariate_normal
+
+from jackettwin.watching.causes import Cause
+from jackettwin.watching.diagnosis import _free, _likelihood, _misfit
+
+KINDS = ("frequency", "damping", "frequency")
+
+
+def case(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, Cause]:
+    root = rng.standard_normal((3, 3))
+    sizes = np.array([-0.5, 0.3, 2.0])
+    cause = Cause("any", rng.standard_normal((4, 3)), sizes, np.zeros(3))
+    return root @ root.T + np.eye(3), rng.standard_normal(3), cause
+
+
+def test_the_evidence_is_that_of_a_normal_direction(rng: np.random.Generator) -> None:
+    """X = A⁻¹b is N(θJ, A⁻¹ + θ²RRᵀ) if it is the cause, N(0, A⁻¹) if nothing changed."""
+    info, score, cause = case(rng)
+    noise, root = np.linalg.inv(info), _misfit(cause.draws, KINDS)
+    x, J = noise @ score, cause.draws.mean(axis=0)
+    expected = [
+        multivariate_normal(size * J, noise + size**2 * root @ root.T).logpdf(x)
+        - multivariate_normal(np.zeros(3), noise).logpdf(x)
+        for size in cause.sizes
+    ]
+    np.testing.assert_allclose(_likelihood(info[None], score[None], cause, KINDS)[0], expected)
+
+
+def test_a_free_step_is_normal_too(rng: np.random.Generator) -> None:
+    info, score, _ = case(rng)
+    noise, std = np.linalg.inv(info), np.array([0.5, 2.0, 0.0])
+    x = noise @ score
+    expected = (
+        multivariate_normal(np.zeros(3), noise + np.diag(std**2)).logpdf(x)
+        - multivariate_normal(np.zeros(3), noise).logpdf(x)
+    )  # fmt: skip
+    np.testing.assert_allclose(_free(info[None], score[None], std), [expected])
+
+
+def test_draws_that_differ_make_the_direction_uncertain_where_they_do() -> None:
+    same = np.tile([1.0, 0.5, 1.0], (5, 1))
+    turned = same + np.array([0.3, 0.0, -0.3]) * np.array([-1, -0.5, 0, 0.5, 1])[:, None]
+    alone, together = (root @ root.T for root in (_misfit(d, KINDS) for d in (same, turned)))
+    assert alone[0, 2] == 0.0 and together[0, 2] < 0.0
+    np.testing.assert_allclose((together - alone)[0, 0], 0.3**2 * 2.5 / 4, rtol=0.1)  # misfit grows a little
