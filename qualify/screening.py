@@ -2,7 +2,7 @@
 
 Usage: ``python qualify/screening.py [--records 450] [--peers]``. Each fault of ``FAULTS`` in three
 strengths, and clean records, over random systems of known truth. ``--peers`` runs pyOMA2 and koma on the
-same records where they are installed. Interrupted runs resume.
+same records; both must be installed (``pip install --no-deps koma-python``). Interrupted runs resume.
 """
 
 from __future__ import annotations
@@ -109,6 +109,9 @@ def row(name: str, results: list[Result], peers: tuple[str, ...]) -> str:
     cells += [f"{flagged}", f"{100.0 * lost:.1f}"]
     for peer in peers:
         known = [r[peer] for r in results if peer in r and "stopped" not in r[peer]]
+        if not known:
+            cells.append("–")
+            continue
         true, wrong, missed, n = (sum(k[key] for k in known) for key in ("true", "false", "lost", "findable"))
         cells.append(f"{100.0 * true / max(true + wrong, 1):.0f} / {100.0 * missed / max(n, 1):.0f}")
     return f"| {name} | " + " | ".join(cells) + " |"
@@ -123,7 +126,10 @@ def main() -> None:
     parser.add_argument("--peers", action="store_true")
     chosen = parser.parse_args()
     wanted = {"pyoma2": "pyOMA2", "koma": "koma"}
-    peers = tuple(name for name in wanted if chosen.peers and find_spec(name) is not None)
+    peers = tuple(wanted) if chosen.peers else ()
+    absent = [wanted[name] for name in peers if find_spec(name) is None]
+    if absent:
+        parser.error(f"--peers needs {', '.join(absent)}")
     part = "-" + "-".join(peers) if peers else ""
     results = cases("screening", chosen.records, lambda case: run(case, peers=peers), part=part, whole=True)
     head = (

@@ -44,8 +44,10 @@ def koma(record: Record, settings: ResolvedSettings) -> Said:
 
     ready = prepared(record, settings)
     orders = np.asarray(settings.orders)
-    lambd, phi = oma.covssi(ready.data.T, ready.sample_rate_hz, settings.block_rows, orders)
-    stable, shapes, _, _ = oma.find_stable_poles(lambd, phi, orders, 3)
+    lambd, phi, order = oma.covssi(
+        ready.data.T, ready.sample_rate_hz, settings.block_rows, orders, showinfo=False
+    )
+    stable, shapes, _, _ = oma.find_stable_poles(lambd, phi, order, 3)
     stable = np.asarray(stable)
     f, zeta = np.abs(stable) / (2.0 * np.pi), -stable.real / np.abs(stable)
     return grouped(f, zeta, np.asarray(shapes).T, settings)

@@ -68,6 +68,8 @@ class Prepared:
         How often each channel was differentiated with respect to time.
     rotor_orders : tuple of (order, low, high)
         Where the orders of a rotor pass whose speed the record tells [Hz]; empty if it tells none.
+    recorded_hz : float
+        Rate at which the record was taken.
     """
 
     channels: tuple[Channel, ...]
@@ -81,6 +83,7 @@ class Prepared:
     warnings: tuple[str, ...]
     differentiated: Int64Array
     rotor_orders: tuple[tuple[int, float, float], ...] = ()
+    recorded_hz: float = 0.0
 
 
 def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
@@ -128,6 +131,7 @@ def prepare(record: Record, settings: IdentificationSettings) -> Prepared:
         warnings,
         differentiated,
         () if rotor is None else rotor.orders,
+        record.sample_rate_hz,
     )
 
 

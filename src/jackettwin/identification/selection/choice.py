@@ -23,6 +23,7 @@ from jackettwin.identification.selection.candidates import (
 from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
+from jackettwin.identification.tones.mains import is_mains
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -255,7 +256,13 @@ def _tones(ready: Prepared, resolved: ResolvedSettings) -> list[Rejected]:
     steady, drifting = "steady tone: one line of the periodogram; taken out", "drifting tone; taken out"
     found = [(f, steady) for f in ready.tones_hz]
     found += [(0.5 * sum(tone.swept_hz), drifting) for tone in ready.drifting]
-    return [Rejected(f, None, reason, ModeStatus.TONE) for f, reason in sorted(found) if low < f < high]
+    inside = [(f, reason) for f, reason in sorted(found) if low < f < high]
+    return [Rejected(f, None, reason, _kind_of_tone(f, reason == steady, ready)) for f, reason in inside]
+
+
+def _kind_of_tone(frequency_hz: float, steady: bool, ready: Prepared) -> ModeStatus:
+    mains = steady and is_mains(frequency_hz, ready.recorded_hz, ready.duration_s)
+    return ModeStatus.ELECTRICAL if mains else ModeStatus.TONE
 
 
 def _hidden(judged: Sequence[Candidate], found: Choice) -> list[Finding]:
