@@ -1,5 +1,8 @@
 """A backup restores into either kind of database; a damaged one restores nothing."""
 
+import io
+import json
+import tarfile
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,6 +17,7 @@ from jackettwin.store import (
     journal,
     open_database,
     records,
+    results,
     tables,
     waveform_path,
     write_waveform,
@@ -75,3 +79,40 @@ def test_a_store_that_holds_something_is_not_overwritten(database: Engine, tmp_p
     backup(database, tmp_path / "a", tmp_path / "all.tar.gz")
     with pytest.raises(InputError, match="not empty"):
         restore(tmp_path / "all.tar.gz", database, tmp_path / "b")
+
+
+@pytest.mark.parametrize("schema", ["0001", "0002"])
+def test_a_backup_of_an_older_schema_is_read_for_ever(database: Engine, tmp_path: Path, schema: str) -> None:
+    """It is put into tables as they were then, which are then migrated."""
+    filled(database, tmp_path / "a")
+    with writing(database) as c:
+        results.put_knowledge(c, "wtg", 1, {"known": {"law": "zener"}, "judged": None}, None, NOW)
+        c.execute(tables.windows.insert().values(asset="wtg", window_utc=NOW, n_packets=2, n_known=2))
+    backup(database, tmp_path / "a", tmp_path / "new.tar.gz")
+    as_written_by(schema, tmp_path / "new.tar.gz", tmp_path / "old.tar.gz")
+    other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    counts = restore(tmp_path / "old.tar.gz", other, tmp_path / "b")
+    assert (counts["records"], counts["knowledge"]) == (1, 1)
+    with other.connect() as c:
+        assert results.find_supports(c, "wtg", 1) == {"law": "zener"}
+        assert records.find_record(c, "wtg", "ab12").start_utc == NOW
+    other.dispose()
+
+
+def as_written_by(schema: str, new: Path, old: Path) -> None:
+    """Write a backup as versions before wrote it: knowledge by model, windows without what is known."""
+    with tarfile.open(new) as source, tarfile.open(old, "w:gz") as target:
+        for member in source:
+            content = source.extractfile(member).read()
+            if member.name == "manifest.json":
+                content = json.dumps({**json.loads(content), "schema_version": schema}).encode()
+            if member.name == "tables/knowledge.jsonl":
+                row = json.loads(content)
+                del row["version"], row["report"]
+                content = json.dumps({**row, "model_hash": "m"}).encode()
+            if member.name == "tables/windows.jsonl" and schema == "0001":
+                row = json.loads(content)
+                del row["n_known"]
+                content = json.dumps(row).encode()
+            member.size = len(content)
+            target.addfile(member, io.BytesIO(content))

@@ -10,17 +10,17 @@ import io
 import json
 import tarfile
 from collections.abc import Iterator, Mapping
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from sqlalchemy import Connection, Engine, LargeBinary, Table, func, insert, select, text
+from sqlalchemy import Connection, DateTime, Engine, LargeBinary, MetaData, Table, func, insert, select, text
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
 from jackettwin.store import tables
-from jackettwin.store.database import writing
-from jackettwin.store.tables import SCHEMA_VERSION, Utc
+from jackettwin.store.database import bring_to, writing
+from jackettwin.store.tables import SCHEMA_VERSION
 
 _LEFT_OUT = ("servers",)
 """Who serves is not part of what is kept; leases are given back when a restored store is opened."""
@@ -70,9 +70,11 @@ def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
             )
         try:
             with tarfile.open(source, "r:gz") as archive:
-                _check(archive, source)
-                for table in _tables():
+                schema = _schema(archive, source)
+                bring_to(connection, schema)
+                for table in _tables_of(connection):
                     counts[table.name] = _insert(connection, table, archive)
+                bring_to(connection, SCHEMA_VERSION)
                 for member in archive:
                     if member.name.startswith("records/"):
                         _extract(archive, member, store)
@@ -103,8 +105,8 @@ def _plain(value: Any) -> Any:
 
 def _value(table: Table, name: str, plain: Any) -> Any:
     kind = table.c[name].type
-    if plain is not None and isinstance(kind, Utc):
-        return datetime.fromisoformat(plain)
+    if plain is not None and isinstance(kind, DateTime):
+        return datetime.fromisoformat(plain).astimezone(UTC).replace(tzinfo=None)
     return base64.b64decode(plain) if plain is not None and isinstance(kind, LargeBinary) else plain
 
 
@@ -114,18 +116,28 @@ def _add(archive: tarfile.TarFile, name: str, content: bytes) -> None:
     archive.addfile(member, io.BytesIO(content))
 
 
-def _check(archive: tarfile.TarFile, source: Path) -> None:
+def _schema(archive: tarfile.TarFile, source: Path) -> str:
+    """Return the schema of a backup: ours, or an older one."""
     stream = archive.extractfile("manifest.json")
     manifest: Mapping[str, Any] = json.load(stream) if stream is not None else {}
-    if manifest.get("schema_version") != SCHEMA_VERSION:
+    found = manifest.get("schema_version")
+    if not isinstance(found, str) or not "0001" <= found <= SCHEMA_VERSION:
         raise InputError(
-            "the backup is of another schema",
+            "the backup is of a newer version, or of none",
             file=source,
             field="schema_version",
-            value=manifest.get("schema_version"),
-            allowed=SCHEMA_VERSION,
-            remedy="restore it with the version that wrote it, then upgrade",
+            value=found,
+            allowed=f"0001 to {SCHEMA_VERSION}",
+            remedy="install the version that wrote it",
         )
+    return found
+
+
+def _tables_of(connection: Connection) -> list[Table]:
+    """Return the tables as they are in the database, which may be of an older schema."""
+    there = MetaData()
+    there.reflect(connection, only=[table.name for table in _tables()])
+    return [there.tables[table.name] for table in _tables()]
 
 
 def _insert(connection: Connection, table: Table, archive: tarfile.TarFile) -> int:

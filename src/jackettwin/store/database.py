@@ -127,10 +127,19 @@ def _migrate(engine: Engine, url: str) -> None:
             return
         if current is not None:
             _copy(connection, url, current)
-        config = Config()
-        config.set_main_option("script_location", str(_MIGRATIONS))
-        config.attributes["connection"] = connection
-        command.upgrade(config, SCHEMA_VERSION)
+        bring_to(connection, SCHEMA_VERSION)
+
+
+def bring_to(connection: Connection, schema: str) -> None:
+    """Bring the tables to a schema, newer or older, within the transaction."""
+    current = MigrationContext.configure(connection).get_current_revision()
+    if current == schema:
+        return
+    config = Config()
+    config.set_main_option("script_location", str(_MIGRATIONS))
+    config.attributes["connection"] = connection
+    move = command.upgrade if current is None or current < schema else command.downgrade
+    move(config, schema)
 
 
 def _copy(connection: Connection, url: str, version: str) -> None:
