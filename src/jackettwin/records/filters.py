@@ -9,7 +9,8 @@ output step do not count: what the filter passes hardly bends over so short a ti
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage, signal
+import scipy  # scipy.signal is loaded where it is used: half a second
+from scipy import ndimage
 
 from jackettwin.arrays import BoolArray, FloatArray
 
@@ -55,8 +56,8 @@ def remove_slow(y: FloatArray, cutoff: float) -> FloatArray:
     kernel = np.exp(-0.5 * (np.arange(-half, half + 1) / sigma) ** 2)[None, :]
     x = remove_line(y)
     finite = np.isfinite(x)
-    total = signal.oaconvolve(np.where(finite, x, 0.0), kernel, mode="same", axes=1)
-    weight = signal.oaconvolve(finite.astype(float), kernel, mode="same", axes=1)
+    total = scipy.signal.oaconvolve(np.where(finite, x, 0.0), kernel, mode="same", axes=1)
+    weight = scipy.signal.oaconvolve(finite.astype(float), kernel, mode="same", axes=1)
     # At a finite sample the weight is at least the kernel's centre, 1.
     slow: FloatArray = total / np.where(finite, weight, 1.0)
     return x - slow
@@ -70,8 +71,8 @@ def lowpass_taps(pass_edge: float, stop_edge: float) -> FloatArray:
     pass_edge, stop_edge : float
         Cycles per sample.
     """
-    n_taps, beta = signal.kaiserord(STOPBAND_DB, 2.0 * (stop_edge - pass_edge))
-    taps: FloatArray = signal.firwin(n_taps | 1, pass_edge + stop_edge, window=("kaiser", beta))
+    n_taps, beta = scipy.signal.kaiserord(STOPBAND_DB, 2.0 * (stop_edge - pass_edge))
+    taps: FloatArray = scipy.signal.firwin(n_taps | 1, pass_edge + stop_edge, window=("kaiser", beta))
     return taps
 
 
@@ -100,11 +101,11 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
     bridged = np.pad(
         np.apply_along_axis(bridge, 1, y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd"
     )
-    out: FloatArray = signal.upfirdn(up * padded_taps, bridged, up, down, axis=1)[:, kept]
+    out: FloatArray = scipy.signal.upfirdn(up * padded_taps, bridged, up, down, axis=1)[:, kept]
     if missing.any():
         reflected = np.pad(missing, ((0, 0), (pad, pad)), mode="reflect").astype(float)
         weight = up * np.abs(padded_taps) / np.abs(taps).sum()
-        lost = signal.upfirdn(weight, reflected, up, down, axis=1)[:, kept]
+        lost = scipy.signal.upfirdn(weight, reflected, up, down, axis=1)[:, kept]
         out = np.where(lost > MISSING_WEIGHT, np.nan, out)
     return out
 

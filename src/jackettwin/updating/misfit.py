@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
@@ -55,4 +55,4 @@ def misfit(problem: Problem, theta: FloatArray) -> Misfit | None:
     if found is None or freedom < 1:
         return None
     total = float(residuals @ residuals)
-    return Misfit(total, freedom, float(chi2.sf(total, freedom)))
+    return Misfit(total, freedom, float(chdtrc(freedom, total)))

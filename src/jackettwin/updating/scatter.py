@@ -17,9 +17,9 @@ from functools import cached_property
 from math import lgamma, log, pi, sqrt
 
 import numpy as np
+import scipy  # scipy.stats is loaded where it is used: half a second
 import scipy.linalg as la
 from scipy.special import chdtri, stdtrit
-from scipy.stats import qmc
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.updating.prior import BoxPrior, Prior
@@ -153,7 +153,7 @@ class ScatteredPrior:
     @cached_property
     def log_mass(self) -> float:
         """Logarithm of the probability that legs about a mean between the bounds lie between them, too."""
-        u = qmc.Sobol(self.low.size, rng=0).random_base2(_LOG2_POINTS)
+        u = scipy.stats.qmc.Sobol(self.low.size, rng=0).random_base2(_LOG2_POINTS)
         z = self._unbounded(u)
         return log(float(np.mean(np.all((z >= self.low) & (z <= self.high), axis=1))))
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.stats import qmc
+import scipy  # scipy.stats is loaded where it is used: half a second
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
@@ -198,7 +198,7 @@ def _out_of_reach(problem: Problem) -> InputError:
 
 def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
     low, high = problem.prior.low, problem.prior.high
-    sampler = qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))
+    sampler = scipy.stats.qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))
     power = int(np.ceil(np.log2(max(n, 2))))
     return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
 

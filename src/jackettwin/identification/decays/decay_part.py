@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, signal
+import scipy  # scipy.signal is loaded where it is used: half a second
+from scipy import ndimage
 
 from jackettwin.arrays import FloatArray
 
@@ -112,7 +113,7 @@ def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
     n = y.shape[1]
     if n < 64:
         return None
-    f, density = signal.periodogram(y, sample_rate_hz, window="hann", axis=1)
+    f, density = scipy.signal.periodogram(y, sample_rate_hz, window="hann", axis=1)
     density = density.mean(axis=0)
     density[f < 4.0 * sample_rate_hz / n] = 0.0
     k = int(np.argmax(density))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
@@ -92,7 +92,7 @@ class _Quiet:
         """Return that of the noise if there is enough of it, else that of what is left of the decay."""
         background = left if noise is None or noise.shape[1] < left.shape[1] // 2 else noise
         length = max(background.shape[1] // 4, 16)
-        f, density = signal.welch(background, sample_rate_hz, nperseg=length, axis=1)
+        f, density = scipy.signal.welch(background, sample_rate_hz, nperseg=length, axis=1)
         return cls(f, density, sample_rate_hz)
 
     def power(self, f: float) -> FloatArray:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage, signal
+import scipy  # scipy.signal is loaded where it is used: half a second
+from scipy import ndimage
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
@@ -50,7 +51,7 @@ def spectral_matrix(
     """
     valid = np.isfinite(y)
     segments = _segments(np.where(valid, y, 0.0), segment_length)
-    window = signal.get_window("hann", segment_length)
+    window = scipy.signal.get_window("hann", segment_length)
     x = np.fft.rfft(segments * window, axis=-1)
     x = x.transpose(2, 0, 1)
     matrix = x @ x.conj().transpose(0, 2, 1) / segments.shape[1]
@@ -64,7 +65,7 @@ def lowest_peak_hz(spectrum: Spectrum) -> float | None:
     """Return the lowest frequency at which the largest singular value has a clear peak."""
     f = spectrum.frequencies_hz
     s = spectrum.singular_values[0]
-    candidates, _ = signal.find_peaks(s)
+    candidates, _ = scipy.signal.find_peaks(s)
     lowest = FEWEST_CYCLES / SEGMENTS * f[1]
     for k in candidates:
         around = (f > f[k] / np.sqrt(2.0)) & (f < f[k] * np.sqrt(2.0))

@@ -19,7 +19,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import signal
+import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy.interpolate import CubicSpline
 
 from jackettwin.arrays import FloatArray, Int64Array
@@ -99,7 +99,7 @@ def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArr
         out[:first], out[last + 1 :] = y[first], y[last]
     for _ in range(times):
         padded = np.pad(out, HALF_LENGTH, mode="reflect", reflect_type="odd")
-        out = signal.oaconvolve(padded, _taps(), mode="valid") * sample_rate_hz
+        out = scipy.signal.oaconvolve(padded, _taps(), mode="valid") * sample_rate_hz
     return np.where(there, out, np.nan)
 
 
