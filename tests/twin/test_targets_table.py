@@ -116,3 +116,16 @@ def test_a_frequency_that_is_no_mode_is_refused_with_the_nearest(tmp_path: Path)
     message = r"t\.yaml: targets\.frequency_hz: is near no mode .*0\.09.*nearest is mode 1"
     with pytest.raises(InputError, match=message):
         read_twin(tmp_path / "t.yaml")
+
+
+def test_german_columns_are_read_and_others_said(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """A damping column that was passed over in silence made a foundation without a word on its damping."""
+    columns = "Mode;Frequenz [Hz];Abweichung [Hz];Dämpfung [%];Prüfer"
+    with caplog.at_level("WARNING"):
+        (target,) = read_targets_table(
+            table(tmp_path / "m.csv", columns, "1st FA;0,2531;0,0008;1,02 ± 0,3;M")
+        )
+    assert target["damping_ratio"] == pytest.approx(0.0102)
+    assert target["damping_ratio_std"] == pytest.approx(0.003)
+    assert target["frequency_std_hz"] == pytest.approx(0.0008)
+    assert caplog.messages == ["table of modes: columns that are not used: Prüfer"]

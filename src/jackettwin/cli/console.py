@@ -119,7 +119,7 @@ class _Messages(logging.Handler):
 
 def _hear() -> None:
     """Print what the computing part logs; a server says for itself where its log goes."""
-    for package in ("jackettwin.response", "jackettwin.structure"):
+    for package in ("jackettwin.response", "jackettwin.structure", "jackettwin.twin"):
         log = logging.getLogger(package)
         log.handlers = [handler for handler in log.handlers if not isinstance(handler, _Messages)]
         log.addHandler(_Messages())

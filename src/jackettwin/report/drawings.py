@@ -152,7 +152,7 @@ def _whisker(c: Canvas, span: Span | None, x: Callable[[float], float], y: float
     c.dot(x(span.value), y)
 
 
-def ground_intervals(ground: Sequence[GroundAnswer], law: str) -> Markup | None:
+def ground_intervals(ground: Sequence[GroundAnswer], law: str, *, fits: bool = True) -> Markup | None:
     """Draw what was thought of each parameter and what is known now, each on its own logarithmic axis."""
     if not ground:
         return None
@@ -177,7 +177,7 @@ def ground_intervals(ground: Sequence[GroundAnswer], law: str) -> Markup | None:
         verdict = {"identified": "known", "weak": "known roughly", "unidentified": "not known"}.get(
             g.verdict, ""
         )
-        c.text(_WIDTH - 4, top + 14, verdict, anchor="end")
+        c.text(_WIDTH - 4, top + 14, verdict if fits else "does not fit", anchor="end")
         y = top + 28.0
         if g.before is not None:
             a, b = g.before.low or g.before.value, g.before.high or g.before.value

@@ -103,6 +103,15 @@ def listed(items: list[str]) -> str:
     return items[0] if len(items) == 1 else ", ".join(items[:-1]) + " and " + items[-1] if items else "none"
 
 
+def factor(value: float | None) -> str:
+    """Return how many times, with two digits.
+
+    >>> factor(1.94), factor(915.3), factor(None)
+    ('1.9', '920', '–')
+    """
+    return UNKNOWN if value is None or not math.isfinite(value) else f"{float(f'{value:.2g}'):g}"
+
+
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 
 

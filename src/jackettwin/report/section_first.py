@@ -40,7 +40,7 @@ def first_page(a: Answers, said: Said) -> FirstPage:
 
 def ground_drawing(a: Answers) -> list[Drawing]:
     """Return what was thought of the ground and what is known now."""
-    drawn = ground_intervals(a.ground, a.law)
+    drawn = ground_intervals(a.ground, a.law, fits=a.fits)
     if drawn is None:
         return []
     caption = (

@@ -11,6 +11,7 @@ from jackettwin.report.numbers import (
     between,
     count,
     digits_of,
+    factor,
     listed,
     parameter_words,
     quantity,
@@ -260,9 +261,8 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     ]
     if misses:
         worst, label = max(misses)
-        more.append(
-            f"Updated, the model meets every fitted frequency within {100 * worst:.1f} % ({words(label)})."
-        )
+        how = "meets every fitted frequency within" if a.fits else "misses fitted frequencies by up to"
+        more.append(f"Updated, the model {how} {100 * worst:.1f} % ({words(label)}).")
     return tuple(short), tuple(more)
 
 
@@ -432,11 +432,11 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _step(a: Answers, step: NextStep) -> str:
     kinds = {g.name: g.kind for g in a.ground}
     gains: dict[str, tuple[str, float]] = {}  # of stiffness and of damping, the one that becomes surest
-    for name, factor in sorted(step.factors.items(), key=lambda item: item[1]):
-        gains.setdefault(kinds.get(name, ""), (name, factor))
+    for name, left in sorted(step.factors.items(), key=lambda item: item[1]):
+        gains.setdefault(kinds.get(name, ""), (name, left))
     texts = [
-        f"{parameter_words(name)} to a factor of {factor:.2g} (now {_factor(a, name)})"
-        for name, factor in gains.values()
+        f"{parameter_words(name)} to a factor of {factor(left)} (now {factor(_now(a, name))})"
+        for name, left in gains.values()
     ]
     what = step_words(a, step)
     return f"{what[0].upper()}{what[1:]}. It narrows the 90 % interval of {listed(texts)}."
@@ -447,9 +447,8 @@ def step_words(a: Answers, step: NextStep) -> str:
     return _STEPS.get(step.what, _records(a, step))
 
 
-def _factor(a: Answers, name: str) -> str:
-    found = next((g.factor for g in a.ground if g.name == name), None)
-    return "?" if found is None else f"{found:.2g}"
+def _now(a: Answers, name: str) -> float | None:
+    return next((g.factor for g in a.ground if g.name == name), None)
 
 
 def _records(a: Answers, step: NextStep) -> str:

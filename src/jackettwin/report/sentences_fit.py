@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from jackettwin.answers.result import Answers, FitAnswer
-from jackettwin.report.numbers import count, listed, parameter_words, quantity, words
+from jackettwin.answers.result import Answers, FitAnswer, Span
+from jackettwin.report.numbers import count, digits_of, listed, parameter_words, quantity, words
 
 _NAMED = 2
 """Modes that a sentence names: the table has all."""
@@ -26,12 +26,18 @@ def misfit_headline(a: Answers) -> list[str]:
     """Return what comes before all else of a model that cannot meet the data; nothing of one that does."""
     if a.fit is None or a.fit.fits:
         return []
-    best = [f"{parameter_words(g.name)} {quantity(g.value.value, g.unit)}" for g in a.ground[:_BEST]]
+    best = [f"{parameter_words(g.name)} {_value(g.value, g.unit)}" for g in a.ground[:_BEST]]
     return [
         f"The model cannot meet what was measured on any ground: {_off(a.fit)}.",
         f"What comes nearest is {listed(best)}; how far that may be off is not known.",
         f"{mend(a.fit)}.",
     ]
+
+
+def _value(span: Span, unit: str) -> str:
+    """Return the value with the digits it has beside its interval: one number is one number everywhere."""
+    digits = 2 if span.low is None or span.high is None else digits_of(span.low, span.high)
+    return quantity(span.value, unit, digits=digits)
 
 
 def mend(fit: FitAnswer) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from jackettwin.answers.result import Answers, Span
-from jackettwin.report.numbers import UNKNOWN, fixed, parameter_words, words
+from jackettwin.report.numbers import UNKNOWN, factor, fixed, parameter_words, words
 from jackettwin.report.page import PageTable
 from jackettwin.report.sentences import span_words, step_words
 from jackettwin.twin import TwinResult
@@ -138,4 +138,4 @@ def next_table(a: Answers) -> PageTable:
 
 
 def _number(value: float | None) -> str:
-    return UNKNOWN if value is None else f"{value:.2g}"
+    return factor(value)

@@ -7,18 +7,20 @@ its own or behind ``±``. Separator and decimal sign are found; units stand in t
 from __future__ import annotations
 
 import csv
+import logging
 import re
 from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError, located
 
+log = logging.getLogger(__name__)
 NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
-SPREAD = re.compile(r"std|sigma|σ|±|\+/?-|uncert|error|dev", re.IGNORECASE)
-FREQUENCY = re.compile(r"^(?:f|fn|freq\w*|eigenfreq\w*|natural freq\w*)(?:[\s_\[(]|$)", re.IGNORECASE)
-DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|damp\w*|d)(?:[\s_\[(]|$)", re.IGNORECASE)
+SPREAD = re.compile(r"std|sigma|σ|±|\+/?-|uncert|error|dev|abw|streu", re.IGNORECASE)
+FREQUENCY = re.compile(r"^(?:f|fn|fre[qk]\w*|eigenfreq\w*|natural freq\w*)(?:[\s_\[(]|$)", re.IGNORECASE)
+DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_\[(]|$)", re.IGNORECASE)
 PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
-OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|damp", re.IGNORECASE)
+OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 TWO_SIDED_95 = 1.959964
 """Half width of a 95 % interval in standard deviations."""
@@ -67,6 +69,9 @@ def _targets(text: str) -> list[dict[str, Any]]:
                 allowed="mode, frequency [Hz], std [Hz], damping [%], std damping [%]",
                 remedy="name the columns so",
             )
+    unused = [name for i, name in enumerate(rows[0]) if i not in columns and name]
+    if unused:
+        log.warning("table of modes: columns that are not used: %s", ", ".join(unused))
     targets = []
     for number, row in enumerate(rows[1:], start=2):
         with located(field=f"row {number}"):
