@@ -123,7 +123,7 @@ def test_german_columns_are_read_and_others_said(tmp_path: Path, caplog: pytest.
     columns = "Mode;Frequenz [Hz];Abweichung [Hz];Dämpfung [%];Prüfer"
     with caplog.at_level("WARNING"):
         (target,) = read_targets_table(
-            table(tmp_path / "m.csv", columns, "1st FA;0,2531;0,0008;1,02 ± 0,3;M")
+            table(tmp_path / "m.csv", columns, "1st FA;0,2531;0,0008;1,02 ± 0,3;A")
         )
     assert target["damping_ratio"] == pytest.approx(0.0102)
     assert target["damping_ratio_std"] == pytest.approx(0.003)
