@@ -11,6 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from jackettwin.cli import main
+from jackettwin.twin.modal_table import read_modal_table
+from jackettwin.twin.watched import watch_table
 
 Columns = dict[str, np.ndarray]
 
@@ -185,3 +187,12 @@ def test_an_alarm_can_be_replayed(wide: Columns, tmp_path: Path) -> None:
     short = written({name: x[kept] for name, x in wide.items()}, tmp_path / "short.csv")
     cut = invoke(short, "--columns", "f1,f2", "--baseline-days", "90", "--json")
     assert json.loads(cut.stdout)["alarms"] == [alarm]
+
+
+def test_the_likeliest_pattern_is_what_was_seen(wide: Columns, tmp_path: Path) -> None:
+    table = read_modal_table(written(wide, tmp_path / "a.csv"), columns=("f1", "f2"))
+    (alarm,) = watch_table(table, baseline_days=90.0).alarms
+    best = alarm.diagnosis.verdicts[0].cause
+    step, seen = alarm.patterns[best], alarm.change
+    np.testing.assert_array_less(np.abs(step - seen.size), 3.0 * seen.size_std)
+    assert np.all(step < 0.0)  # a wrong sign would lie three standard deviations off

@@ -11,6 +11,8 @@ from jackettwin.report.numbers import words
 from jackettwin.twin.watched import Alarm, Watched
 
 _BAND = 1.645
+_SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
+_COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
 
 def unexplained_through_time(watched: Watched) -> go.Figure:
@@ -52,6 +54,12 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
     at = table.time(change.day)
     figure.add_vrect(x0=low, x1=high, fillcolor=style.ORANGE, opacity=0.25, line_width=0, row=row, col=1)
     figure.add_vline(x=at, line={"color": style.VERMILLION, "width": 2}, row=row, col=1)
+    if named:
+        best = alarm.diagnosis.verdicts[0]
+        figure.add_annotation(
+            x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False, bgcolor="white",
+            text=f"{best.cause}, {100.0 * best.probability:.0f} %", row=row, col=1,
+        )  # fmt: skip
     if change.kind == "scatter" or not change.members[i]:
         return
     end = table.time(watched.looks[-1].day)
@@ -92,21 +100,26 @@ def explained_shares(watched: Watched) -> go.Figure:
 
 
 def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
-    """Draw the change of each quantity with its 90 % interval."""
+    """Draw the change of each quantity with its 90 % interval, and what the likely causes would have done."""
     keys = watched.watch.quantities
     change = alarm.change
-    figure = make_subplots(rows=1, cols=2, horizontal_spacing=0.16)
-    for column, kind in enumerate(("frequency", "damping"), start=1):
+    kinds = [kind for kind in ("frequency", "damping") if any(key[0] == kind for key in keys)]
+    figure = make_subplots(rows=1, cols=len(kinds), horizontal_spacing=0.16)
+    for column, kind in enumerate(kinds, start=1):
         chosen = [i for i, key in enumerate(keys) if key[0] == kind]
-        if not chosen:
-            continue
+        names = [words(watched.watch.labels[keys[i][1]]) for i in chosen]
+        place = {"row": 1, "col": column, "showlegend": column == 1}
         figure.add_scatter(
-            x=[100.0 * change.size[i] for i in chosen],
-            y=[words(watched.watch.labels[keys[i][1]]) for i in chosen],
+            x=[100.0 * change.size[i] for i in chosen], y=names,
             error_x={"type": "data", "array": [100.0 * _BAND * change.size_std[i] for i in chosen]},
-            mode="markers", marker={"size": 9, "color": style.VERMILLION}, showlegend=False, row=1,
-            col=column,
+            mode="markers", marker={"size": 10, "color": style.VERMILLION}, name="seen, 90 %",
+            legendgroup="seen", **place,
         )  # fmt: skip
+        for (cause, step), symbol, colour in zip(alarm.patterns.items(), _SYMBOLS, _COLOURS, strict=False):
+            figure.add_scatter(
+                x=100.0 * step[chosen], y=names, mode="markers", name=cause, legendgroup=cause,
+                marker={"size": 12, "symbol": symbol, "color": colour, "line": {"width": 2}}, **place,
+            )  # fmt: skip
         what = "noise" if change.kind == "scatter" else kind
         figure.update_xaxes(title=style.title(f"change of {what}", "%"), row=1, col=column)
-    return style.finish(figure, height=max(300, 40 * len(keys) // 2 + 160))
+    return style.finish(figure, height=max(340, 40 * len(keys) // 2 + 200))

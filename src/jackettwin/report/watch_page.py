@@ -19,6 +19,10 @@ from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.twin.watched_document import alarm_document, next_sentence, statement
 from jackettwin.version import __version__
 
+_PATTERN = (
+    "Change of each quantity, 90 %; beside it what the likeliest causes would have done, at their sizes."
+)
+
 
 def build_watch_page(watched: Watched, path: Path) -> Path:
     """Write one self-contained HTML file on modes watched through time; return its path.
@@ -74,7 +78,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     caption = "Causes, after the data of the change; sizes with 90 % intervals."
     blocks: list[Block] = [
         PageTable(caption, ("cause", "probability [%]", "size"), tuple(rows)),
-        Plot(f"change_pattern_{number}", "Change of each quantity, 90 %.", change_pattern(watched, alarm)),
+        Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm)),
     ]
     if document["inseparable"]:
         said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])

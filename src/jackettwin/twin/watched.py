@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
 from jackettwin.twin.causes import SeenCauses, model_causes, next_measurements, seen_causes
 from jackettwin.twin.modal_table import ModalTable
 from jackettwin.watching import (
+    Cause,
     Change,
     Diagnosis,
     History,
@@ -26,17 +28,26 @@ from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
 from jackettwin.watching.history import typical
 
+_PATTERNS, _UNLIKELY = 3, 0.001
+"""Causes whose patterns are kept, and the probability below which none is."""
 _MISSING = 0.1
 """Share of missing values of a condition from which it is said."""
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """A change and what it was."""
+    """A change and what it was.
+
+    Attributes
+    ----------
+    patterns : {cause: (m,)} what each likely cause would have done to all quantities, at the size it would
+        have; NaN where that is not known
+    """
 
     change: Change
     diagnosis: Diagnosis
     next_measurements: tuple[tuple[str, float], ...] = ()
+    patterns: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -130,11 +141,26 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
     kinds = [kind for kind, _ in watch.quantities]
     if seen is None:
         general = general_causes(watch.quantities, watch.labels, typical(baseline.frequency))
-        return Alarm(change, diagnose(change, general, kinds))
+        diagnosis = diagnose(change, general, kinds)
+        return Alarm(
+            change, diagnosis, (), _patterns(diagnosis, general, np.ones(len(kinds), dtype=np.bool_))
+        )
     own = [kind for kind, good in zip(kinds, seen.known, strict=True) if good]
     diagnosis = diagnose(change.restricted(seen.known), seen.causes, own)
     further = tuple((m.what, m.gain_nats) for m in next_measurements(seen, diagnosis))
-    return Alarm(change, diagnosis, further)
+    return Alarm(change, diagnosis, further, _patterns(diagnosis, seen.causes, seen.known))
+
+
+def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:
+    """Return what the likely causes would have done to all quantities, of which some are known."""
+    by_name = {cause.name: cause for cause in causes}
+    found: dict[str, FloatArray] = {}
+    for verdict in diagnosis.verdicts[:_PATTERNS]:
+        if verdict.probability > _UNLIKELY and np.isfinite(verdict.size):
+            step = np.full(known.size, np.nan)
+            step[known] = verdict.size * by_name[verdict.cause].draws.mean(axis=0)
+            found[verdict.cause] = step
+    return found
 
 
 def structure_causes(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
