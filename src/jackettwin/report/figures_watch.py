@@ -57,7 +57,8 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
     if named:
         best = alarm.diagnosis.verdicts[0]
         figure.add_annotation(
-            x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False, bgcolor="white",
+            x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,
+            bgcolor="white",
             text=f"{best.cause}, {100.0 * best.probability:.0f} %", row=row, col=1,
         )  # fmt: skip
     if change.kind == "scatter" or not change.members[i]:
