@@ -20,8 +20,7 @@ SIZES = {
     "damping": (0.12, 0.24, 0.48, 0.96),
 }
 """Sizes of a step in the logarithm that are bet on, each give or take a third: below the first nothing is
-worth an
-alarm, beyond the last one any prior finds it."""
+worth an alarm, beyond the last one any prior finds it."""
 SIZE_WEIGHTS = {
     "frequency": (0.12, 0.26, 0.24, 0.16, 0.1, 0.07, 0.05),
     "damping": (0.3, 0.4, 0.2, 0.1),

@@ -168,8 +168,9 @@ class Look:
     Attributes
     ----------
     day : its last record
-    rest, rest_std : (m_all,) means less what conditions explain, and their standard deviation if all is as
-    it was log_r : ln of the statistic
+    rest, rest_std : (m_all,) means less what conditions explain, and their standard deviation if nothing has
+        changed
+    log_r : ln of the statistic
     change : Change or None
     """
 
