@@ -99,6 +99,14 @@ class Client:
         """Return what the twin knows, now or at a time (ISO 8601 with zone)."""
         return self._asked("GET", f"/assets/{asset}/twin", params={} if at is None else {"at": at})
 
+    def comparison(self, asset: str, version: int) -> dict[str, Any]:
+        """Return what another version of the twin knows of the same records beside the adopted one."""
+        return self._asked("GET", f"/assets/{asset}/comparison", params={"version": version})
+
+    def damping_budget(self, asset: str) -> list[dict[str, Any]]:
+        """Return whose damping each mode's is, by source."""
+        return list(self._pages(f"/assets/{asset}/damping-budget"))
+
     def findings(self, asset: str, **query: Any) -> Iterator[dict[str, Any]]:
         """Yield what was worth saying, newest first."""
         return self._pages(f"/assets/{asset}/findings", **query)

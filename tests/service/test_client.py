@@ -1,0 +1,57 @@
+"""The Python client, against the API itself."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from tests.service.conftest import TWIN, description, hour, record_file, turn
+
+from jackettwin.client import Client
+from jackettwin.errors import InputError
+from jackettwin.service.app import API, create_app
+from jackettwin.service.context import Service
+
+
+@pytest.fixture
+def twin(service: Service) -> Client:
+    made = Client("http://127.0.0.1:8470")
+    made._http.close()
+    made._http = TestClient(create_app(service), base_url=f"http://127.0.0.1:8470{API}")  # type: ignore[assignment]
+    return made
+
+
+def test_records_in_and_answers_out(twin: Client, service: Service, tmp_path: Path) -> None:
+    for k in range(3):
+        (tmp_path / f"r{k}.parquet").write_bytes(record_file(k))
+        (tmp_path / f"r{k}.json").write_text(description(hour(k)))
+        sent = twin.send("wtg", tmp_path / f"r{k}.parquet")
+    turn(service, 6)
+    assert twin.job(sent["job_id"])["state"] == "done"
+    assert [r["status"] for r in twin.records("wtg", limit=2)] == ["observed"] * 3  # over two pages
+    assert len(list(twin.modes("wtg", label="mode_1"))) == 3
+    assert twin.twin("wtg")["records"] == 3
+    assert twin.damping_budget("wtg")[0]["sources"]["soil"]["value"] == 0.01
+
+
+def test_versions_are_compared_before_one_is_adopted(twin: Client, service: Service, tmp_path: Path) -> None:
+    """Two versions that differ in their laws alone share observations, and are asked one by one."""
+    (tmp_path / "r.parquet").write_bytes(record_file(1))
+    twin.send("wtg", tmp_path / "r.parquet", json.loads(description(hour(1))))
+    turn(service, 4)
+    twin._asked("PUT", "/assets/wtg", json={"twin": TWIN + "update: {laws: [zener]}\n"})
+    turn(service, 4)
+    found = twin.comparison("wtg", 2)
+    assert (found["adopted"]["version"], found["other"]["version"]) == (1, 2)
+    changes = {change["quantity"]: change for change in found["changes"]}
+    assert [c["difference"] for name, c in changes.items() if name.endswith("frequency_hz")] == [0.0, 0.0]
+    assert changes["ln k"]["in_standard_deviations"] == 0.0
+    assert twin.twin("wtg")["version"] == 1
+
+
+def test_refusals_say_what_to_do(twin: Client) -> None:
+    with pytest.raises(InputError, match="404") as refused:
+        twin.twin("nobody")
+    assert refused.value.field == "asset"
