@@ -21,7 +21,7 @@ from jackettwin.records.delays import Phases, in_common, phases, trajectories
 GO_ON = 0.75
 """Share of the phases of two groups that short delays explain while their clocks go on."""
 FALL = 0.15
-"""By so much less do they explain from a loss on; of sound groups of random systems by 0.05 at most."""
+"""By so much less do they explain from a loss on; in none of forty sound records of random systems did it."""
 TELLS = 10.0
 """Sum of the weights of a pair that tells by itself."""
 FEWEST_AFTER, LEAST_AFTER = 2, 0.12
