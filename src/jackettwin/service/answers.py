@@ -18,7 +18,7 @@ from jackettwin.answers.result import NORMAL_90
 from jackettwin.errors import InputError
 from jackettwin.service import engine
 from jackettwin.service.consequences import twin_folder
-from jackettwin.service.schemas import AlarmOut, Change, Comparison, FindingOut, ModeOut, Page, TwinOut
+from jackettwin.service.schemas import AlarmOut, ChangeOut, ComparisonOut, FindingOut, ModeOut, Page, TwinOut
 from jackettwin.store import assets, results, tables
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
@@ -125,7 +125,7 @@ def twin(
 
 def compared(
     connection: Connection, service: Service, adopted: assets.Version, other: assets.Version
-) -> Comparison:
+) -> ComparisonOut:
     """Return what the adopted version knows beside another one, of the same records, and what differs."""
     mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
     changes = []
@@ -142,7 +142,7 @@ def compared(
         name: p["unit"] for k in (mine, theirs) for name, p in k.parameters.get("parameters", {}).items()
     }
     changes += [_change(f"ln {name}", units[name], before.get(name), after.get(name)) for name in units]
-    return Comparison(adopted=mine, other=theirs, changes=changes)
+    return ComparisonOut(adopted=mine, other=theirs, changes=changes)
 
 
 def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
@@ -160,13 +160,13 @@ def _change(
     unit: str,
     before: tuple[float, float | None] | None,
     after: tuple[float, float | None] | None,
-) -> Change:
+) -> ChangeOut:
     """Return a quantity of two versions, and how far they are apart in what the adopted one is sure of."""
     if before is None or after is None:
-        return Change(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
+        return ChangeOut(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
     difference = after[0] - before[0]
     sure = before[1] or after[1]
-    return Change(
+    return ChangeOut(
         quantity=quantity,
         unit=unit,
         adopted=before[0],

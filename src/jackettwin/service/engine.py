@@ -199,7 +199,7 @@ def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Seen:
+class Basis:
     """What a turbine's records showed: their state, and the newest observations alone.
 
     ``in_all`` is how many records there are, and how long they are together [s].
@@ -210,12 +210,12 @@ class Seen:
     in_all: tuple[int, float] = (0, 0.0)
 
 
-def seen(state: TwinState, newest: Sequence[str], in_all: tuple[int, float]) -> Seen:
+def seen(state: TwinState, newest: Sequence[str], in_all: tuple[int, float]) -> Basis:
     """Return what records showed, the newest observations from their documents."""
-    return Seen(state, tuple(OBSERVATION.load(json.loads(document)) for document in newest), in_all)
+    return Basis(state, tuple(OBSERVATION.load(json.loads(document)) for document in newest), in_all)
 
 
-def known(twin: Twin, seen: Seen) -> tuple[dict[str, Any], TwinResult | None]:
+def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], TwinResult | None]:
     """Return what records say of the supports under the twin's first law, and the whole result.
 
     Of every parameter the median, its 90 % interval and unit; of every mode whose damping it is.

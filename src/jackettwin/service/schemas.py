@@ -271,7 +271,7 @@ class Value(BaseModel):
     high: float | None
 
 
-class Budget(BaseModel):
+class BudgetOut(BaseModel):
     """Whose damping a mode's is: damping ratios by source (structure, soil, rotor, water)."""
 
     label: str
@@ -279,7 +279,7 @@ class Budget(BaseModel):
     sources: dict[str, Value]
 
 
-class Change(BaseModel):
+class ChangeOut(BaseModel):
     """A quantity under two versions; null where one does not know it.
 
     The records are the same: the difference is the model's. It is told in standard deviations, too, of what
@@ -294,12 +294,12 @@ class Change(BaseModel):
     in_standard_deviations: float | None = None
 
 
-class Comparison(BaseModel):
+class ComparisonOut(BaseModel):
     """What two versions of a twin know of the same records."""
 
     adopted: TwinOut
     other: TwinOut
-    changes: list[Change]
+    changes: list[ChangeOut]
 
 
 class Health(BaseModel):

@@ -23,8 +23,8 @@ from jackettwin.service.routes.common import (
 from jackettwin.service.schemas import (
     Acknowledgement,
     AlarmOut,
-    Budget,
-    Comparison,
+    BudgetOut,
+    ComparisonOut,
     FindingOut,
     ModeOut,
     Page,
@@ -71,7 +71,7 @@ def comparison(
     version: Annotated[int, Query(ge=1, le=1_000_000)],
     parts: Parts,
     connection: Told,
-) -> Comparison:
+) -> ComparisonOut:
     """Return what another version of the twin knows of the same records beside the adopted one."""
     adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
     return said.compared(connection, parts, adopted, other)
@@ -80,7 +80,7 @@ def comparison(
 @router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
 def damping_budget(
     asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
-) -> Page[Budget]:
+) -> Page[BudgetOut]:
     """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
     asked = known_version(connection, asset, version)
     found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
