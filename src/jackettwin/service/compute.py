@@ -6,6 +6,7 @@ A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Lock
@@ -20,7 +21,9 @@ from jackettwin.service.settings import ServiceSettings
 log = logging.getLogger(__name__)
 
 _NICE = 5
-"""Of workers of our own: readers are answered first, records are observed with what is left of the cores."""
+"""Of workers of our own: readers are answered first, records are observed with what is left of the cores.
+
+Stated absolutely, since Dask runs it twice."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -30,7 +33,7 @@ _DASK = {
     "distributed.scheduler.work-stealing": False,
     "distributed.admin.tick.limit": "60s",
     "distributed.worker.daemon": True,
-    "distributed.worker.preload": [f"import os; os.nice({_NICE})"],
+    "distributed.worker.preload": [f"import os; os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"],
 }
 """A worker over its memory is ended, not paused.
 
