@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import Problem, Residuals, Target, family, single, support_model
-from jackettwin.updating.identifiability import Verdict, identifiability
+from jackettwin.updating.identifiability import USABLE, Verdict, identifiability
 from jackettwin.updating.laplace import laplace_draws
 from jackettwin.updating.posterior import sample_posterior
 from jackettwin.updating.predictive import predict_quantities, support_quantities
@@ -97,6 +97,26 @@ def test_an_interval_that_is_the_priors_is_not_the_datas(problem: Problem) -> No
     assert [(v.verdict, v.decided_by) for v in (untold, half, told)] == [
         ("unidentified", "prior"), ("weak", "prior"), ("identified", "data"),
     ]  # fmt: skip
+
+
+def test_zener_between_bounds_of_seven_decades_is_not_identified(jacket15: Assembly) -> None:
+    """Its posterior is a quarter of the prior's width, and still spans a factor of dozens."""
+    model = support_model(
+        jacket15, family=family("zener"), rayleigh=Rayleigh.minimum(0.0055, 0.1832), highest_mode=5
+    )
+    poles = model.predict(np.array([2.6e9, 8e8, 1e10]), MODES).poles
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    targets = (
+        Target(1, f[0], 3e-3 * f[0], zeta[0], 0.15 * zeta[0]),
+        Target(2, f[1], 3e-3 * f[1]),
+        Target(4, f[2], 5e-3 * f[2]),
+    )
+    wide = single(model, Residuals(targets, relative=False))
+    draws = sample_posterior(wide, particles=100, islands=3, seed=1).log_theta
+    found = {v.name: v for v in identifiability(wide, draws)}
+    assert found["k0"].ratio < 0.4 and found["k0"].interval_factor > 10.0 > USABLE
+    assert (found["k0"].verdict, found["k0"].decided_by) == ("weak", "data")
+    assert found["k1"].decided_by == "bounds"
 
 
 def test_without_a_posterior_nothing_is_identified(problem: Problem, draws: np.ndarray) -> None:
