@@ -5,7 +5,6 @@ from alembic import op
 
 revision = "0003"
 down_revision = "0002"
-_SAME = "k.asset = v.asset and k.model_hash = v.model_hash"
 
 
 def upgrade() -> None:
@@ -24,7 +23,8 @@ def upgrade() -> None:
     )
     op.execute(
         "insert into knowledge (asset, version, computed_utc, document) select k.asset, v.version, "
-        f"k.computed_utc, k.document from knowledge_before k join versions v on {_SAME}"
+        "k.computed_utc, k.document from knowledge_before k "
+        "join versions v on k.asset = v.asset and k.model_hash = v.model_hash"
     )
     op.drop_table("knowledge_before")
 
