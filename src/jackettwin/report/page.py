@@ -123,10 +123,15 @@ class PageSection:
         return "".join(c if c.isalnum() else "-" for c in self.title.lower()).strip("-")
 
 
-def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subtitle: str = "") -> Path:
-    """Write one self-contained HTML file; the plotting library only where something is plotted."""
+def page_text(sections: Sequence[PageSection], *, title: str, subtitle: str = "") -> str:
+    """Return one self-contained HTML page; the plotting library only where something is plotted."""
     library = packed(get_plotlyjs()) if any(_plots(sections)) else ""
-    return _write("page.html.j2", path, sections=sections, title=title, subtitle=subtitle, plotly=library)
+    return _rendered("page.html.j2", sections=sections, title=title, subtitle=subtitle, plotly=library)
+
+
+def write_page(sections: Sequence[PageSection], path: Path, *, title: str, subtitle: str = "") -> Path:
+    """Write one self-contained HTML file."""
+    return _write(page_text(sections, title=title, subtitle=subtitle), path)
 
 
 def write_figures(sections: Sequence[PageSection], directory: Path) -> None:
@@ -142,7 +147,7 @@ def write_figures(sections: Sequence[PageSection], directory: Path) -> None:
     with atomic_path(directory / "plotly.min.js") as temporary:
         temporary.write_text(get_plotlyjs(), encoding="utf-8")
     for plot in plots:
-        _write("figure.html.j2", directory / f"{plot.name}.html", plot=plot, title=plot.name)
+        _write(_rendered("figure.html.j2", plot=plot, title=plot.name), directory / f"{plot.name}.html")
 
 
 def _drawings(sections: Iterable[PageSection]) -> Iterable[Drawing]:
@@ -163,7 +168,7 @@ def packed(text: str) -> str:
     return b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 
-def _write(template: str, path: Path, **context: object) -> Path:
+def _rendered(template: str, **context: object) -> str:
     environment = Environment(
         loader=PackageLoader("jackettwin.report"),
         autoescape=select_autoescape(("html", "j2")),
@@ -171,7 +176,10 @@ def _write(template: str, path: Path, **context: object) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    text = environment.get_template(template).render(**context)
+    return environment.get_template(template).render(**context)
+
+
+def _write(text: str, path: Path) -> Path:
     with atomic_path(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return path

@@ -129,8 +129,10 @@ def compared(
     """Return what the adopted version knows beside another one, of the same records, and what differs."""
     mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
     changes = []
-    for name, unit in (("frequency_hz", "Hz"), ("damping_ratio", "-")):
-        std = name.replace("_hz", "_std_hz") if name.endswith("_hz") else f"{name}_std"
+    for name, std, unit in (
+        ("frequency_hz", "frequency_std_hz", "Hz"),
+        ("damping_ratio", "damping_ratio_std", "-"),
+    ):
         before = {m["label"]: (m[name], m[std]) for m in mine.modes}
         after = {m["label"]: (m[name], m[std]) for m in theirs.modes}
         changes += [

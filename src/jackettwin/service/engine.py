@@ -16,16 +16,16 @@ from typing import Any, NamedTuple
 
 from jackettwin.answers import answer
 from jackettwin.answers.result import ModeAnswer
+from jackettwin.findings import Finding
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
 from jackettwin.report.build import report_sections
-from jackettwin.report.page import write_page
+from jackettwin.report.page import PageSection, page_text
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
     JUDGED,
     TwinConfig,
     TwinModel,
-    TwinResult,
     TwinState,
     advance,
     finding_of,
@@ -137,14 +137,10 @@ def state_of(model: TwinModel, days: Mapping[str, str]) -> TwinState:
     return state
 
 
-def _finding(finding: Any) -> dict[str, Any]:
-    return {
-        "code": finding.code,
-        "severity": finding.severity,
-        "subject": finding.subject,
-        "params": dict(finding.params),
-        "text": str(finding),
-    }
+def _finding(finding: Finding) -> dict[str, Any]:
+    row = finding.document
+    del row["repaired"]  # stored findings have no place for it
+    return row
 
 
 @dataclass(frozen=True)
@@ -215,8 +211,8 @@ def seen(state: TwinState, newest: Sequence[str], in_all: tuple[int, float]) -> 
     return Basis(state, tuple(OBSERVATION.load(json.loads(document)) for document in newest), in_all)
 
 
-def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], TwinResult | None]:
-    """Return what records say of the supports under the twin's first law, and the whole result.
+def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], list[PageSection] | None]:
+    """Return what records say of the supports under the twin's first law, and the page on it in sections.
 
     Of every parameter the median, its 90 % interval and unit; of every mode whose damping it is.
     """
@@ -226,8 +222,10 @@ def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], TwinResult | None]:
     measured = Measured(seen.newest, seen.state, in_all=seen.in_all)
     laws = twin.config.update.laws[:1]
     result = updated_twin(twin.config, twin.model, measured, laws=laws, posteriors="likely")
+    answers = answer(result)
+    sections = report_sections(result, answers)
     if not result.updates:
-        return {"status": "no law can explain what was measured", "parameters": {}}, result
+        return {"status": "no law can explain what was measured", "parameters": {}}, sections
     (u,) = result.updates
     sure = u.uncertainty
     median = u.best.theta if sure is None else sure.median
@@ -241,8 +239,8 @@ def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], TwinResult | None]:
             p.name: {"median": float(value), "interval_90": span, "unit": p.unit}
             for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
         },
-        "budget": [_budget(mode) for mode in answer(result).modes],
-    }, result
+        "budget": [_budget(mode) for mode in answers.modes],
+    }, sections
 
 
 def _budget(mode: ModeAnswer) -> dict[str, Any]:
@@ -255,10 +253,10 @@ def _budget(mode: ModeAnswer) -> dict[str, Any]:
     }
 
 
-def report(result: TwinResult, path: Path, *, title: str, subtitle: str) -> bytes:
-    """Return the page on a result, compressed; it is written to a path on the way."""
-    write_page(report_sections(result), path, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
-    return gzip.compress(path.read_bytes(), mtime=0)
+def report(sections: Sequence[PageSection], *, title: str, subtitle: str) -> bytes:
+    """Return the page of some sections, compressed."""
+    text = page_text(sections, title=title, subtitle=f"{subtitle} · jackettwin {__version__}")
+    return gzip.compress(text.encode(), mtime=0)
 
 
 def watched(

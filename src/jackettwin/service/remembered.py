@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import OrderedDict
 from dataclasses import dataclass
 from threading import Lock
@@ -40,7 +39,8 @@ class Remembered:
     ) -> DaysTold:
         """Return what all days, or those up to one, say; only days that are new or changed are read."""
         key = (version.asset, version.model_hash)
-        hashes = tuple(results.state_hashes(connection, *key, day).items())
+        by_day = results.state_hashes(connection, *key, day)
+        hashes = tuple(by_day.items())
         with self._lock:
             known, sums = self._past.get(key, ((), engine.no_days(model)))
         if hashes[: len(known)] != known:
@@ -53,8 +53,7 @@ class Remembered:
             self._keep(key, known, sums)
         for state in states[-1:]:
             sums = engine.with_day(sums, state.day, state.document)
-        identity = hashlib.sha256(repr(hashes).encode()).hexdigest()
-        return DaysTold(sums, len(hashes), identity)
+        return DaysTold(sums, len(hashes), results.identity_of(by_day))
 
     def _keep(self, key: tuple[str, str], known: Hashes, sums: engine.Sums) -> None:
         with self._lock:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -167,11 +166,9 @@ def know(question: Question) -> Outcome:
     twin = engine.load_twin(Path(question.twin_folder))
     state, page = engine.state_of(twin.model, question.days), None
     try:
-        known, result = engine.known(twin, engine.seen(state, question.newest, question.in_all))
-        if result is not None:
-            with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
-                said = {"title": question.asset, "subtitle": f"version {question.version}"}
-                page = engine.report(result, Path(folder) / "report.html", **said)
+        known, sections = engine.known(twin, engine.seen(state, question.newest, question.in_all))
+        if sections is not None:
+            page = engine.report(sections, title=question.asset, subtitle=f"version {question.version}")
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
     judged, findings = engine.watched(twin, state, question.judged) if question.days else (None, ())

@@ -169,7 +169,11 @@ def state_hashes(
 
 def state_identity(connection: Connection, asset: str, model_hash: str, day: str | None = None) -> str:
     """Return the identity of a turbine's state, or of that up to a day: one hash of those of its days."""
-    hashes = state_hashes(connection, asset, model_hash, day)
+    return identity_of(state_hashes(connection, asset, model_hash, day))
+
+
+def identity_of(hashes: Mapping[str, str]) -> str:
+    """Return one hash of those of days, {day: hash}."""
     return hashlib.sha256(repr(tuple(hashes.items())).encode()).hexdigest()
 
 
