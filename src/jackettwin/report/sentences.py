@@ -10,14 +10,12 @@ from jackettwin.report.numbers import (
     UNKNOWN,
     between,
     count,
-    digits_of,
     factor,
     listed,
     parameter_words,
-    quantity,
     words,
 )
-from jackettwin.report.sentences_fit import fit_sentence, mend, misfit_headline
+from jackettwin.report.sentences_fit import fit_sentence, mend, misfit_headline, value_words
 from jackettwin.soil.families import FAMILIES
 
 MARGIN = 0.10
@@ -90,10 +88,10 @@ def span_words(span: Span, unit: str) -> str:
     >>> span_words(Span(3.8e9, 2.0e9, 1.4e10), "N/m")
     '3.8 GN/m (2 to 14 GN/m)'
     """
+    value = value_words(span, unit)
     if span.low is None or span.high is None:
-        return quantity(span.value, unit)
-    digits = digits_of(span.low, span.high)
-    return f"{quantity(span.value, unit, digits=digits)} ({between(span.low, span.high, unit)})"
+        return value
+    return f"{value} ({between(span.low, span.high, unit)})"
 
 
 def percent_words(span: Span, digits: int = 2) -> str:

@@ -26,7 +26,7 @@ def misfit_headline(a: Answers) -> list[str]:
     """Return what comes before all else of a model that cannot meet the data; nothing of one that does."""
     if a.fit is None or a.fit.fits:
         return []
-    best = [f"{parameter_words(g.name)} {_value(g.value, g.unit)}" for g in a.ground[:_BEST]]
+    best = [f"{parameter_words(g.name)} {value_words(g.value, g.unit)}" for g in a.ground[:_BEST]]
     return [
         f"The model cannot meet what was measured on any ground: {_off(a.fit)}.",
         f"What comes nearest is {listed(best)}; how far that may be off is not known.",
@@ -34,7 +34,7 @@ def misfit_headline(a: Answers) -> list[str]:
     ]
 
 
-def _value(span: Span, unit: str) -> str:
+def value_words(span: Span, unit: str) -> str:
     """Return the value with the digits it has beside its interval: one number is one number everywhere."""
     digits = 2 if span.low is None or span.high is None else digits_of(span.low, span.high)
     return quantity(span.value, unit, digits=digits)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from jackettwin.answers.result import Answers, Span
-from jackettwin.report.numbers import UNKNOWN, factor, fixed, parameter_words, words
+from jackettwin.report.numbers import UNKNOWN, between, factor, fixed, parameter_words, words
 from jackettwin.report.page import PageTable
 from jackettwin.report.sentences import span_words, step_words
+from jackettwin.report.sentences_fit import value_words
 from jackettwin.twin import TwinResult
 from jackettwin.updating.budget import SOURCES
 
@@ -77,8 +78,7 @@ def _ranged(span: Span | None, unit: str) -> str:
         return "any between its bounds"
     if span.low is None or span.high is None:
         return span_words(span, unit)
-    value, interval = span_words(span, unit).split(" (", 1)
-    return f"{value}\n({interval}"
+    return f"{value_words(span, unit)}\n({between(span.low, span.high, unit)})"
 
 
 def laws_table(a: Answers) -> PageTable:
