@@ -30,15 +30,15 @@ making = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
 inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, **_HOW)
 """For what makes no array either: a tenth of the compiling is counting who still holds one."""
 
-_MAX_STEPS = 30
+MAX_STEPS = 30
 _TINY = 1e-300
 _MAX_DEPTH = 24
 _NEAR = 0.05
 """A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
-_COARSE = 1e-4
+COARSE = 1e-4
 """A cluster has come to rest as a whole when its mean moves less than this (relative): its poles are then
 known to the square of that and of their distance, and each can be refined from its own start."""
-_INSEPARABLE = 1e-5
+INSEPARABLE = 1e-5
 """Poles nearer than this (relative) stay together to the end: the block's error, their distance squared, is
 rounding."""
 _PARALLEL = 1.0 - 5e-7
@@ -47,7 +47,7 @@ _SKEWED = 1e3
 """Condition number from which modes of a multiple pole hardly resemble pinned ones: they are not turned."""
 _CLEARLY = 1.0 + 1e-9
 """An exchange must be better by more than rounding."""
-_EQUAL = 1e-9
+EQUAL = 1e-9
 """Poles nearer than this (relative) are one multiple pole."""
 
 
@@ -434,7 +434,7 @@ def _ritz(room, s, values, vectors):
     values[0], values[1] = s + step + half, s + step - half
     for j in range(2):
         _assign(U[j], vectors[j])
-        if spread > _EQUAL * abs(s):
+        if spread > EQUAL * abs(s):
             # vectors of equal values would be rounding's, and might be parallel
             for k in range(y.size):
                 vectors[j, k] = A[j] * U[0, k] + A[2 + j] * U[1, k]
@@ -451,7 +451,7 @@ def _iterate(model, laws, a, b, values, vectors, tolerance, room):
     """
     F, dF, G, s0, s1, pivot, place, U, W, z, small = room
     m = values.size
-    for round_ in range(_MAX_STEPS):
+    for round_ in range(MAX_STEPS):
         s = _mean(values)
         fill(model, laws, a, b, s, F, dF, s0, s1)
         left, phase = m, 1.0 + 0.0j
@@ -499,11 +499,11 @@ def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     """
     if values.size == 1:
         return _iterate(model, laws, a, b, values, vectors, tolerance, room)
-    if not _iterate(model, laws, a, b, values, vectors, _COARSE, room):
+    if not _iterate(model, laws, a, b, values, vectors, COARSE, room):
         return False
     if abs(values[1]) < abs(values[0]):
         _exchange(values, vectors, 0, 1)
-    if abs(values[1] - values[0]) <= _INSEPARABLE * abs(values[1]):
+    if abs(values[1] - values[0]) <= INSEPARABLE * abs(values[1]):
         return _iterate(model, laws, a, b, values, vectors, tolerance, room)
     done = True
     for i in range(2):

@@ -15,14 +15,6 @@ log = logging.getLogger(__name__)
 
 STEP = 1e-6
 """Newton converges cubically: a last step this small leaves an error at rounding level."""
-_COARSE = 1e-4
-"""A cluster has come to rest as a whole when its mean moves less than this (relative)."""
-_INSEPARABLE = 1e-5
-"""Poles nearer than this (relative) stay together to the end: the block's error, their distance squared, is
-rounding."""
-_EQUAL = 1e-9
-"""Poles nearer than this (relative) are one multiple pole."""
-_MOST_ROUNDS = 30
 
 
 @cache
@@ -79,14 +71,15 @@ def _cluster(
     near: float,
 ) -> BoolArray:
     """Refine a cluster of more than two poles in place: together, then those that stand clear alone."""
-    inseparable = near <= _INSEPARABLE
-    if not _block(model, rows, rayleigh, values, vectors, STEP if inseparable else _COARSE):
+    limits = kernels()
+    inseparable = near <= limits.INSEPARABLE
+    if not _block(model, rows, rayleigh, values, vectors, STEP if inseparable else limits.COARSE):
         return np.zeros(values.size, dtype=np.bool_)
     if inseparable:
         return np.ones(values.size, dtype=np.bool_)
     one = np.zeros(values.size, dtype=np.intp)
     parts = (rows[None], rayleigh[None], one, values[None], vectors[None])
-    return np.asarray(refined(model, *parts, _INSEPARABLE)[0])
+    return np.asarray(refined(model, *parts, limits.INSEPARABLE)[0])
 
 
 def _block(
@@ -104,7 +97,7 @@ def _block(
     n, n_pairs = model.n, model.terms.shape[1]
     F, dF = np.empty((2, n, n), np.complex128)
     s0, s1 = np.empty((2, n_pairs), np.complex128)
-    for number in range(_MOST_ROUNDS):
+    for number in range(kernels().MAX_STEPS):
         s = values.mean()
         kernels().fill(model.arrays(), rows, *rayleigh, s, F, dF, s0, s1)
         try:
@@ -123,7 +116,7 @@ def _block(
         shrunk = min(1.0, most / max(spread, np.finfo(float).tiny))
         values[:] = s + step * min(1.0, most / max(abs(step), np.finfo(float).tiny)) + shrunk * (delta - step)
         # vectors of equal values would be rounding's, and might be parallel
-        mixed = (U @ Y if spread > _EQUAL * abs(s) else U).T
+        mixed = (U @ Y if spread > kernels().EQUAL * abs(s) else U).T
         vectors[:] = mixed / np.linalg.norm(mixed, axis=1)[:, None]
         if number > 0 and abs(step) <= tolerance * abs(s):
             return True
