@@ -45,3 +45,12 @@ def test_every_setting_of_an_identification_is_documented() -> None:
         re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in section.splitlines() if "|" in row))
     )
     assert documented - {"picks"} == {field.name for field in fields(IdentificationSettings)}
+
+
+def test_every_python_file_that_a_page_names_exists() -> None:
+    root = PAGE.parents[2]
+    folders = ("src", "tests", "qualify", "benchmarks", "scripts")
+    there = [path.as_posix() for folder in folders for path in (root / folder).rglob("*.py")]
+    for page in (root / "docs").rglob("*.md"):
+        for name in re.findall(r"`(?:python )?([a-z_/0-9]+\.py)\b", page.read_text(encoding="utf-8")):
+            assert any(f"/{path}".endswith(f"/{name}") for path in there), f"{page.name}: {name}"

@@ -106,7 +106,7 @@ def cost_surface(
             x=x,
             y=y,
             z=level,
-            colorscale=style.SCALE,
+            colorscale="Cividis",
             zmin=float(np.nanmin(level)),
             zmax=top,
             ncontours=32,

@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points, numbered_poles
-from jackettwin.soil.viscoelastic import Law, law_rows
+from jackettwin.soil.viscoelastic import Law
 
 
 def root_locus(
@@ -25,7 +25,7 @@ def root_locus(
     values : sequence of float
         The parameter that is swept.
     """
-    rows = law_rows([law_of(value) for value in values])
+    rows = np.stack([law_of(value).row for value in values])
     n_groups = len(condensed.pencil.groups)
     points = Points.fixed(np.repeat(rows[:, None], n_groups, axis=1), condensed.pencil.rayleigh)
     return numbered_poles(condensed, points, tuple(range(1, n_modes + 1))).poles

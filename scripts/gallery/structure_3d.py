@@ -63,7 +63,7 @@ def structure_3d(
         height=780,
         scene=scene_of(points, ticks=True),
         coloraxis={
-            "colorscale": style.SCALE,
+            "colorscale": "Cividis",
             "colorbar": {"title": {"side": "right"}, "len": 0.6, "thickness": 16},
         },
         updatemenus=[

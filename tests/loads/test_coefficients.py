@@ -6,7 +6,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients, GrowthBand, Strip, StripTable
 from jackettwin.loads.morison import added_mass, morison_points, point_forces
-from jackettwin.loads.water import Water, water_mass, water_weight
+from jackettwin.loads.water import Water, still_water, water_mass
 from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member
 
@@ -75,7 +75,7 @@ def test_a_cone_is_loaded_by_its_own_diameter() -> None:
     """One element 9.0 to 8.9 m wide, of HydroDyn's tapered cylinder: buoyancy 1.902464e7 N (r-test)."""
     assembly = column(Section(9.0, 0.05), Section(8.9, 0.05))
     grid = morison_points(assembly)
-    lift = water_weight(assembly, grid, Water()).reshape(-1, 6)[:, 2].sum()
+    lift = still_water(assembly, grid, Water()).load.reshape(-1, 6)[:, 2].sum()
     assert lift == pytest.approx(1.902464e7, rel=1e-6)
     steep = column(Section(6.0, 0.05), Section(2.0, 0.05), z0=-40.0, z1=0.0)
     points = morison_points(steep, highest_z=0.0)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.rotor_closed_form import added_damping_ratio, parked_closed_form
+from tests.support.rotor_closed_form import added_damping_ratio, lift_slope, parked_closed_form
 
 from jackettwin.errors import InputError
 from jackettwin.loads.files import read_rotor
@@ -81,7 +81,7 @@ def test_integrals_of_the_published_blade(rotor) -> None:
     blade = rotor.blade
     alpha = -blade.twist
     cd = blade.coefficients(alpha)[1]
-    lift = blade.lift_slope(alpha) + cd
+    lift = lift_slope(blade, alpha) + cd
     cw, r = blade.chord * blade.weight, rotor.hub_radius + blade.z
     got = [cw.sum(), cw @ cd, cw @ lift, cw @ (lift * r**2)]
     np.testing.assert_allclose(got, [476.5, 30.0, 2941.0, 1.270e7], rtol=0.005)

@@ -6,7 +6,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import GROWTH_KG_M3, SEA_WATER_KG_M3, Coefficients, GrowthBand
 from jackettwin.loads.morison import morison_points
-from jackettwin.loads.water import Water, outside_pressure, water_mass, water_weight
+from jackettwin.loads.water import Water, outside_pressure, still_water, water_mass
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import clamped
@@ -49,7 +49,7 @@ def test_mass_along_and_across(cylinder, flooded: tuple[str, ...]) -> None:
 
 def test_weight_and_buoyancy(cylinder) -> None:
     assembly, grid = cylinder
-    load = water_weight(assembly, grid, Water()).reshape(-1, 6)[:, 2].sum()
+    load = still_water(assembly, grid, Water()).load.reshape(-1, 6)[:, 2].sum()
     # growth above still water, from 0 to 2 m, displaces nothing
     displaced, growth = RHO * area(D + 0.1) * DEPTH, GROWTH_KG_M3 * area(D + 0.1, D) * 42.0
     assert load == pytest.approx(9.80665 * (displaced - growth), rel=1e-9)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from tests.support.wind_spectrum import kaimal
 
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.morison import morison_points, nodal_loads
 from jackettwin.loads.rotor import AIR_KG_M3
-from jackettwin.loads.wind import Wind, kaimal, tower_drag, tower_drag_damping
+from jackettwin.loads.wind import Wind, tower_drag, tower_drag_damping
 from jackettwin.structure import assemble, read_structure
 
 WIND = Wind(12.0, 150.0, "B")

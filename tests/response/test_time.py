@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.support.time_histories import step_response
 
 from jackettwin.response.sdof import poles, sdof
-from jackettwin.response.time import free_decay, step_response
+from jackettwin.response.time import free_decay
 from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, maxwell_3, zener
 
 LAWS = {

@@ -3,7 +3,15 @@
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.loads.blades import Blade
 from jackettwin.loads.rotor import AIR_KG_M3, Rotor
+
+
+def lift_slope(blade: Blade, alpha: FloatArray) -> FloatArray:
+    """Return dCl/dα [1/rad] by central differences; measured polars are rough below half a degree."""
+    step = np.radians(0.5)
+    high, low = (blade.coefficients(alpha + sign * step)[0] for sign in (1.0, -1.0))
+    return np.asarray((high - low) / (2.0 * step))
 
 
 def parked_closed_form(
@@ -26,7 +34,7 @@ def parked_closed_form(
     blade, B = rotor.blade, rotor.n_blades
     alpha = 0.5 * np.pi - pitch - blade.twist
     cd = blade.coefficients(alpha)[1]
-    lift = blade.lift_slope(alpha) + cd
+    lift = lift_slope(blade, alpha) + cd
     dr = density * wind_speed * blade.chord * blade.weight
     r = rotor.hub_radius + blade.z
     drag, across = B * (dr @ cd), 0.25 * B * (dr @ lift)

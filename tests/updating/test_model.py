@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil.viscoelastic import law_rows
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import SupportModel, family, support_model
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
@@ -50,7 +49,7 @@ def test_slopes_are_differences_of_poles(models: dict[str, SupportModel], law: s
 def test_many_rows_are_those_of_the_laws(models: dict[str, SupportModel], law: str) -> None:
     model, theta = models[law], np.array([POINTS[law], POINTS[law]]) * [[1.0], [0.7]]
     rows = model.points(theta).rows
-    np.testing.assert_allclose(rows[:, 0], law_rows([model.laws(t)[0] for t in theta]), rtol=1e-14)
+    np.testing.assert_allclose(rows[:, 0], [model.laws(t)[0].row for t in theta], rtol=1e-14)
 
 
 def test_a_model_reaches_further_with_the_same_poles(models: dict[str, SupportModel]) -> None:

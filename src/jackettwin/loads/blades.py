@@ -58,12 +58,6 @@ class Blade:
 
         return look_up(self.cl), look_up(self.cd)
 
-    def lift_slope(self, alpha: FloatArray, step: float = np.radians(0.5)) -> FloatArray:
-        """Return dCl/dα [1/rad] by central differences; the measured polars are rough below half a degree."""
-        return np.asarray(
-            (self.coefficients(alpha + step)[0] - self.coefficients(alpha - step)[0]) / (2.0 * step)
-        )
-
 
 def blend_polars(polars: list[Polar], relative_thickness: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return tables (Cl, Cd), each (n, ALPHA.size), at the stations' relative thickness.

@@ -94,9 +94,10 @@ def _factor(matrix: FloatArray, pieces: IntArray) -> FloatArray:
 
 
 def _band_mean(wind: Wind, f: FloatArray, component: int) -> FloatArray:
-    """Return the spectrum averaged over each line's band: keeps the variance of the steep low end.
+    """Return the Kaimal spectrum averaged over each line's band: keeps the variance of the steep low end.
 
-    The first band reaches down to zero frequency.
+    The integral of S = 4σ²L/V / (1 + 6fL/V)^{5/3}, IEC 61400-1 (2019) eq. (C.14), is elementary. The first
+    band reaches down to zero frequency.
     """
     df = f[1] - f[0]
     L = SCALE_RATIOS[component] * wind.scale_m / wind.speed_m_s

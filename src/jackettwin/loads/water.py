@@ -71,11 +71,6 @@ def mass_per_level(
     return sp.csr_array((high - low) / (2.0 * step_m))
 
 
-def water_weight(assembly: Assembly, grid: MorisonPoints, water: Water) -> FloatArray:
-    """Return the static load of weight of growth and water inside, less buoyancy, (n_dof,) [N, N·m]."""
-    return nodal_loads(grid, weight_forces(assembly, grid, water))
-
-
 class StillWater(NamedTuple):
     """Weight of growth and water inside less buoyancy: on the DOFs (n_dof,), along the elements (n, 12)."""
 

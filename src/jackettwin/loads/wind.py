@@ -68,16 +68,6 @@ class Wind:
         return np.asarray(self.speed_m_s * (height / self.hub_height_m) ** self.shear)
 
 
-def kaimal(wind: Wind, frequency_hz: FloatArray, component: int = 0) -> FloatArray:
-    """Return S_k(f) [m²/s] of u, v, w (0, 1, 2), IEC 61400-1 (2019) eq. (C.14).
-
-    f S/σ² = 4 (fL/V) / (1 + 6 fL/V)^{5/3}
-    """
-    L = SCALE_RATIOS[component] * wind.scale_m / wind.speed_m_s
-    sigma = SIGMA_RATIOS[component] * wind.sigma
-    return np.asarray(4.0 * sigma**2 * L / (1.0 + 6.0 * np.asarray(frequency_hz) * L) ** (5.0 / 3.0))
-
-
 def coherence(wind: Wind, frequency_hz: FloatArray | float, distance_m: FloatArray | float) -> FloatArray:
     """Return the coherence |S_ij|/√(S_ii S_jj) of u between points ``distance_m`` apart across the wind."""
     L = SCALE_RATIOS[0] * wind.scale_m

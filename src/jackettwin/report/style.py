@@ -10,12 +10,10 @@ import plotly.graph_objects as go
 from jackettwin.soil.families import FAMILIES
 
 # Okabe & Ito 2008: distinct for all common forms of colour blindness.
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
+ORANGE, SKY, GREEN = "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 INK, GREY, PALE, GRID = "#222222", "#767676", "#BDBDBD", "#E4E4E4"
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
-SCALE = "Cividis"
-"""Colour scale of quantities: monotone in grey, and the same to colour-blind eyes."""
 
 
 class Appearance(NamedTuple):

@@ -13,5 +13,6 @@ if TYPE_CHECKING:
     )
     from jackettwin.response.sensors import Sensor as Sensor, observation_matrix as observation_matrix
     from jackettwin.response.system import System as System, build_system as build_system
+    from jackettwin.response.time import free_decay as free_decay
 
 door(__name__)

@@ -177,11 +177,6 @@ def march_with_feedback(
     return x, g
 
 
-def equilibrium(space: StateSpace, force: FloatArray) -> FloatArray:
-    """Return the state at rest under a constant force, dashpots relaxed."""
-    return np.asarray(-la.solve(space.A, space.B @ force))
-
-
 def free_decay(pencil: Pencil, x0: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:
     """Return displacements (n_steps + 1, n) after release from rest at ``x0``, dashpots relaxed there."""
     space = state_space(pencil)
@@ -190,11 +185,3 @@ def free_decay(pencil: Pencil, x0: FloatArray, *, step_s: float, n_steps: int) -
     state[2 * pencil.n :] = np.concatenate([np.empty(0), *(x0[b.dofs] for b in maxwell_branches(pencil))])
     hold = first_order_hold(space.A, space.B, step_s)
     return march(hold, state, np.zeros((n_steps + 1, pencil.n)))[:, : pencil.n]
-
-
-def step_response(pencil: Pencil, force: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:
-    """Return displacements (n_steps + 1, n) under a constant force applied at t = 0 to the model at rest."""
-    space = state_space(pencil)
-    hold = first_order_hold(space.A, space.B, step_s)
-    f = np.broadcast_to(force, (n_steps + 1, pencil.n))
-    return march(hold, np.zeros(space.A.shape[0]), f)[:, : pencil.n]

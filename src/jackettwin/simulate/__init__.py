@@ -12,5 +12,6 @@ if TYPE_CHECKING:
     from jackettwin.simulate.record import Simulation as Simulation, simulate as simulate
     from jackettwin.simulate.resultant import loads_document as loads_document
     from jackettwin.simulate.scenario import Scenario as Scenario
+    from jackettwin.simulate.sets import shipped_sets as shipped_sets
 
 door(__name__)

@@ -131,14 +131,6 @@ def soft_clay_py(
     return _table(y * y50, p * pu)
 
 
-def clay_initial_stiffness(*, capacity_n_m: float, D: float, strain_50: float, xi: float = 10.0) -> float:
-    """Return k = ξ pu/(D ε50^¼) [N/m²], DNV-OS-J101 (2014) appendix F.
-
-    ξ is 10 for normally consolidated and 30 for over-consolidated clay.
-    """
-    return float(xi * capacity_n_m / (D * strain_50**0.25))
-
-
 def stiff_clay_py(
     *,
     strength_pa: float,

@@ -11,7 +11,6 @@ Maxwell (Prony) solid. A springpot, D(s) = k (s/ω₀)^α, dissipates the same s
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import atan, gamma, pi
 
@@ -64,21 +63,6 @@ class Law(ABC):
     def static_stiffness(self) -> float:
         """Stiffness of the undamped structure: D(0), for the springpot Re D(iω₀) [N/m]."""
         return float(static_rows(self.row)[K0])
-
-
-def law_rows(laws: Sequence[Law]) -> FloatArray:
-    """Return (n_laws, width) rows, padded with zeros to the longest.
-
-    Examples
-    --------
-    >>> law_rows([kelvin_voigt(2.0, 3.0), zener(2.0, 3.0, 6.0)]).tolist()
-    [[2.0, 3.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 6.0, 0.5]]
-    """
-    own = [law.row for law in laws]
-    rows = np.zeros((len(own), max((row.size for row in own), default=BRANCHES)))
-    for row, numbers in zip(rows, own, strict=True):
-        row[: numbers.size] = numbers
-    return rows
 
 
 @dataclass(frozen=True)

@@ -176,17 +176,6 @@ class Problem:
         found = self._modes(z[None], None, slopes=False)
         return None if any(np.isnan(modes.poles).any() for modes in found) else found
 
-    def costs(self, z: FloatArray, near: Found | None) -> FloatArray:
-        """Return the cost (n,), (8.4) or χ² with the normal priors, at points (n, d)."""
-        cost = np.zeros(len(z))
-        for state, modes in zip(self.states, self._modes(z, near, slopes=False), strict=True):
-            known, r = self._known_residuals(state, z, modes)
-            cost[known] += (r * r).sum(axis=1)
-            cost[~known] += len(state.names) * _LOST**2
-        if not self.relative:
-            cost += [float(r @ r) for r, _ in map(self.prior.rows, z)]
-        return cost
-
     def log_likelihood(self, z: FloatArray, near: Found | None) -> tuple[FloatArray, Found]:
         """Return ln L (n,) at points (n, d) and the modes there; ``NEVER`` where a mode does not exist."""
         log_l, found = np.zeros(len(z)), self._modes(z, near, slopes=False)

@@ -17,8 +17,6 @@ from jackettwin.structure.assemble import assemble
 from jackettwin.structure.model import Structure
 from jackettwin.updating.band import numbered_modes
 
-PROPERTIES = ("youngs_modulus", "density")
-
 
 @dataclass(frozen=True)
 class Factor:
