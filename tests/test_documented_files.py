@@ -1,7 +1,6 @@
 """The files that the reference pages show can be read as they stand."""
 
 import re
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -44,7 +43,7 @@ def test_every_setting_of_an_identification_is_documented() -> None:
     documented = set(
         re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in section.splitlines() if "|" in row))
     )
-    assert documented - {"picks"} == {field.name for field in fields(IdentificationSettings)}
+    assert documented - {"picks"} == set(IdentificationSettings.model_fields)
 
 
 def test_every_python_file_that_a_page_names_exists() -> None:

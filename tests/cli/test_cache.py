@@ -73,7 +73,7 @@ def test_what_changes_is_identified_again(record: Record, monkeypatch: pytest.Mo
     again(record)
     again(replace(record, data=record.data * 1.001))
     again(replace(record, name="s"))
-    examine(record, replace(SETTINGS, highest_frequency_hz=2.0), keep=keeping())
+    examine(record, SETTINGS.model_copy(update={"highest_frequency_hz": 2.0}), keep=keeping())
     monkeypatch.setattr(module, "_code", lambda: "another")
     again(record)
     assert len(calls) == 5

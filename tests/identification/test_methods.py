@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.files import validate
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
 from jackettwin.identification.mac import mac
@@ -101,14 +102,14 @@ def test_a_few_reference_channels_find_the_same_modes(tower, rng):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"method": "ssi"}, "method: unknown choice.*ssi-cov"),
-        ({"reference_channels": "a0"}, "reference_channels: must be a list of names"),
+        ({"method": "ssi"}, "method: not one of the choices.*ssi-cov"),
+        ({"reference_channels": "a0"}, "reference_channels: not a list"),
         ({"reference_channels": ["a0"], "weighting": "cva"}, "takes all channels as references"),
     ],
 )
 def test_bad_choices_are_refused(values, message):
     with pytest.raises(InputError, match=message):
-        IdentificationSettings.from_mapping(values)
+        validate(IdentificationSettings, values)
 
 
 def test_a_reference_that_is_not_there_is_refused(tower, rng):

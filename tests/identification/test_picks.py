@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -50,7 +48,7 @@ def test_the_automatic_selection_replays(record: Record, found: Identification) 
 
 
 def test_a_pick_of_another_order_is_that_pole(record: Record) -> None:
-    lenient = replace(PLAIN, max_damping_cov=100.0)
+    lenient = PLAIN.model_copy(update={"max_damping_cov": 100.0})
     table = identify(record, lenient).stabilisation
     k = np.flatnonzero((table.order == 40) & (table.cluster == 2))[0]
     pick = Pick(float(f"{table.frequency_hz[k]:.4g}"), order=40)
@@ -60,7 +58,7 @@ def test_a_pick_of_another_order_is_that_pole(record: Record) -> None:
 
 
 def test_what_was_rejected_can_be_picked(record: Record) -> None:
-    lenient = replace(PLAIN, max_damping_cov=100.0)
+    lenient = PLAIN.model_copy(update={"max_damping_cov": 100.0})
     rejected = next(r for r in identify(record, lenient).rejected if "orders" in r.reason)
     (mode,) = identify(record, lenient, picks=[Pick(rejected.frequency_hz)]).modes
     assert mode.frequency_hz == rejected.frequency_hz

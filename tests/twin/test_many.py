@@ -117,7 +117,7 @@ def test_what_was_done_before_an_interruption_is_not_done_again(
     # to the last digit and letter
     assert "".join(json_pieces(many_document(again, fuse_batch(again)))) == "".join(json_pieces(document))
     # other settings are another result
-    others = replace(MODEL, identification=replace(SETTINGS, max_order=20))
+    others = replace(MODEL, identification=SETTINGS.model_copy(update={"max_order": 20}))
     observe_many(files[:1], others, keep=keep, workers=1)
     assert started[4:] == ["r0"]
     # a result that is damaged is computed again

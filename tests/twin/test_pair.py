@@ -109,7 +109,7 @@ def test_an_observation_is_small_and_goes_through_files_and_processes(
 def test_what_was_found_in_a_record_is_coded(record: Record, model: TwinModel) -> None:
     data = record.data.copy()
     data[0, 1000:1200] = np.nan
-    settings = replace(model.identification, refine=False, blocks=0)
+    settings = model.identification.model_copy(update={"refine": False, "blocks": 0})
     quick = TwinModel("modes alone", identification=settings)
     found = {f.code: f for f in observe(replace(record, data=data), quick).findings}
     gaps = found["gaps"]
@@ -130,7 +130,7 @@ def test_another_structure_or_setting_has_another_identity(model: TwinModel) -> 
     assert model.assembly is not None
     stiffer = replace(model.assembly, stiffness=1.001 * model.assembly.stiffness)
     assert replace(model, assembly=stiffer).model_hash != model.model_hash
-    rough = replace(model, identification=replace(model.identification, max_order=20))
+    rough = replace(model, identification=model.identification.model_copy(update={"max_order": 20}))
     assert rough.model_hash == model.model_hash
     assert rough.settings_hash("r") != model.settings_hash("r")
 

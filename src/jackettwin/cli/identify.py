@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from rich.table import Table
 from jackettwin.cli.cache import MOST_RECORDS, keeping, kept_in
 from jackettwin.cli.console import messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
-from jackettwin.files import check_room, read_mapping, read_yaml, write_json
+from jackettwin.files import check_room, read_mapping, read_yaml, validate, write_json
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
@@ -213,10 +212,9 @@ def _many(
 def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:
     settings = IdentificationSettings()
     if path is not None:
-        with located(file=path):
-            settings = IdentificationSettings.from_mapping(read_yaml(path, what="settings file"))
+        settings = validate(IdentificationSettings, read_yaml(path, what="settings file"), file=path)
     settings = settings if method is None else settings.with_method(method)
-    return replace(settings, real_poles=True) if real_poles else settings
+    return settings.model_copy(update={"real_poles": True}) if real_poles else settings
 
 
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:

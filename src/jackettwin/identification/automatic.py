@@ -89,7 +89,7 @@ def identify(
     if settings.method != "ssi-cov":
         # what is compared is the method; without uncertainties, persistence alone tells modes from noise
         share = max(settings.min_order_share, STEADFAST)
-        settings = replace(settings, refine=False, min_order_share=share)
+        settings = settings.model_copy(update={"refine": False, "min_order_share": share})
     say = progress or (lambda text: None)
     say("preparing")
     whole = prepare(record, settings)

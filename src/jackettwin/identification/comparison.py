@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,14 +54,15 @@ def compare_methods(
         The one the reference was identified from.
     """
     band = reference.settings
-    plain = replace(
-        settings or IdentificationSettings(),
-        lowest_frequency_hz=band.lowest_frequency_hz,
-        highest_frequency_hz=band.highest_frequency_hz,
-        weighting="br",
-        state_matrix="shift",
-        refine=False,
-        real_poles=False,
+    plain = (settings or IdentificationSettings()).model_copy(
+        update={
+            "lowest_frequency_hz": band.lowest_frequency_hz,
+            "highest_frequency_hz": band.highest_frequency_hz,
+            "weighting": "br",
+            "state_matrix": "shift",
+            "refine": False,
+            "real_poles": False,
+        }
     )
     modes, refused = {}, {}
     for method in METHODS:

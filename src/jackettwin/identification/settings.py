@@ -2,49 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from math import pi
+from typing import Annotated, Literal, get_args
 
-import numpy as np
+from pydantic import Field, model_validator
 
-from jackettwin.errors import InputError, did_you_mean
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from jackettwin.errors import InputError
+from jackettwin.files import Schema, validate
 
 Method = Literal["ssi-cov", "ssi-dat", "plscf", "efdd"]
 METHODS: tuple[str, ...] = get_args(Method)
-_CHOICES: dict[str, tuple[str, ...]] = {
-    "method": METHODS,
-    "weighting": ("br", "cva"),
-    "state_matrix": ("shift", "one-lag"),
-}
-_RANGES: dict[str, tuple[float, float]] = {
-    "lowest_frequency_hz": (0.0, np.inf),
-    "highest_frequency_hz": (0.0, np.inf),
-    "sample_rate_hz": (0.0, np.inf),
-    "block_rows": (2, 2000),
-    "max_order": (2, 400),
-    "order_step": (1, 20),
-    "frequency_tolerance": (0.0, 1.0),
-    "damping_tolerance": (0.0, 10.0),
-    "mac_tolerance": (0.0, 1.0),
-    "max_damping_ratio": (0.0, 1.0),
-    "min_mpc": (0.0, 1.0),
-    "max_mpd_rad": (0.0, np.pi),
-    "max_damping_cov": (0.0, np.inf),
-    "max_damping_excess": (1.0, np.inf),
-    "cluster_distance": (0.0, 2.0),
-    "min_order_share": (0.0, 1.0),
-    "blocks": (0, 1000),
-}
-_MAY_BE_ZERO = {"min_mpc", "min_order_share"}
-_WHOLE = {"block_rows", "max_order", "order_step", "blocks"}
-_SWITCHES = {"refine", "real_poles"}
+Frequency = Annotated[float, Field(gt=0.0)]
 
 
-@dataclass(frozen=True)
-class IdentificationSettings:
+class IdentificationSettings(Schema):
     """Choices of an identification; None means chosen from the data.
 
     Attributes
@@ -100,32 +71,31 @@ class IdentificationSettings:
     """
 
     method: Method = "ssi-cov"
-    reference_channels: tuple[str, ...] | None = None
-    lowest_frequency_hz: float | None = None
-    highest_frequency_hz: float | None = None
-    sample_rate_hz: float | None = None
-    block_rows: int | None = None
-    max_order: int | None = None
-    order_step: int = 2
+    reference_channels: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    lowest_frequency_hz: Frequency | None = None
+    highest_frequency_hz: Frequency | None = None
+    sample_rate_hz: Frequency | None = None
+    block_rows: Annotated[int, Field(ge=2, le=2000)] | None = None
+    max_order: Annotated[int, Field(ge=2, le=400)] | None = None
+    order_step: Annotated[int, Field(ge=1, le=20)] = 2
     weighting: Literal["br", "cva"] = "br"
     state_matrix: Literal["shift", "one-lag"] = "shift"
-    frequency_tolerance: float = 0.01
-    damping_tolerance: float = 0.05
-    mac_tolerance: float = 0.02
-    max_damping_ratio: float = 0.15
-    min_mpc: float = 0.0
-    max_mpd_rad: float = float(np.pi)
-    max_damping_cov: float = 1.0
-    max_damping_excess: float = 6.0
-    cluster_distance: float = 0.1
-    min_order_share: float = 0.5
-    blocks: int = 30
+    frequency_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.01
+    damping_tolerance: Annotated[float, Field(gt=0.0, le=10.0)] = 0.05
+    mac_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.02
+    max_damping_ratio: Annotated[float, Field(gt=0.0, le=1.0)] = 0.15
+    min_mpc: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    max_mpd_rad: Annotated[float, Field(gt=0.0, le=pi)] = pi
+    max_damping_cov: Annotated[float, Field(gt=0.0)] = 1.0
+    max_damping_excess: Annotated[float, Field(gt=1.0)] = 6.0
+    cluster_distance: Annotated[float, Field(gt=0.0, le=2.0)] = 0.1
+    min_order_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    blocks: Annotated[int, Field(ge=0, le=1000)] = 30
     refine: bool = True
     real_poles: bool = False
 
-    def __post_init__(self) -> None:
-        for item in fields(self):
-            _check(item.name, getattr(self, item.name), optional=item.default is None)
+    @model_validator(mode="after")
+    def _agrees_with_itself(self) -> IdentificationSettings:
         if self.weighting == "cva" and self.reference_channels is not None:
             raise InputError(
                 "canonical variate analysis takes all channels as references",
@@ -142,63 +112,8 @@ class IdentificationSettings:
                 allowed=f"> lowest_frequency_hz = {low:g}",
                 remedy="swap the two frequencies",
             )
+        return self
 
     def with_method(self, method: str) -> IdentificationSettings:
         """Return the settings with another method, checked like one from a file."""
-        return self.from_mapping({**vars(self), "method": method})
-
-    @classmethod
-    def from_mapping(cls, values: Mapping[str, Any]) -> IdentificationSettings:
-        """Build settings from the keys of a YAML mapping.
-
-        Raises
-        ------
-        InputError
-            If a key is unknown or a value is of the wrong type or outside its range.
-        """
-        known = [item.name for item in fields(cls)]
-        for key in values:
-            if key not in known:
-                raise InputError(
-                    "unknown key",
-                    field=str(key),
-                    allowed=", ".join(known),
-                    remedy=did_you_mean(str(key), known),
-                )
-        listed = values.get("reference_channels")
-        names = {"reference_channels": tuple(listed)} if isinstance(listed, list) else {}
-        return cls(**{**values, **names})
-
-
-def _check_names(field: str, value: object) -> None:
-    if not isinstance(value, tuple) or not value or not all(isinstance(name, str) for name in value):
-        raise InputError("must be a list of names", field=field, value=value, allowed="channel names")
-
-
-def _check(name: str, value: object, *, optional: bool) -> None:
-    if value is None and optional:
-        return
-    if name in _SWITCHES:
-        if not isinstance(value, bool):
-            raise InputError("must be a switch", field=name, value=value, allowed="true or false")
-        return
-    if name == "reference_channels":
-        _check_names(name, value)
-        return
-    if name in _CHOICES:
-        if value not in _CHOICES[name]:
-            raise InputError("unknown choice", field=name, value=value, allowed=" or ".join(_CHOICES[name]))
-        return
-    low, high = _RANGES[name]
-    kind: tuple[type, ...] = (int, np.integer) if name in _WHOLE else (int, float, np.integer, np.floating)
-    right_type = isinstance(value, kind) and not isinstance(value, bool)
-    open_below = name not in _WHOLE | _MAY_BE_ZERO
-    inside = right_type and low <= value <= high and np.isfinite(value)  # type: ignore[operator,call-overload]
-    if not inside or (open_below and value == low):
-        what = "a whole number" if name in _WHOLE else "a number"
-        raise InputError(
-            f"must be {what} in its range",
-            field=name,
-            value=value,
-            allowed=f"{low:g} to {high:g}" if np.isfinite(high) else f"> {low:g}",
-        )
+        return validate(IdentificationSettings, {**dict(self), "method": method})

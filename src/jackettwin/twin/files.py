@@ -236,7 +236,7 @@ def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[s
 
 def _identification(given: dict[str, Any]) -> IdentificationSettings:
     with located(field="identification"):
-        return IdentificationSettings.from_mapping({k: v for k, v in given.items() if k != "picks"})
+        return validate(IdentificationSettings, {k: v for k, v in given.items() if k != "picks"})
 
 
 def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pick, ...]:

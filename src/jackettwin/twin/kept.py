@@ -145,7 +145,7 @@ def identified_key(
     return digest(
         [
             *record_content(ready),
-            settings,
+            dict(settings),
             own,
             list(findings),
             compare,

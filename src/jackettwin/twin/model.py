@@ -116,7 +116,7 @@ class TwinModel:
     def settings_hash(self, record: str) -> str:
         """Identity of how a record of this name is identified: settings and the picks that name it."""
         picks = [pick for pick in self.picks if pick.record in (None, record)]
-        return digest([self.identification, picks])
+        return digest([dict(self.identification), picks])
 
     def with_picks(self, picks: tuple[Pick, ...]) -> TwinModel:
         """Return the model with other poles chosen by hand."""

@@ -58,5 +58,5 @@ def test_few_channels_mixed_kinds_and_chosen_references_stay(record):
     kinds = (replace(record.channels[0], quantity="strain"), *record.channels[1:])
     mixed = replace(record, channels=kinds)
     assert components(prepare(mixed, SETTINGS), SETTINGS)[1] is None
-    chosen = replace(SETTINGS, reference_channels=("a0", "a9"))
+    chosen = SETTINGS.model_copy(update={"reference_channels": ("a0", "a9")})
     assert components(prepare(record, chosen), chosen)[1] is None

@@ -162,7 +162,7 @@ def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: flo
     """Let the band start at the tones where nothing but tones stood out."""
     if settings.lowest_frequency_hz is not None or lowest_peak_hz(welch(level.data, level.sample_rate_hz)):
         return settings
-    return replace(settings, lowest_frequency_hz=EDGE_BELOW_PEAK * lowest_hz)
+    return settings.model_copy(update={"lowest_frequency_hz": EDGE_BELOW_PEAK * lowest_hz})
 
 
 def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
