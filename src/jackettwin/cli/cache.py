@@ -1,6 +1,6 @@
-"""Where observations are kept between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
+"""Where observations and fits are kept between runs: ``~/.cache/jackettwin``, or below ``XDG_CACHE_HOME``.
 
-A file's name is a hash of the record's content, all settings and the code that observes: what changes makes
+A file's name is a hash of all that it was made of (samples, model, settings, code): what changes makes
 another name, and nothing has ever to be emptied by hand. The oldest files go when there are too many.
 """
 
@@ -18,8 +18,8 @@ MOST_BYTES = 500_000_000
 """Size of the cache: some thousand records."""
 MOST_RECORDS = 500
 """Records of one batch that are kept: more would push everything else out (``--out FOLDER`` keeps any)."""
-_OBSERVING = ("identification", "records", "response", "structure", "twin", "updating")
-"""What of the package decides on an observation."""
+_DECIDING = ("identification", "records", "response", "soil", "structure", "twin", "updating")
+"""What of the package decides on an observation or a fit."""
 
 
 def cache_folder() -> Path:
@@ -29,7 +29,7 @@ def cache_folder() -> Path:
 
 
 def keeping(*, fresh: bool = False) -> Keep:
-    """Return what keeps observations; with ``fresh`` those that are there are made again."""
+    """Return what keeps observations and fits; with ``fresh`` those that are there are made again."""
     try:
         folder = cache_folder() / "kept"
         folder.mkdir(parents=True, exist_ok=True)
@@ -46,11 +46,11 @@ def kept_in(folder: Path, *, fresh: bool = False) -> KeptInFolder:
 
 @cache
 def _code() -> str:
-    """Return the identity of the code that observes: size and time of its files."""
+    """Return the identity of the code that observes and fits: size and time of its files."""
     root = Path(jackettwin.__file__).parent
     stamps = sorted(
         (str(file.relative_to(root)), file.stat().st_size, file.stat().st_mtime_ns)
-        for name in _OBSERVING
+        for name in _DECIDING
         for file in (root / name).rglob("*.py")
     )
     return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]

@@ -35,7 +35,7 @@ SIMULATED_TWIN = "simulated"
     "--all-laws", is_flag=True, help="Sample the posterior of every law and compare them by evidence; slower."
 )
 @click.option("--compare", is_flag=True, help="Identify the first record by every method, side by side.")
-@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
+@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def run_command(
     twin: str | None,

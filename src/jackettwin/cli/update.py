@@ -19,7 +19,7 @@ DEFAULT_TWIN = "openfast_pile"
 @click.command("update")
 @click.argument("twin", default=DEFAULT_TWIN)
 @click.option("--law", help="Only this law; default: the first of the twin file.")
-@click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
+@click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> None:
     """Update the supports of TWIN under one law; writes nothing."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Literal
 
 import numpy as np
@@ -11,6 +13,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.fitted import recorded_modes, residuals, target_modes, updating
 from jackettwin.twin.kept import NOT_KEPT, Keep
+from jackettwin.twin.kept_fits import fitted, with_kept_posterior
 from jackettwin.twin.measure import Measured, measure
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.narrative import assumptions, cautions, without_relaxation
@@ -18,9 +21,8 @@ from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
-from jackettwin.updating import Update, update
+from jackettwin.updating import Update
 from jackettwin.updating.law_choice import likely
-from jackettwin.updating.update import with_posterior
 
 Posteriors = Literal["all", "likely"]
 
@@ -50,7 +52,7 @@ def run_twin(
     progress : Progress
         Told what is being done, once a step; ``count_steps`` says how many there are.
     keep : Keep
-        Keeps what was identified for the next run.
+        Keeps what was identified and fitted for the next run.
 
     Raises
     ------
@@ -65,7 +67,7 @@ def run_twin(
         if config.records
         else None
     )
-    return updated_twin(config, model, found, laws=laws, posteriors=posteriors, progress=progress)
+    return updated_twin(config, model, found, laws=laws, posteriors=posteriors, progress=progress, keep=keep)
 
 
 def updated_twin(
@@ -76,6 +78,7 @@ def updated_twin(
     laws: tuple[str, ...] | None = None,
     posteriors: Posteriors = "all",
     progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
 ) -> TwinResult:
     """Return a twin updated to what its records show, or to its targets if there are none.
 
@@ -93,8 +96,7 @@ def updated_twin(
     )
     relaxations = measured_relaxations(config, state)
     wind = mean_wind(config, state)
-    fitted = residuals(config, measured, relaxations)
-    states = operating_states(config, measured, state, fitted, wind)
+    states = operating_states(config, measured, state, residuals(config, measured, relaxations), wind)
     evidence = UpdateEvidence(
         assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
     )
@@ -102,9 +104,20 @@ def updated_twin(
     shown, updates = tuple(m.mode for m in measured), []
     for law in relaxing(config, wanted) if relaxations else wanted:
         progress(f"update {law}")
-        updates.append(_update(config, evidence, law, shown, progress, sampled=posteriors == "all"))
+        problem = law_problem(config, evidence, law)
+        with _said_where(config):
+            updates.append(
+                fitted(
+                    problem,
+                    shown,
+                    config.update,
+                    sampled=posteriors == "all",
+                    progress=progress,
+                    keep=keep,
+                )
+            )
     if posteriors == "likely":
-        updates = _with_one_posterior(config, updates, progress)
+        updates = _with_one_posterior(config, updates, progress, keep)
     speed, blades = rotor_speed_hz(config)
     left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
     return TwinResult(
@@ -132,41 +145,23 @@ def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
     return 1 + len(config.records) + len(laws or config.update.laws)
 
 
-def _update(
-    config: TwinConfig,
-    evidence: UpdateEvidence,
-    law: str,
-    shown: tuple[int, ...],
-    progress: Progress,
-    *,
-    sampled: bool,
-) -> Update:
-    how, problem = config.update, law_problem(config, evidence, law)
+@contextmanager
+def _said_where(config: TwinConfig) -> Iterator[None]:
+    """Name the place in the twin file of data that no support reaches."""
     try:
-        return update(
-            problem,
-            modes=shown,
-            method=how.method,
-            starts=how.starts,
-            particles=how.particles,
-            sampler=how.sampler,
-            seed=how.seed,
-            most_evaluations=how.most_evaluations,
-            sampled=sampled,
-            progress=progress,
-        )
+        yield
     except InputError as error:
         source = "records" if config.records else "targets"
         raise error.at(file=config.path, field=None if error.field else source) from None
 
 
-def _with_one_posterior(config: TwinConfig, updates: list[Update], progress: Progress) -> list[Update]:
+def _with_one_posterior(
+    config: TwinConfig, updates: list[Update], progress: Progress, keep: Keep
+) -> list[Update]:
     """Return the updates, the likely one with its posterior."""
-    chosen, how = likely(updates), config.update
+    chosen = likely(updates)
     return [
-        with_posterior(u, particles=how.particles, sampler=how.sampler, seed=how.seed, progress=progress)
-        if u is chosen
-        else u
+        with_kept_posterior(u, config.update, progress=progress, keep=keep) if u is chosen else u
         for u in updates
     ]
 

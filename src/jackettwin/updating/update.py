@@ -70,6 +70,28 @@ class Uncertainty:
         return np.asarray(np.exp(np.quantile(self.log_theta, [0.05, 0.95], axis=0)).T)
 
 
+@dataclass(frozen=True)
+class Fit:
+    """What is found of a law at some cost: an update without its problem and model.
+
+    Attributes
+    ----------
+    search : Search
+        Every solution, best first, and how sure it is that these are all.
+    modes : ExactModes
+        Of the full model at the best solution, in the order of the modes shown.
+    budget : Budget
+        Whose damping each of these modes has.
+    uncertainty : Uncertainty or None
+        None if the targets carry no standard deviations, or nothing was sampled.
+    """
+
+    search: Search
+    modes: ExactModes
+    budget: Budget
+    uncertainty: Uncertainty | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Update:
     """A law fitted to targets.
@@ -81,26 +103,14 @@ class Update:
         That was updated, reaching up to the highest mode shown.
     shown : mode numbers
         Of ``modes`` and ``budget``: measured ones, whether they were fitted or not.
-    search : Search
-        Every solution, best first, and how sure it is that these are all.
-    best : Solution
-        The cheapest one without a locked damper; the cheapest of all if every one is locked.
-    modes : ExactModes
-        Of the full model at the best solution, in the order of ``shown``.
-    budget : Budget
-        Whose damping each of these modes has.
-    uncertainty : Uncertainty or None
-        None if the targets carry no standard deviations.
+    fit : Fit
+        What was found.
     """
 
     problem: Problem
     model: SupportModel
     shown: tuple[int, ...]
-    search: Search
-    best: Solution
-    modes: ExactModes
-    budget: Budget
-    uncertainty: Uncertainty | None
+    fit: Fit
 
     def __repr__(self) -> str:
         values = self.best.theta if self.uncertainty is None else self.uncertainty.median
@@ -109,9 +119,34 @@ class Update:
         return f"Update({self.law!r}, {kind}: {', '.join(texts)}; {len(self.search.solutions)} solutions)"
 
     @property
+    def search(self) -> Search:
+        """Every solution, best first, and how sure it is that these are all."""
+        return self.fit.search
+
+    @property
     def solutions(self) -> tuple[Solution, ...]:
         """Every solution, best first."""
         return self.search.solutions
+
+    @property
+    def best(self) -> Solution:
+        """The cheapest solution without a locked damper; the cheapest of all if every one is locked."""
+        return _best(self.search)
+
+    @property
+    def modes(self) -> ExactModes:
+        """The shown modes of the full model at the best solution."""
+        return self.fit.modes
+
+    @property
+    def budget(self) -> Budget:
+        """Whose damping each of these modes has."""
+        return self.fit.budget
+
+    @property
+    def uncertainty(self) -> Uncertainty | None:
+        """What is known beside the best solution; None without standard deviations, or if not sampled."""
+        return self.fit.uncertainty
 
     @property
     def law(self) -> str:
@@ -163,20 +198,11 @@ def update(
         most_evaluations=most_evaluations,
         progress=progress,
     )
-    best = next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
     shown = problem.states[0].residuals.modes if modes is None else modes
     model = problem.model.reaching(max(shown))
-    theta = _first(problem, np.log(best.theta)[None])[0]
-    fitted = Update(
-        problem=problem,
-        model=model,
-        shown=shown,
-        search=found,
-        best=best,
-        modes=model.exact_modes(theta, shown),
-        budget=damping_budget(model, theta, shown),
-        uncertainty=None,
-    )
+    theta = _first(problem, np.log(_best(found).theta)[None])[0]
+    fit = Fit(found, model.exact_modes(theta, shown), damping_budget(model, theta, shown))
+    fitted = Update(problem, model, shown, fit)
     if not sampled:
         return fitted
     return with_posterior(fitted, particles=particles, sampler=sampler, seed=seed, progress=progress)
@@ -201,7 +227,8 @@ def with_posterior(
     uncertainty = _uncertainty(problem, model, shown, fitted.best, posterior, status, seed)
     theta = _first(problem, np.log(fitted.best.theta)[None])[0]
     draws = _first(problem, _thinned(uncertainty.log_theta))
-    return replace(fitted, budget=damping_budget(model, theta, shown, draws=draws), uncertainty=uncertainty)
+    budget = damping_budget(model, theta, shown, draws=draws)
+    return replace(fitted, fit=replace(fitted.fit, budget=budget, uncertainty=uncertainty))
 
 
 def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
@@ -213,6 +240,11 @@ def law_probability(updates: Sequence[Update]) -> dict[str, float] | None:
     log_z = np.array([posterior.log_evidence for posterior in known])
     probability = np.exp(log_z - logsumexp(log_z))
     return {u.law: float(p) for u, p in zip(updates, probability, strict=True)}
+
+
+def _best(found: Search) -> Solution:
+    """Return the cheapest solution without a locked damper; the cheapest of all if every one is locked."""
+    return next((s for s in found.solutions if not s.locked_damper), found.solutions[0])
 
 
 def _first(problem: Problem, z: FloatArray) -> FloatArray:
