@@ -155,7 +155,9 @@ def test_the_number_of_records_goes_with_the_square_of_the_precision(result: Twi
 
 
 def test_without_standard_deviations_nothing_is_called_known(result: TwinResult) -> None:
-    bare = replace(result, updates=tuple(replace(u, uncertainty=None) for u in result.updates))
+    bare = replace(
+        result, updates=tuple(replace(u, fit=replace(u.fit, uncertainty=None)) for u in result.updates)
+    )
     found = answer(bare)
     assert {g.verdict for g in found.ground} == {""}
     assert found.next_steps == ()

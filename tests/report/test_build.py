@@ -157,7 +157,7 @@ def test_a_mode_that_was_lost_shows_as_not_known(complete: TwinResult, tmp_path:
     shapes = update.modes.shapes.copy()
     poles[1], undamped[1], shapes[:, 1] = np.nan, np.nan, np.nan
     modes = replace(update.modes, poles=poles, undamped_hz=undamped, shapes=shapes)
-    result = replace(complete, updates=(replace(update, modes=modes),))
+    result = replace(complete, updates=(replace(update, fit=replace(update.fit, modes=modes)),))
     page = _Page(build_report(result, tmp_path).read_text(encoding="utf-8"))
     assert not re.search(r"\bnan\b", " ".join(page.text), flags=re.IGNORECASE)
     for name, text in zip(page.names, page.figures, strict=True):
