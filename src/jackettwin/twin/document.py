@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -333,7 +332,7 @@ def identification_document(
         "duration_s": found.duration_s,
         "quality": dict(quality),
         "warnings": list(found.warnings),
-        "findings": [asdict(finding) for finding in found.findings],
+        "findings": [finding.document for finding in found.findings],
         "notes": list(found.notes),
         **({} if compared is None else {"methods": comparison_document(compared)}),
         "conditions": dict(conditions),
