@@ -80,3 +80,19 @@ def test_damaged_files_are_refused(old: bytes, new: bytes, message: str, tmp_pat
     (tmp_path / "r.uff").write_bytes(raw.replace(old, new))
     with pytest.raises(InputError, match=message):
         read_record(tmp_path / "r.uff")
+
+
+def test_a_sample_that_spells_the_end_mark_ends_nothing(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path / "r.uff")
+    raw = (tmp_path / "r.uff").read_bytes()
+    at = raw.index(record.data[1].tobytes()) + 800
+    (tmp_path / "r.uff").write_bytes(raw[:at] + b"\n    -1\n" + raw[at + 8 :])
+    assert read_record(tmp_path / "r.uff").data.shape == record.data.shape
+
+
+def test_a_file_cut_off_is_refused_not_read_in_part(record: Record, tmp_path: Path) -> None:
+    write_record(record, tmp_path / "r.uff")
+    raw = (tmp_path / "r.uff").read_bytes()
+    (tmp_path / "r.uff").write_bytes(raw[: len(raw) * 5 // 6])
+    with pytest.raises(InputError, match="cut off"):
+        read_record(tmp_path / "r.uff")
