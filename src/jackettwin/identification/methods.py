@@ -142,4 +142,4 @@ def _every(ready: Prepared, settings: IdentificationSettings) -> int:
 def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
     rows, every = ready.settings.block_rows, _every(ready, settings)
     blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
-    return propagation(subspace, block_deviations(blocks, rows, every), np.float32)
+    return propagation(subspace, block_deviations(blocks.astype(np.float32), rows, every), np.float32)

@@ -7,7 +7,7 @@ the largest one, and its shift equation is solved with the leading blocks of one
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy import linalg
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 LEAST_SQUARE = 1e-9
-"""Smallest squared singular value over the largest for which H Hᵀ is as good as H: poles agree to 1e-7."""
+"""Smallest squared singular value over the largest for which HᵀH is as good as H: poles agree to 1e-7."""
 RANK = 1e-12
 """A singular value counts when it is more than this share of the largest."""
 
@@ -32,23 +32,24 @@ StateMatrix = Literal["shift", "one-lag"]
 
 @dataclass(frozen=True)
 class Factors:
-    """All singular values and vectors of a Hankel matrix.
+    """Right singular vectors of a Hankel matrix H, what H makes of them, and the leading left vectors.
+
+    Left vectors of small singular values are not needed, nor would they be exact: H v is, for every v.
 
     Attributes
     ----------
-    left, right : (n_rows, n_rows), (n_columns, n_columns)
-        Vectors in columns.
+    left : (n_rows, n_max)
+        The leading ones, in columns.
+    right : (n_columns, n_singular)
+    images : (n_rows, n_singular)
+        H times ``right``: left vectors times singular values.
     singular_values : (n_singular,)
     """
 
     left: FloatArray
-    singular_values: FloatArray
     right: FloatArray
-
-    def rounded(self, precision: type[np.floating[Any]]) -> Factors:
-        """Return the factors in another precision."""
-        parts = (self.left, self.singular_values, self.right)
-        return Factors(*(part.astype(precision, copy=False) for part in parts))
+    images: FloatArray
+    singular_values: FloatArray
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Subspace:
     basis : (n_rows − n_channels, n_max) or None
         Orthonormal basis of the observability matrix without its last block row (shift structure only).
     factors : Factors or None
-        Full factorisation of the weighted Hankel matrix, which uncertainty needs.
+        Of the Hankel matrix with unit weights, which uncertainty needs.
     """
 
     observability: FloatArray
@@ -121,10 +122,10 @@ def hankel(covariances: FloatArray, block_rows: int, first_lag: int = 1, every: 
         Of the block columns, which are instruments: so many samples apart, they span as long a past.
     """
     _, n_channels, n_references = covariances.shape
-    lag = first_lag + np.add.outer(np.arange(block_rows), np.arange(0, block_rows, every))
-    blocks = covariances[lag]
-    size = (block_rows * n_channels, lag.shape[1] * n_references)
-    return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size))
+    lags = covariances[first_lag : first_lag + 2 * block_rows - 1]
+    blocks = np.lib.stride_tricks.sliding_window_view(lags, block_rows, axis=0)[::every]
+    size = (block_rows * n_channels, len(blocks) * n_references)
+    return np.asarray(blocks.transpose(3, 1, 0, 2).reshape(size))
 
 
 def ssi_cov(
@@ -151,7 +152,7 @@ def ssi_cov(
     covariances : (2·block_rows + 1, n_channels, n_channels)
         Lags 0 … 2·block_rows.
     factors : bool
-        Whether the full factorisation, which uncertainty needs, is kept.
+        Whether what uncertainty needs is kept; with unit weights and shift structure only.
     every : int
         Of the block columns, with unit weights and shift structure only.
     """
@@ -161,43 +162,43 @@ def ssi_cov(
         return balanced_subspace(h, n_channels, max_order, factors=factors)
     h = hankel(covariances, block_rows)
     w1_inverse, w2_inverse = _weights(covariances, block_rows, weighting)
-    all_ = _factors(_divide(h, w1_inverse, w2_inverse))
-    n = min(max_order, len(all_.singular_values) - n_channels)
-    u1, root = all_.left[:, :n], np.sqrt(all_.singular_values[:n])
+    u, s, vt = linalg.svd(_divide(h, w1_inverse, w2_inverse), full_matrices=False, check_finite=False)
+    n = min(max_order, len(s) - n_channels)
+    u1, root = u[:, :n], np.sqrt(s[:n])
     observability = np.asarray(u1 * root if w1_inverse is None else w1_inverse @ (u1 * root))
     if state_matrix == "shift":
-        return _shift(observability, n_channels, all_)
+        return _shift(observability, n_channels, None)
     shifted = _divide(hankel(covariances, block_rows, 2), w1_inverse, w2_inverse)
-    right = np.asarray((u1.T @ shifted @ all_.right[:, :n]) / np.outer(root, root))
-    return Subspace(observability, n_channels, np.eye(n), right, None, all_)
+    right = np.asarray((u1.T @ shifted @ vt[:n].T) / np.outer(root, root))
+    return Subspace(observability, n_channels, np.eye(n), right, None, None)
 
 
 def balanced_subspace(h: FloatArray, n_channels: int, max_order: int, *, factors: bool = True) -> Subspace:
     """Factorise a Hankel matrix with unit weights and take A from the shift structure.
 
+    Its right vectors come from HᵀH, where that loses no digit of the leading ones that matters.
+
     Parameters
     ----------
     factors : bool
-        Whether the full factorisation, which uncertainty needs, is kept. Without it the leading left
-        vectors come from H Hᵀ, where that loses no digit that matters.
+        Whether what uncertainty needs is kept.
     """
     n = min(max_order, min(h.shape) - n_channels)
-    if not factors:
-        values, vectors = linalg.eigh(
-            h @ h.T, subset_by_index=[len(h) - n, len(h) - 1], check_finite=False, driver="evr"
-        )
-        if values[0] > LEAST_SQUARE * values[-1]:
-            observability = vectors[:, ::-1] * values[::-1] ** 0.25
-            return _shift(np.asarray(observability), n_channels, None)
-    all_ = _factors(h)
+    first = 0 if factors else max(h.shape[1] - n, 0)
+    values, vectors = linalg.eigh(
+        h.T @ h, subset_by_index=[first, h.shape[1] - 1] if first else None, check_finite=False
+    )
+    if values[-n] > LEAST_SQUARE * values[-1]:
+        right = vectors[:, ::-1]
+    else:
+        right = linalg.svd(h, full_matrices=False, check_finite=False)[2].T
+    images = h @ right
+    s = np.linalg.norm(images, axis=0)
     # noise-free signals have a rank, beyond which there is nothing to divide by
-    n = min(n, int(np.sum(all_.singular_values > RANK * all_.singular_values[0])))
-    return _shift(np.asarray(all_.left[:, :n] * np.sqrt(all_.singular_values[:n])), n_channels, all_)
-
-
-def _factors(h: FloatArray) -> Factors:
-    u, s, vt = linalg.svd(h, check_finite=False)
-    return Factors(u, s, vt.T)
+    n = min(n, int(np.sum(s > RANK * s[0])))
+    left = images[:, :n] / s[:n]
+    kept = Factors(left, right, images, s) if factors else None
+    return _shift(np.asarray(left * np.sqrt(s[:n])), n_channels, kept)
 
 
 def _shift(observability: FloatArray, n_channels: int, factors: Factors | None) -> Subspace:

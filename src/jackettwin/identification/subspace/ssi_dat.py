@@ -63,7 +63,7 @@ def ssi_dat(
         after = y[:, at[:, None] + np.arange(block_rows)]
         triangle = _triangle(np.vstack([triangle, np.hstack([_stacked(before), _stacked(after)])]))
     projection = triangle[:n_past, n_past:].T / np.sqrt(len(instants))
-    return balanced_subspace(np.asarray(projection), n_channels, max_order)
+    return balanced_subspace(np.asarray(projection), n_channels, max_order, factors=False)
 
 
 def _whole_instants(y: FloatArray, block_rows: int) -> IntArray:

@@ -35,17 +35,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Propagation:
-    """Everything about the perturbed factorisation that all model orders share."""
+    """Everything about the perturbed factorisation that all model orders share.
+
+    Perturbations are multiplied with the rows of O↓ᵀ and Qᵀ on U↑, of Qᵀ on U↓ and of the first block row:
+    the *tests*, 3 n_max + n_channels rows.
+
+    Attributes
+    ----------
+    inside : (n_max, n_blocks, n_max)
+        D Σ₁^½ along the leading left vectors: an order takes the rows beyond it and the columns up to it.
+    seen : (3 n_max + n_channels, n_max)
+        The tests on the leading left vectors.
+    beyond : (3 n_max + n_channels, n_blocks, n_max)
+        The tests on U D Σ₁^½ outside the leading left vectors.
+    """
 
     subspace: Subspace
-    outside: FloatArray
-    """(n_rows, n_blocks, n_max): D Σ₁^½, of which an order takes the rows beyond it and columns up to it."""
+    inside: FloatArray
     seen: FloatArray
-    """(2 n_max + n_channels, n_rows): Qᵀ U↓, Qᵀ U↑ and the first block row of U."""
-    residual_low: FloatArray
-    """U↑ᵀ O↓, (n_rows, n_max)."""
-    residual_up: FloatArray
-    """U↑ᵀ O↑, (n_rows, n_max)."""
+    beyond: FloatArray
 
 
 def block_deviations(blocks: FloatArray, block_rows: int, every: int = 1) -> Iterable[FloatArray]:
@@ -74,42 +82,90 @@ def propagation(
     precision : numpy.float64 or numpy.float32
         Of the products with ΔH. A standard deviation from thirty blocks has an error of 13 %: single
         precision halves the work and changes nothing.
+
+    Raises
+    ------
+    InputError
+        If the subspace does not hold the factors.
     """
     if subspace.basis is None or subspace.factors is None:
         raise InputError(
-            "uncertainty needs the shift structure",
+            "uncertainty needs unit weights and the shift structure",
             field="state_matrix",
             value="one-lag",
             allowed="shift",
-            remedy="set state_matrix to shift",
+            remedy="set state_matrix to shift and weighting to br",
         )
-    u, n_channels = subspace.factors.left, subspace.n_channels
-    q, o = subspace.basis, subspace.observability
-    factors = subspace.factors.rounded(precision)
-    outside = np.stack(
-        [_outside(factors, delta.astype(precision, copy=False), o.shape[1]) for delta in deviations], axis=1
-    )
-    return Propagation(
-        subspace=subspace,
-        outside=outside,
-        seen=np.vstack([q.T @ u[n_channels:], q.T @ u[:-n_channels], u[:n_channels]]).astype(precision),
-        residual_low=(u[:-n_channels].T @ o[n_channels:]).astype(precision),
-        residual_up=(u[:-n_channels].T @ o[:-n_channels]).astype(precision),
-    )
+    multiply = _Multiplied.of(subspace, subspace.factors, subspace.basis, precision)
+    pairs = [multiply.parts(delta.astype(precision, copy=False)) for delta in deviations]
+    inside, beyond = (np.stack(parts, axis=1) for parts in zip(*pairs, strict=True))
+    return Propagation(subspace, inside, multiply.on_leading, beyond)
 
 
-def _outside(factors: Factors, delta: FloatArray, n_max: int) -> FloatArray:
-    """Return D Σ₁^½ of one deviation for all orders, (n_rows, n_max): it depends on no order."""
-    u, v, s = factors.left, factors.right, factors.singular_values
-    n_rows = len(u)
-    columns = u.T @ (delta @ v[:, :n_max])
-    crossed = (v.T @ (delta.T @ u[:, :n_max]))[:n_rows]
-    near, far = s[:n_max], np.pad(s, (0, n_rows - len(s)))[:, None]
-    beyond = np.arange(n_rows)[:, None] > np.arange(n_max)
-    root = np.sqrt(near) / np.where(beyond, (near - far) * (near + far), np.inf)
-    out = columns * (near * root)
-    out[: len(crossed)] += crossed * (far * root)[: len(crossed)]
-    return np.asarray(out)
+@dataclass(frozen=True)
+class _Multiplied:
+    r"""What every ΔH is multiplied with.
+
+    With the images :math:`h_k = H v_k = \sigma_k u_k` of the directions beyond the leading ones
+
+    .. math:: \sum_k u_k D_{kj} = \frac{(I - U_1 U_1^T)\,\Delta H v_j}{\sigma_j}
+       + \sum_k h_k \frac{h_k^T \Delta H v_j/\sigma_j + v_k^T \Delta H^T u_j}{\sigma_j^2-\sigma_k^2},
+
+    which asks for no left vector of a small singular value.
+
+    Attributes
+    ----------
+    rows : (3 n_max + n_channels + n_max + n_others, n_rows)
+        The tests, the leading left vectors and the images of the others.
+    left, right : the leading vectors in columns
+    others : (n_columns, n_others), right vectors
+    on_leading, on_others : the tests on the leading left vectors and on the images
+    s : (n_singular,)
+    """
+
+    rows: FloatArray
+    left: FloatArray
+    right: FloatArray
+    others: FloatArray
+    on_leading: FloatArray
+    on_others: FloatArray
+    s: FloatArray
+
+    @classmethod
+    def of(
+        cls, subspace: Subspace, factors: Factors, basis: FloatArray, precision: type[np.floating[Any]]
+    ) -> _Multiplied:
+        """Return the factors of a subspace in one precision."""
+        u, n, width = factors.left, factors.left.shape[1], subspace.n_channels
+        tests = np.zeros((3 * n + width, len(u)))
+        tests[:n, :-width] = subspace.observability[width:].T
+        tests[n : 2 * n, :-width] = tests[2 * n : 3 * n, width:] = basis.T
+        tests[3 * n :, :width] = np.eye(width)
+        images = factors.images[:, n:]
+        parts = (
+            np.vstack([tests, u.T, images.T]),
+            u,
+            factors.right[:, :n],
+            factors.right[:, n:],
+            tests @ u,
+            tests @ images,
+            factors.singular_values,
+        )
+        return cls(*(part.astype(precision) for part in parts))
+
+    def parts(self, delta: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return ``inside`` and ``beyond`` of one deviation, (n_max, n_max) and (n_tests, n_max)."""
+        n, n_tests = self.left.shape[1], len(self.on_leading)
+        near, far = self.s[:n], self.s[:, None]
+        root = np.sqrt(near)
+        beyond = np.arange(len(self.s))[:, None] > np.arange(n)
+        weight = root / np.where(beyond, (near - far) * (near + far), np.inf)
+        moved = delta @ self.right
+        tested, leading, others = np.split(self.rows @ moved, [n_tests, n_tests + n])
+        turned = self.others.T @ (delta.T @ self.left)
+        inside = (leading * near + leading.T * far[:n]) * weight[:n]
+        outside = (tested - self.on_leading @ leading) / root
+        return inside, outside + self.on_others @ ((others / near + turned) * weight[n:])
 
 
 def order_poles_with_uncertainty(
@@ -128,7 +184,7 @@ def order_poles_with_uncertainty(
     real : bool
         Report real eigenvalues between 0 and 1 instead.
     """
-    out, sums = [], _Sums.none(shared)
+    out, sums = [], _Sums(len(shared.inside), shared.beyond.copy())
     for order in sorted(orders, reverse=True):
         eigenvalues, vectors = linalg.eig(shared.subspace.state_matrix(order), check_finite=False)
         mu = eigenvalues.real
@@ -136,65 +192,52 @@ def order_poles_with_uncertainty(
         if keep is not None:
             chosen &= keep(eigenvalues)
         sums.reach(shared, order)
-        out.append(_one_order(shared.subspace, sums, eigenvalues, vectors, np.flatnonzero(chosen)))
+        out.append(_one_order(shared.subspace, sums.tested, eigenvalues, vectors, np.flatnonzero(chosen)))
     return out[::-1]
 
 
 @dataclass
 class _Sums:
-    """Sums over the rows of ``outside`` from an order on, which the next lower order adds a few to.
+    """The tests on U D Σ₁^½ from an order on, to which the next lower order adds a few rows of D.
 
     Attributes
     ----------
     first : int
         The first row that is in them.
-    seen : (2 n_max + n_channels, n_blocks, n_max)
-        Of the rows with ``seen``.
-    low, up : (n_blocks, n_max, n_max)
-        Of the rows, turned, with the residuals.
+    tested : (3 n_max + n_channels, n_blocks, n_max)
     """
 
     first: int
-    seen: FloatArray
-    low: FloatArray
-    up: FloatArray
-
-    @classmethod
-    def none(cls, shared: Propagation) -> _Sums:
-        """Return sums over no rows yet."""
-        n_rows, n_blocks, n_max = shared.outside.shape
-        kind = shared.outside.dtype
-        turned = np.zeros((2, n_blocks, n_max, n_max), dtype=kind)
-        return cls(n_rows, np.zeros((len(shared.seen), n_blocks, n_max), dtype=kind), *turned)
+    tested: FloatArray
 
     def reach(self, shared: Propagation, order: int) -> None:
         """Add the rows down to an order."""
-        added = slice(order, self.first)
-        outside = shared.outside[added].reshape(self.first - order, -1)
-        self.seen += (shared.seen[:, added] @ outside).reshape(self.seen.shape)
-        self.low += (outside.T @ shared.residual_low[added]).reshape(self.low.shape)
-        self.up += (outside.T @ shared.residual_up[added]).reshape(self.up.shape)
-        self.first = order
+        if order < self.first:
+            added = slice(order, self.first)
+            inside = shared.inside[added].reshape(self.first - order, -1)
+            self.tested += (shared.seen[:, added] @ inside).reshape(self.tested.shape)
+            self.first = order
 
 
 def _one_order(
-    subspace: Subspace, sums: _Sums, eigenvalues: ComplexArray, vectors: ComplexArray, chosen: IntArray
+    subspace: Subspace, tested: FloatArray, eigenvalues: ComplexArray, vectors: ComplexArray, chosen: IntArray
 ) -> OrderPoles:
     """Propagate to the chosen poles of an order: δOψ, then δAψ, then eigenvalue and shape."""
-    n = len(eigenvalues)
+    n, n_max = len(eigenvalues), tested.shape[2]
     raw_shapes = subspace.output_matrix(n) @ vectors
     bare = OrderPoles(n, eigenvalues[chosen], normalised(np.asarray(raw_shapes[:, chosen].T)))
     if not len(chosen):
         return bare
-    mu, psi = eigenvalues[chosen], vectors[:, chosen]
-    n_max = sums.low.shape[1]
-    rows = np.r_[0:n, n_max : n_max + n, 2 * n_max : len(sums.seen)]
-    seen = _complex_product(sums.seen[rows, :, :n], psi)
-    low, up = (_complex_product(part[:, :n, :n], psi) for part in (sums.low, sums.up))
-    turned = (low - mu * up).transpose(1, 0, 2)
-    upper = subspace.upper[:n, :n]
+    mu, psi, upper = eigenvalues[chosen], vectors[:, chosen], subspace.upper[:n, :n]
+    # (O↓ − μO↑)ψ = O↓ψ − μQRψ: the tests of O↓ᵀ and of Qᵀ on the upper part
+    residual = np.vstack([psi, -mu * (upper @ psi)])
+    rows = np.r_[0:n, n_max : n_max + n, 2 * n_max : 2 * n_max + n, 3 * n_max : len(tested)]
+    own = tested[rows, :, :n]
+    turned = _complex_product(own[: 2 * n].reshape(2 * n, -1).T, residual)
+    turned = turned.reshape(-1, n, len(chosen)).transpose(1, 0, 2)
+    seen = _complex_product(own[n:], psi)
     t = _stack_times(np.asarray(linalg.inv(upper, check_finite=False).T), turned)
-    t += seen[:n] - mu * seen[n : 2 * n]
+    t += seen[n : 2 * n] - mu * seen[:n]
     modal = _stack_times(np.asarray(np.linalg.inv(upper @ vectors)), t)
     index = np.arange(len(chosen))
     gap = mu - eigenvalues[:, None]
