@@ -1,29 +1,44 @@
 """What a change was: causes planted in two jackets, told apart by the modes' changes.
 
-Usage: python qualify/diagnosis.py [draws a cause and size]
+Usage: python qualify/diagnosis.py [draws a cause and size] [first seed]
+       python qualify/diagnosis.py chain FOLDER
 
 The truth is another jacket than the model's: the stiffness of every foot, the ground's loss and what the
 model misses are drawn, and a cause is solved anew at its size. What the watch knows of the change is drawn
-with the uncertainty that a month of the seasons of ``qualify/watching.py`` leaves. Records, identification
-and the day by day of the watch are not run here.
+with the uncertainty that a month of the seasons of ``qualify/watching.py`` leaves. With ``chain`` records
+are simulated and identified and their modes watched day by day instead (``common/chain.py``); each record is
+a piece that is kept in the folder, so that a run that was stopped goes on where it was.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+from common.chain import Bench, Row, bench, identified, late, louder, record, season, watched_labels
 from common.page import write_page
 
+from jackettwin.records import Record
 from jackettwin.response.labels import LOCAL
 from jackettwin.structure import Structure, read_structure
-from jackettwin.twin.causes import MODES, SeenCauses, _effect, _Modes, model_causes, seen_causes
+from jackettwin.twin.causes import (
+    _ONE_SIZE,
+    MODES,
+    ModelCauses,
+    SeenCauses,
+    _effect,
+    _Modes,
+    model_causes,
+    seen_causes,
+)
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
-from jackettwin.watching import Change, Diagnosis, diagnose
+from jackettwin.watching import Change, Diagnosis, diagnose, start, step
 from jackettwin.watching.scatter import STRONGER
 
 WATCHED = 5
@@ -84,7 +99,7 @@ def effect(event: Happening, standing: Standing, times: int, base: _Modes, zeta:
     """Return the change of all ln f and ln ζ by an event, so many times over."""
 
     def apply(s: Standing) -> Standing:
-        for _ in range(times if event.spread > 0.1 else 1):  # what is gone is gone
+        for _ in range(times if event.spread > _ONE_SIZE else 1):  # what is gone is gone
             s = event.apply(s)
         return s
 
@@ -166,6 +181,111 @@ def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
     return out
 
 
+# the whole chain
+
+SEEDS, TRUTHS, SEASONS = 6, 2, 2
+BEGUN, LONGEST = 395.0, 120.0
+"""Day of the change, after a year of baseline, and for how long an alarm is waited for."""
+CLOCK, NOISE, NOISY_DAYS = 1e-3, 1.0, 10.0
+
+
+class Pieces:
+    """Identified records, kept in a file as soon as they are made."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path = folder / "diagnosis_chain.jsonl"
+        lines = self.path.read_text().splitlines() if self.path.exists() else []
+        self.known: dict[str, Row] = dict(map(json.loads, lines))
+
+    def of(self, name: str, make: Callable[[int], Row]) -> list[Row]:
+        """Return the modes of all seeds of one state."""
+        out = []
+        for seed in range(1, SEEDS + 1):
+            key = f"{name}/{seed}"
+            if key not in self.known:
+                self.known[key] = make(seed)
+                with self.path.open("a") as file:
+                    file.write(json.dumps([key, self.known[key]]) + "\n")
+            out.append(self.known[key])
+        sys.stderr.write(f"{name}\n")
+        return out
+
+
+def changed_pools(
+    pieces: Pieces, name: str, made: Bench, standing: Standing, seen: SeenCauses
+) -> Iterator[tuple[str, int, list[Row]]]:
+    """Yield name and size of each cause, and what records show after it."""
+
+    def pool(key: str, stands: Standing, spoil: Callable[[Record], Record] = lambda r: r) -> list[Row]:
+        return pieces.of(
+            f"{name}/{key}", lambda seed: identified(spoil(record(made.scenario, stands, seed)), made.model)
+        )
+
+    for cause, event in planted(seen, standing.structure):
+        for times in TIMES:
+            if times == 1 or event.spread > _ONE_SIZE:
+                after = standing
+                for _ in range(times):
+                    after = event.apply(after)
+                yield cause, times, pool(f"{event.name}/{times}", after)
+    for times in TIMES:
+        yield "sensor: clock", times, pool(f"clock/{times}", standing, lambda r, t=times: late(r, t * CLOCK))
+        yield (
+            "sensor: more scatter", times,
+            pool(f"noise/{times}", standing, lambda r, t=times: louder(r, t * NOISE)),
+        )  # fmt: skip
+
+
+def chained(pieces: Pieces, jacket: str, structure: Structure, source: str, where: Path) -> list[Case]:
+    """Return what became of every cause and size in one jacket, through the whole chain."""
+    made = bench(structure, source, where)
+    out: list[Case] = []
+    for number in range(TRUTHS):
+        standing = truth(structure, np.random.default_rng((32, len(jacket), number)))
+        name = f"{jacket}/{number}"
+        before = pieces.of(
+            f"{name}/before", lambda s, at=standing: identified(record(made.scenario, at, s), made.model)
+        )
+        labels = watched_labels(before, tuple(n for n in made.model.labels[:MODES] if LOCAL not in n))
+        known = np.array([np.mean([r[n] for r in before if n in r], axis=0) for n in labels])
+        model = model_causes(structure, labels, np.exp(known[:, 0]), np.exp(known[:, 2]), seed=number)
+        quantities = [(kind, i) for kind in STD for i in range(len(labels))]
+        pools = list(changed_pools(pieces, name, made, standing, seen_causes(model, quantities, labels)))
+        for seed in range(SEASONS):
+            out += _in_seasons(jacket, before, pools, labels, model, 10 * number + seed)
+    return out
+
+
+def _in_seasons(
+    jacket: str, before: list[Row], pools: list[tuple[str, int, list[Row]]], labels: tuple[str, ...],
+    model: ModelCauses, seed: int,
+) -> list[Case]:  # fmt: skip
+    """Return what a watch makes of every change in one turbine's seasons."""
+    quiet = season(before, before, labels, BEGUN, BEGUN + LONGEST, seed)
+    watch = start(quiet.between(0.0, 365.0))
+    seen = seen_causes(model, watch.quantities, labels)
+    kinds = [kind for kind, good in zip((k for k, _ in watch.quantities), seen.known, strict=True) if good]
+    for day in quiet.between(365.0, BEGUN).by_day():
+        watch, look = step(watch, day)
+        if look.change is not None:
+            sys.stderr.write(f"early alarm in {jacket} {seed}\n")
+            return []
+    out: list[Case] = []
+    for name, times, pool in pools:
+        h, now = season(before, pool, labels, BEGUN, BEGUN + LONGEST, seed), watch
+        until = BEGUN + (NOISY_DAYS if name == "sensor: more scatter" else LONGEST)
+        for day in h.between(BEGUN, until).by_day():
+            now, look = step(now, day)
+            if look.change is not None:
+                found = diagnose(look.change.restricted(seen.known), seen.causes, kinds)
+                out.append(case(jacket, name, times, found))
+                break
+        else:
+            sys.stderr.write(f"not found in {until - BEGUN:.0f} days: {jacket} {seed} {name} × {times}\n")
+    return out
+
+
 def calibration(found: list[Case]) -> float:
     """Return the expected calibration error of the first place's probability, in ten bins."""
     p, right = np.array([c[4] for c in found]), np.array([c[5] for c in found])
@@ -211,10 +331,19 @@ def _share(right: list[bool]) -> str:
 
 
 def main() -> None:
-    draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6
-    with tempfile.TemporaryDirectory() as where:
-        found = [c for name, s in jackets(Path(where)).items() for c in cases(name, s, draws)]
-    write_page("diagnosis", page(found, draws))
+    chain = sys.argv[1:2] == ["chain"]
+    with tempfile.TemporaryDirectory() as name:
+        where = Path(name)
+        stand = jackets(where)
+        if chain:
+            pieces = Pieces(Path(sys.argv[2]))
+            sources = dict(zip(stand, ("jacket15", str(where / "three_legs.yaml")), strict=True))
+            found = [c for j, s in stand.items() for c in chained(pieces, j, s, sources[j], where)]
+            json.dump(found, (Path(sys.argv[2]) / "cases.json").open("w"))
+        else:
+            draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6
+            found = [c for jacket, s in stand.items() for c in cases(jacket, s, draws)]
+            write_page("diagnosis", page(found, draws))
 
 
 if __name__ == "__main__":

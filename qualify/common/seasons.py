@@ -54,7 +54,10 @@ class Kind:
 
 @dataclass(frozen=True)
 class Seasons:
-    """Modes through time: ``days`` (n,), the others (n, 4); ``conditions`` by name (n,)."""
+    """Modes through time: ``days`` (n,), the others (n, 4); ``conditions`` by name (n,).
+
+    ``expected`` (2, n, 4) is what moves ln f and ln ζ, without the noise of identification.
+    """
 
     days: np.ndarray
     frequency: np.ndarray
@@ -63,6 +66,7 @@ class Seasons:
     damping_std: np.ndarray
     conditions: dict[str, np.ndarray]
     process: np.ndarray = field(repr=False)
+    expected: np.ndarray = field(repr=False)
     noise_std: np.ndarray = field(repr=False)
 
     def changed(self, ln_f: np.ndarray, ln_zeta: np.ndarray | float = 0.0) -> Seasons:
@@ -93,7 +97,7 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
         wind_effect, wave_effect = (drawn_wind / 10.0) ** 2 * 10.0, drawn_wave**2 / 2.0
     else:
         wind_effect, wave_effect = drawn_wind, drawn_wave
-    process = _unexplained(rng, t, days, kind)
+    process = unexplained(rng, t, days, kind)
     ln_f = (
         level[at][:, None] * LEVEL
         + (steel[at] - 10.0)[:, None] * STEEL
@@ -102,8 +106,9 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
         + process
     )
     ln_zeta = 0.02 * drawn_wave[:, None] + 0.02 * (drawn_wind[:, None] - 8.0) * np.array([1.0, 0.3, 0.2, 0.2])
-    ln_zeta = ln_zeta + 0.05 * _unexplained(rng, t, days, replace(kind, unexplained=1.0))
+    ln_zeta = ln_zeta + 0.05 * unexplained(rng, t, days, replace(kind, unexplained=1.0))
     zeta = DAMPING * np.exp(ln_zeta)
+    expected = np.stack([ln_f, ln_zeta])
     # Au's law with a factor for what identification loses and differs by record
     cycles = FREQUENCY_HZ * 600.0
     quality = np.exp(0.3 * rng.standard_normal((t.size, 1)) + 0.15 * rng.standard_normal((t.size, N_MODES)))
@@ -123,7 +128,7 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
     return Seasons(
         t, frequency, frequency * f_std * wrong_f, damping, damping * np.minimum(z_std, 0.6) * wrong_z,
         {"sea_level_m": level[at], "air_temperature_c": air[at], "wind_speed_m_s": drawn_wind, "hs_m":
-        drawn_wave}, process, f_std,
+        drawn_wave}, process, expected, f_std,
     )  # fmt: skip
 
 
@@ -176,7 +181,7 @@ def _ou(rng: np.random.Generator, t: np.ndarray, memory: float) -> np.ndarray:
     return x
 
 
-def _unexplained(rng: np.random.Generator, t: np.ndarray, days: float, kind: Kind) -> np.ndarray:
+def unexplained(rng: np.random.Generator, t: np.ndarray, days: float, kind: Kind) -> np.ndarray:
     """Return (n, 4): common to all, shared by pairs, and of each mode."""
 
     def one() -> np.ndarray:

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.stats import multivariate_normal
 
 from jackettwin.watching.causes import Cause
-from jackettwin.watching.diagnosis import _free, _likelihood, _misfit
+from jackettwin.watching.diagnosis import _free, _likelihood, _misfit, _moved
+from jackettwin.watching.watch import Change
 
 KINDS = ("frequency", "damping", "frequency")
 
@@ -46,3 +47,28 @@ def test_draws_that_differ_make_the_direction_uncertain_where_they_do() -> None:
     alone, together = (root @ root.T for root in (_misfit(d, KINDS) for d in (same, turned)))
     assert alone[0, 2] == 0.0 and together[0, 2] < 0.0
     np.testing.assert_allclose((together - alone)[0, 0], 0.3**2 * 2.5 / 4, rtol=0.1)  # misfit grows a little
+
+
+def test_a_large_step_is_not_many_small_ones_where_it_is_bent() -> None:
+    sizes = np.array([0.5, 1.0, 2.0])  # median 1: there the direction is that of the draws
+    cause = Cause("bent", np.array([[1.0, 0.0]]), sizes, np.zeros(3), bend=np.array([0.0, 0.5]))
+    found = cause.steps(np.array([0.5, 1.0, 3.0]))
+    np.testing.assert_allclose(found, [[0.5, -0.125], [1.0, 0.0], [3.0, 3.0]])
+
+
+def test_the_mean_of_louder_noise_lies_further_off(rng: np.random.Generator) -> None:
+    """X = A⁻¹b is N(0, GA⁻¹G + S) of a failing sensor, N(0, A⁻¹) if nothing changed."""
+    info, score, _ = case(rng)
+    noise, std, louder = np.linalg.inv(info), np.array([0.5, 0.1, 0.3]), np.array([2.5, 1.0, 4.0])
+    x = noise @ score
+    wide = np.diag(louder) @ noise @ np.diag(louder) + np.diag(std**2)
+    expected = (
+        multivariate_normal(np.zeros(3), wide).logpdf(x)
+        - multivariate_normal(np.zeros(3), noise).logpdf(x)
+    )  # fmt: skip
+    none = np.zeros(3)
+    change = Change(
+        0.0, "scatter", "any", 0.0, (0.0, 0.0), none > 0.0, none, none, info[None], score[None], np.zeros(1),
+        np.zeros((1, 3, 3)), 0.0, none,
+    )  # fmt: skip
+    np.testing.assert_allclose(_moved(change, louder[None], std), [expected], rtol=1e-6)  # the ridge is 1e-9

@@ -67,6 +67,8 @@ LOOKS = (
     (r"^sensor: more scatter", "a second accelerometer beside the one in doubt"),
 )
 """Where causes show to who looks, by their names; what is in the ground does not."""
+_ONE_SIZE = 0.1
+"""Spread of ln size below which a cause is there or not."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -136,7 +138,8 @@ def model_causes(
             traceless.append(event.name)
         else:
             sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
-            found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit)))
+            bend = _bend(event, stands[0], bases[0], loss[0], zeta, gravity, draws[0])
+            found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit, bend=bend)))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
     return ModelCauses(named.labels, fitted, causes, tuple(traceless))
 
@@ -192,6 +195,26 @@ def _effect(
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
     return np.concatenate([ln_f, more / zeta]) / event.per
+
+
+def _bend(
+    event: Happening,
+    standing: Standing,
+    base: _Modes,
+    eta: float,
+    zeta: FloatArray,
+    gravity: bool,
+    once: FloatArray,
+) -> FloatArray:
+    """Return how an event's direction turns with each further median size, (2·MODES,), if it has sizes."""
+    if event.spread < _ONE_SIZE:
+        return np.zeros(0)
+
+    def thrice(s: Standing) -> Standing:
+        return event.apply(event.apply(event.apply(s)))
+
+    often = _effect(replace(event, apply=thrice, per=3.0 * event.per), standing, base, eta, zeta, gravity)
+    return np.asarray(0.5 * (often - once) * event.median / event.per)
 
 
 def _standings(
@@ -317,7 +340,10 @@ def seen_causes(
         if good
     ]
     kept = [pair for pair, good in zip(quantities, known, strict=True) if good]
-    causes = tuple(replace(cause, draws=cause.draws[:, columns]) for cause in model.causes)
+    causes = tuple(
+        replace(c, draws=c.draws[:, columns], bend=c.bend[columns] if c.bend.size else c.bend)
+        for c in model.causes
+    )
     further = tuple(
         (f"{what} of {label}", i + shift)
         for what, shift in (("frequency", 0), ("damping", MODES))
@@ -380,4 +406,5 @@ def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -
     spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
     kind = slice(0, MODES) if column < MODES else slice(MODES, None)
     misfit = MISFIT * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
-    return float(np.mean(per) * verdict.size), float(np.sqrt(spread**2 + noise**2 + misfit**2))
+    mean = cause.steps(np.array([verdict.size]))[0, column]
+    return float(mean), float(np.sqrt(spread**2 + noise**2 + misfit**2))

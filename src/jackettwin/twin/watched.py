@@ -158,7 +158,7 @@ def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -
     for verdict in diagnosis.verdicts[:_PATTERNS]:
         if verdict.probability > _UNLIKELY and np.isfinite(verdict.size):
             step = np.full(known.size, np.nan)
-            step[known] = verdict.size * by_name[verdict.cause].draws.mean(axis=0)
+            step[known] = by_name[verdict.cause].steps(np.array([verdict.size]))[0]
             found[verdict.cause] = step
     return found
 

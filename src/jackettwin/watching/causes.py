@@ -17,6 +17,8 @@ _SENSOR_SHIFT = 0.002
 """Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; two hundred
 times as much in ln ζ."""
 _DAMPING_OVER_FREQUENCY = 200.0
+BENT = 4.0
+"""Of the median size: up to there the bend of a direction goes on."""
 _SENSOR_PRIOR = 5.0
 """Sensors and their cables fail some times as often as anything in the structure."""
 
@@ -37,6 +39,8 @@ class Cause:
         draws are
         the square root of the covariance of what moves besides
     prior : weight before the data; of all causes they need not add up to one
+    bend : (m,) change of the direction from one unit to the next, if a large one is not many small ones: a
+        brace that carries less and less, soil under ever longer free piles
     """
 
     name: str
@@ -46,6 +50,15 @@ class Cause:
     unit: str = "-"
     louder: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     prior: float = 1.0
+    bend: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def steps(self, sizes: FloatArray) -> FloatArray:
+        """Return the mean change of all quantities, (n_sizes, m), bent up to ``BENT`` medians."""
+        sizes, J = np.asarray(sizes, dtype=np.float64), self.draws.mean(axis=0)
+        if self.bend.size:
+            middle = float(np.median(np.abs(self.sizes)))
+            J = J + np.clip(np.abs(sizes)[:, None] / middle - 1.0, -1.0, BENT - 1.0) * self.bend
+        return np.asarray(sizes[:, None] * J)
 
 
 def lognormal_sizes(

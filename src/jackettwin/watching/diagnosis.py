@@ -101,18 +101,17 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
 def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str]) -> FloatArray:
     r"""Return ln Λ by begin and size, (n_begins, n_sizes); the direction is as uncertain as the structure.
 
-    With δ = θ(J + Rε), ε ~ N(0, I) and RᵀAR = QΛQᵀ, c = QᵀRᵀ(b − θAJ):
+    With δ = θ(J(θ) + Rε), ε ~ N(0, I) and RᵀAR = QΛQᵀ, c = QᵀRᵀ(b − θAJ):
 
     .. math:: \ln Λ = θ J^T b - \tfrac12 θ^2 J^T A J + \tfrac12 Σ \frac{θ^2 c_i^2}{1 + θ^2 Λ_i}
               - \tfrac12 Σ \ln (1 + θ^2 Λ_i)
     """
-    J, size, root = cause.draws.mean(axis=0), cause.sizes, _misfit(cause.draws, kinds)
-    moved = info @ J
-    plain = (score @ J)[:, None] * size - 0.5 * (moved @ J)[:, None] * size**2
+    size, root, steps = cause.sizes, _misfit(cause.draws, kinds), cause.steps(cause.sizes)
+    moved = steps @ info  # (n_begins, n_sizes, m)
+    plain = score @ steps.T - 0.5 * np.einsum("tsi,si->ts", moved, steps)
     values, vectors = np.linalg.eigh(root.T @ info @ root)
-    turned = np.swapaxes(vectors, 1, 2) @ root.T
-    first, second = (np.einsum("tij,tj->ti", turned, x)[:, None, :] for x in (score, moved))
-    square = (size[:, None] * (first - size[:, None] * second)) ** 2
+    turned = root @ vectors
+    square = (size[:, None] * ((score[:, None, :] - moved) @ turned)) ** 2
     wide = 1.0 + size[:, None] ** 2 * np.maximum(values, 0.0)[:, None, :]
     return np.asarray(plain + 0.5 * np.sum(square / wide - np.log(wide), axis=-1))
 
@@ -147,10 +146,23 @@ def _noisy(change: Change, cause: Cause, begins: FloatArray) -> float:
     # that none is louder is no failing sensor
     none = -np.log(2.0) * len(np.unique(cause.louder))
     total += np.log(np.maximum(-np.expm1(np.minimum(none - total, 0.0)), 1e-12)) - np.log(-np.expm1(none))
-    info = change.info / (louder[:, :, None] * louder[:, None, :])
-    score = change.score / louder**2
-    shift = np.logaddexp.reduce([_free(info, score, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
+    shift = np.logaddexp.reduce([_moved(change, louder, g * np.diag(cause.draws)) for g in SHIFTS], axis=0)
     return float(np.logaddexp.reduce(begins + total + shift - np.log(len(SHIFTS))))
+
+
+def _moved(change: Change, louder: FloatArray, std: FloatArray) -> FloatArray:
+    """Return ln of the evidence of δ ~ N(0, std²) in noise so much louder, (n_begins,), over quiet noise.
+
+    What the data say of a step, A⁻¹b, has the covariance A⁻¹ if nothing happened, and GA⁻¹G + std² here: the
+    mean of louder noise lies further off, and is a sign of it by that.
+    """
+    known = change.info + 1e-9 * np.trace(change.info, axis1=1, axis2=2)[:, None, None] * np.eye(len(std))
+    unsure = np.linalg.inv(known)
+    seen = np.einsum("tij,tj->ti", unsure, change.score)
+    wide = louder[:, :, None] * unsure * louder[:, None, :] + np.diag(std**2)
+    fits = np.einsum("ti,ti->t", seen, np.linalg.solve(wide, seen[..., None])[..., 0])
+    ratio = np.linalg.slogdet(known @ wide)[1]
+    return np.asarray(0.5 * (np.einsum("ti,ti->t", seen, change.score) - fits - ratio))
 
 
 def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
@@ -183,7 +195,7 @@ def _groups(
     """
     with_size = [c for c in causes if not c.louder.size]
     best = change.info[_best(change)]
-    steps = {c.name: verdicts[c.name].size * c.draws.mean(axis=0) for c in with_size}
+    steps = {c.name: c.steps(np.array([verdicts[c.name].size]))[0] for c in with_size}
     roots = {c.name: verdicts[c.name].size * _misfit(c.draws, kinds) for c in with_size}
     groups: list[set[str]] = []
     for i, one in enumerate(with_size):

@@ -1,0 +1,156 @@
+"""The whole chain: records of a changed jacket are simulated and identified, and their modes fill seasons.
+
+Ten-minute records under waves and wind are simulated before and after a change, with the same few seeds, and
+identified as the twin does it. A season's row is one of these records: its ln f and ln ζ with their stated
+standard deviations, plus what the seasons of ``common.seasons`` do (tide, steel's temperature, wind, waves,
+what is unexplained). A season of records simulated one by one would be thousands; with the same seeds before
+and after, what the few records err by is in both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from common.seasons import Kind, Seasons, seasons, unexplained
+from jackettwin.records import Record
+from jackettwin.simulate import Scenario, simulate
+from jackettwin.simulate.files import scenario_from
+from jackettwin.soil.files import read_support
+from jackettwin.soil.support import Spring, Support
+from jackettwin.structure import Structure
+from jackettwin.twin import read_twin
+from jackettwin.twin.changed_structures import Standing
+from jackettwin.twin.model import TwinModel, twin_model
+from jackettwin.twin.observe import observe
+from jackettwin.watching import History
+
+HEIGHTS = (0.99, 0.62, 0.36)
+"""Of pairs of accelerometers on the tower, as shares of its top above the sea."""
+_LOSS = "maxwell-3:k=1,loss_factor=0.08,f0=0.3"
+_SEEN = 0.7
+"""Share of the records before the change in which a mode must be found to be watched."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What records of one jacket are made and identified with."""
+
+    scenario: Scenario
+    model: TwinModel
+
+
+def bench(structure: Structure, source: str, where: Path) -> Bench:
+    """Return scenario and model of a jacket; ``source`` is its name or file."""
+    sea = structure.sea_level_z_m
+    top = structure.nodes[structure.top_node][2] - sea
+    axes = {"x": [1, 0, 0], "y": [0, 1, 0]}
+    sensors: list[dict[str, Any]] = [
+        {"channel": f"acc_{i}_{a}", "height_m": round(h * top, 1), "direction": d, "noise": 3e-4}
+        for i, h in enumerate(HEIGHTS)
+        for a, d in axes.items()
+    ]
+    off_axis = [node for node, at in structure.nodes.items() if np.hypot(*at[:2]) > 1.0]
+    leg = max(off_axis, key=lambda node: structure.nodes[node][2])
+    x, y, _ = structure.nodes[leg]
+    around = [-y / np.hypot(x, y), x / np.hypot(x, y), 0.0]
+    sensors.append({"channel": "acc_leg", "node": leg, "direction": around, "noise": 3e-4})
+    scenario = scenario_from(
+        {
+            "structure": source, "gravity": True, "support": "kelvin-voigt:k=2.5e9,c=1e7",
+            "damping": {"rayleigh": {"ratio": 0.0055, "frequency_hz": 0.183}},
+            "wind": {"speed_m_s": 10, "turbulence": "B", "seed": 1}, "rotor": {"state": "parked"},
+            "water": {"depth_m": float(sea)},
+            "waves": {"type": "jonswap", "hs_m": 1.5, "tp_s": 7.0, "seed": 1},
+            "time": {"duration_s": 600, "step_s": 0.02, "discard_s": 200}, "sensors": sensors,
+        },
+        where / "scenario.yaml",
+    )  # fmt: skip
+    twin = where / "twin.yaml"
+    twin.write_text(f"structure: {source}\ngravity: true\nsupport: {{law: kelvin-voigt, tie: all}}\n")
+    return Bench(scenario, twin_model(read_twin(twin, records_follow=True)))
+
+
+def record(scene: Scenario, standing: Standing, seed: int) -> Record:
+    """Return ten minutes of a jacket as it stands."""
+    structure = standing.structure
+    law = read_support(_LOSS, structure).springs[0].law
+    feet = zip(structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
+    springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0]), law) for node, h, v in feet)
+    asset = replace(scene.asset, structure=structure, support=Support(springs), support_text=None)
+    if scene.sea is None or scene.air is None:
+        raise ValueError("a scenario without sea or wind")
+    return simulate(
+        replace(
+            scene, asset=asset, sensor_seed=seed, sea=replace(scene.sea, seed=seed),
+            air=replace(scene.air, seed=seed),
+        )
+    ).record  # fmt: skip
+
+
+Row = dict[str, list[float]]
+
+
+def identified(found: Record, model: TwinModel) -> Row:
+    """Return {label: [ln f, its standard deviation, ln ζ, its standard deviation]} of one record."""
+    out: Row = {}
+    for mode, known in observe(found, model).modes.values():
+        if mode.log_covariance is not None:
+            f, z = np.sqrt(np.diag(mode.log_covariance))
+            out[known.label] = [
+                float(np.log(mode.frequency_hz)), float(f), float(np.log(mode.damping_ratio)), float(z)
+            ]  # fmt: skip
+    return out
+
+
+def watched_labels(before: list[Row], known: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the labels that are found often enough, of those that the causes' model has."""
+    return tuple(n for n in known if np.mean([n in row for row in before]) >= _SEEN)
+
+
+def season(
+    before: list[Row], after: list[Row], labels: tuple[str, ...], begun: float, days: float, seed: int
+) -> History:
+    """Return seasons whose rows are identified records, changed from a day on."""
+    rng = np.random.default_rng((5, seed))
+    s = seasons(50_000 + seed, days)
+    n = s.days.size
+    # what moves all rows, without the noise of an identification that was never made
+    slow = np.concatenate([s.expected, _further(s, days, rng)], axis=2)[:, :, : len(labels)]
+    values = np.full((4, n, len(labels)), np.nan)
+    for i, day in enumerate(s.days):
+        pool = after if day >= begun else before
+        row = pool[rng.integers(len(pool))]
+        for q, label in enumerate(labels):
+            if label in row:
+                f, f_std, z, z_std = row[label]
+                values[:, i, q] = np.exp(f + slow[0, i, q]), f_std, np.exp(z + slow[1, i, q]), z_std
+    values[1] *= values[0]
+    values[3] *= values[2]
+    beside = np.stack(list(s.conditions.values()), axis=1)
+    return History(
+        s.days, labels, values[0], values[1], values[2], values[3], beside, tuple(s.conditions),
+        np.zeros(n, dtype=np.intp),
+    )  # fmt: skip
+
+
+def _further(s: Seasons, days: float, rng: np.random.Generator) -> np.ndarray:
+    """Return what moves four further modes, (2, n, 4): the same conditions, and what they do not explain."""
+    own = np.stack([size * unexplained(rng, s.days, days, Kind()) for size in (1.0, 50.0)])
+    return s.expected - np.stack([s.process, 0.0 * s.process]) + own
+
+
+def louder(found: Record, times: float) -> Record:
+    """Return the record with white noise on its first channel, so many times what the channel shows."""
+    data = found.data.copy()
+    noise = np.random.default_rng(7).standard_normal(data.shape[1])
+    data[0] += times * data[0].std() * noise
+    return replace(found, data=data)
+
+
+def late(found: Record, by: float) -> Record:
+    """Return the record of a clock that runs wrong by a share."""
+    return replace(found, sample_rate_hz=found.sample_rate_hz * (1.0 + by))
