@@ -12,6 +12,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -51,6 +52,7 @@ _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\
 _DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
 _ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
 _DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
+_PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 
 
@@ -299,12 +301,10 @@ def _refuse_further_cells(names: list[str], rows: list[list[str]], delimiter: st
 
 def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int) -> npt.NDArray[Any]:
     cells = [row[i] if i < len(row) else "" for row in rows]
-    try:
-        return np.array(cells, dtype=np.float64)
-    except ValueError:
-        pass
+    with suppress(ValueError):  # all at once; what is not so plain is read cell by cell
+        return np.array(cells if delimiter == "," else [cell.replace(",", ".") for cell in cells], np.float64)
     if cells and _DATE.match(cells[0]):
-        return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+        return _stamps(cells, line)
     known = [cell for cell in cells if cell.strip().lower() not in MISSING]
     if known and not any(_is_value(cell.strip(), delimiter) for cell in known):
         return np.array(cells)  # words: not a signal
@@ -331,9 +331,21 @@ def _number(cell: str, delimiter: str, name: str, line: int) -> float:
         ) from None
 
 
+def _stamps(cells: list[str], line: int) -> npt.NDArray[np.datetime64]:
+    """Return times; those of one plain form, without a zone or in UTC, all at once."""
+    texts = [_iso(cell) for cell in cells]
+    if all(map(_PLAIN_STAMP.fullmatch, texts)):
+        with suppress(ValueError):  # a 31st of June: the slow way names its line
+            return np.array([text.rstrip("Zz").replace(",", ".") for text in texts], "datetime64[ns]")
+    return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+
+
+def _iso(cell: str) -> str:
+    return _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
+
+
 def _stamp(cell: str, line: int) -> np.datetime64:
     try:
-        iso = _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
-        return np.datetime64(parse_time(iso).replace(tzinfo=None), "ns")
+        return np.datetime64(parse_time(_iso(cell)).replace(tzinfo=None), "ns")
     except InputError as error:
         raise error.at(field=f"line {line}") from None
