@@ -105,15 +105,16 @@ def complete(targets_only: TwinResult, record: Record, observation: Examination)
         for m, mode in zip(targets_only.measured, found.modes[:2], strict=False)
     )
     known = [Recognised(m.mode, m.label, 0.97) for m in measured]
+    sensors = tuple(Sensor(c.name, c.direction, height_m=c.height_m) for c in record.channels)
     seen = Observation(
         "id", "model", "settings", "0", record.name, None, {}, observation.quality.summary(),
-        found.without_figures, (*known, *[None] * (len(found.modes) - len(known))), (),
+        found.without_figures, (*known, *[None] * (len(found.modes) - len(known))), sensors,
     )  # fmt: skip
     excess = (DampingExcess("side_side_1", 0.0456, 0.004, 0.0123),)
     return replace(
         targets_only,
         name="from_record",
-        sensors=tuple(Sensor(c.name, c.direction, height_m=c.height_m) for c in record.channels),
+        sensors=sensors,
         observations=(seen,),
         shown=replace(observation, identification=found),
         measured=(*measured, *targets_only.measured[len(measured) :]),

@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
-from threading import Timer
+from threading import Event, Thread
 from typing import Any
 
 import click
 from rich.console import Console
 
-from jackettwin.cli.plain_progress import plain_progress
+from jackettwin.cli.plain_progress import EVERY_S, plain_progress
 from jackettwin.errors import InputError, JackettwinError
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -26,6 +26,25 @@ messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
 """Tables for people; a file or a pipe has no width of its own."""
+
+
+@contextmanager
+def _reading_said() -> Iterator[None]:
+    """Say that the program is still being read, as often as any progress is told."""
+    done = Event()
+
+    def say() -> None:
+        waits, words = _PATIENCE_S, "reading the numerical libraries"
+        while not done.wait(waits):
+            messages.print(words)
+            waits, words = EVERY_S, "still reading the numerical libraries"
+
+    thread = Thread(target=say, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
 
 
 class Commands(click.Group):
@@ -50,13 +69,8 @@ class Commands(click.Group):
         if cmd_name not in self.summaries:
             return None
         name = cmd_name.replace("-", "_")
-        waiting = Timer(_PATIENCE_S, messages.print, ["reading the numerical libraries"])
-        waiting.daemon = True
-        waiting.start()
-        try:
+        with _reading_said():
             command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
-        finally:
-            waiting.cancel()
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

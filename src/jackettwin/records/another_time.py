@@ -21,7 +21,8 @@ COMMON = 75.0
 """Sum of ``long_delays`` from which two channels have something in common: that of independent ones is larger
 than a gamma variable's, as neighbouring lines behind a Hann window are not independent; it reaches 50."""
 TELLING = 3.0
-"""So many times that must some pair reach, else the record is too short to tell."""
+"""So many times that must a channel in question, or the one most like it, reach with some other, else nobody
+can tell: in a calm, one mode alone stands out of the noise at some sensors."""
 ALL_DELAYS = 0.45
 """Share of the record up to which anything in common is sought."""
 CROSSWISE = 0.5
@@ -69,7 +70,9 @@ def strangers(
         Which channels must have something in common.
     """
     common = _common(y, sample_rate_hz, tree)
-    if common.max(initial=0.0) < TELLING * COMMON:
+    reached = np.zeros(len(y))
+    np.maximum.at(reached, tree, common[:, None])
+    if reached.max(initial=0.0) < TELLING * COMMON:
         return ()
     groups = sorted(_groups(y, sample_rate_hz, tree[common > COMMON]), key=lambda rows: (-len(rows), rows))
     alike = _alike(seen)
@@ -77,7 +80,10 @@ def strangers(
     for k, rows in enumerate(groups):
         larger = [i for group in groups[:k] for i in group]
         pairs = np.array([(i, j) for i in larger for j in rows if compared[i, j]], dtype=np.intp)
-        if not len(pairs) or np.max(alike[pairs[:, 0], pairs[:, 1]]) < ALIKE:
+        if not len(pairs):
+            continue
+        likest, _ = nearest = pairs[np.argmax(alike[pairs[:, 0], pairs[:, 1]])]
+        if alike[tuple(nearest)] < ALIKE or reached[[likest, *rows]].max() < TELLING * COMMON:
             continue
         turned = np.concatenate([y, y[:, ::-1]])
         backwards = _common(turned, sample_rate_hz, np.asarray(pairs + [0, len(y)], dtype=np.intp))

@@ -11,13 +11,15 @@ from markupsafe import Markup
 from jackettwin.report import style
 from jackettwin.report.numbers import fixed, words
 from jackettwin.report.svg import Canvas
-from jackettwin.response.sensors import observation_matrix, sensor_positions
+from jackettwin.response.sensors import Sensor, observation_matrix, sensor_positions
+from jackettwin.structure import Assembly
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Update
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Seen = tuple[tuple[Sensor, ...], ComplexArray]
 
 _WIDTH, _HEIGHT, _HEAD = 160.0, 330.0, 40.0
 _SWAY = 0.11
@@ -26,20 +28,29 @@ _SWAY = 0.11
 
 def shape_drawings(result: TwinResult, u: Update) -> list[Markup]:
     """Return one drawing a measured mode; nothing for a mode that the model lost."""
-    order = {c.name: i for found in result.identifications[:1] for i, c in enumerate(found.channels)}
-    rows = [order.get(sensor.channel, -1) for sensor in result.sensors]
     drawn = []
     for i, m in enumerate(result.measured):
         shape = u.modes.shapes[:, i]
         if not np.isfinite(shape).all() or not np.abs(shape).any():
             continue
-        seen = m.estimate.mode_shape[rows] if m.estimate is not None and rows and min(rows) >= 0 else None
-        drawn.append(_drawing(result, m, shape, seen, float(u.modes.frequency_hz[i])))
+        drawn.append(_drawing(result, m, shape, _seen(result, m), float(u.modes.frequency_hz[i])))
     return drawn
 
 
+def _seen(result: TwinResult, m: MeasuredMode) -> Seen | None:
+    """Return the sensors of the record that a mode's shape is of, and the shape there; None without one."""
+    for one in result.observations:
+        estimate, _ = one.modes.get(m.mode, (None, None))
+        if estimate is not None and estimate is m.estimate:
+            order = {c.name: i for i, c in enumerate(one.identification.channels)}
+            sensors = tuple(sensor for sensor in one.sensors if sensor.channel in order)
+            rows = [order[sensor.channel] for sensor in sensors]
+            return (sensors, estimate.mode_shape[rows]) if rows else None
+    return None
+
+
 def _drawing(
-    result: TwinResult, m: MeasuredMode, shape: ComplexArray, seen: ComplexArray | None, model_hz: float
+    result: TwinResult, m: MeasuredMode, shape: ComplexArray, seen: Seen | None, model_hz: float
 ) -> Markup:
     assembly = result.assembly
     points = assembly.mesh.coordinates - [0.0, 0.0, assembly.structure.sea_level_z_m]
@@ -65,7 +76,7 @@ def _drawing(
     c.path(_strokes(place(flat), mesh.start, mesh.end), colour=style.PALE, width=1.0)
     c.path(_strokes(place(flat + sway * moved[:, axes]), mesh.start, mesh.end), colour=colour, width=1.6)
     if seen is not None:
-        _arrows(c, result, seen, shape / peak, axes, sway, place)
+        _arrows(c, result.assembly, seen, shape / peak, axes, sway, place)
     return c.markup
 
 
@@ -87,15 +98,15 @@ def _strokes(at: FloatArray, start: npt.NDArray[np.intp], end: npt.NDArray[np.in
 
 
 def _arrows(
-    c: Canvas, result: TwinResult, seen: ComplexArray, shape: ComplexArray, axes: list[int], sway: float,
+    c: Canvas, assembly: Assembly, seen: Seen, shape: ComplexArray, axes: list[int], sway: float,
     place: Callable[[FloatArray], FloatArray],
 ) -> None:  # fmt: skip
     """Draw the measured motion at the sensors, scaled and turned to the model's by least squares."""
-    model = np.asarray(observation_matrix(result.assembly, result.sensors) @ shape)
-    scale = (seen.conj() @ model) / (seen.conj() @ seen)
-    fitted = np.real(seen * scale)
-    points = sensor_positions(result.assembly, result.sensors)
-    for sensor, at, value in zip(result.sensors, points, fitted, strict=True):
+    sensors, measured = seen
+    model = np.asarray(observation_matrix(assembly, sensors) @ shape)
+    fitted = np.real(measured * (measured.conj() @ model) / (measured.conj() @ measured))
+    points = sensor_positions(assembly, sensors)
+    for sensor, at, value in zip(sensors, points, fitted, strict=True):
         along = np.asarray(sensor.direction) / np.linalg.norm(sensor.direction)
         if sensor.quantity != "motion" or np.abs(along[axes]).max() < 0.5:
             continue

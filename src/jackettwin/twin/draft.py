@@ -127,15 +127,23 @@ def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
     """Return where a channel's sensor sits, and what is missing to say so."""
     structure, read = assembly.structure, read_name(channel.name)
     node, height, why = channel.node, channel.height_m, []
-    if node is None and height is None and read.level == "tower top":
-        node = structure.top_node
-        why.append("the tower's top, by its name")
+    if node is None and height is None and read.level in (levels := _levels(structure)):
+        node = levels[read.level]
+        why.append(f"{read.level}, by its name")
     elif height is not None and height == read.height_m:
         why.append(f"{height:g} m by its name")
     if read.direction is not None and read.direction == channel.direction:
         why.append(f"{read.direction_word} by its name")
     sensor = Sensor(channel.name, channel.direction, node, None if node is not None else height)
     return SensorPlace(sensor, ", ".join(why), _lacks(sensor, assembly))
+
+
+def _levels(structure: Structure) -> dict[str, str]:
+    """Return the nodes that names of parts mean, where the structure leaves no choice."""
+    levels = {"tower top": structure.top_node}
+    if len(structure.interface_nodes) == 1:  # where the transition piece ends and the tower begins
+        levels |= dict.fromkeys(("transition piece", "tower bottom"), structure.interface_nodes[0])
+    return levels
 
 
 def _lacks(sensor: Sensor, assembly: Assembly) -> str:
