@@ -51,6 +51,14 @@ def test_a_german_logger_becomes_a_twin_that_reads(tmp_path: Path) -> None:
     assert "# - {channel: ACC_leg_a" in written_text
 
 
+def test_parts_that_names_speak_of_have_their_nodes(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "TT_AX [g],TP_AX [g],TowerBottom_AY [g],TM_AX [g]")
+    code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"), "--json")
+    assert code == 0
+    nodes = [(s["node"], bool(s["lacks"])) for s in json.loads(text)["sensors"]]
+    assert nodes == [("tower_top", False), ("tp_top", False), ("tp_top", False), (None, True)]
+
+
 def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_400m_N [g]")
     code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"))
