@@ -80,6 +80,21 @@ def test_dates_of_loggers_are_read(day: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(record.data[0] / 9.80665, np.arange(5) + 0.5, rtol=1e-15)
 
 
+def test_plain_times_and_others_are_the_same_times(tmp_path: Path) -> None:
+    """Times of one plain form are read at once, others one by one; an empty or impossible one is refused."""
+    seconds = [f"{0.1 * k:06.3f}" for k in range(5)]
+    texts = {
+        form: "\n".join(["time;acc_x [g]", *(form.format(s) + f";{k},5" for k, s in enumerate(seconds))])
+        for form in ("2025-06-01 12:00:{}Z", "2025-06-01T12:00:{}", "2025-06-01T14:00:{}+02:00")
+    }
+    starts = {read_text(text, tmp_path).start_utc for text in texts.values()}
+    assert len(starts) == 1
+    for wrong in ("", "2025-06-31 12:00:00.400"):
+        rows = [*(f"2025-06-01 12:00:{s};1" for s in seconds[:4]), f"{wrong};1"]
+        with pytest.raises(InputError, match="line 6"):
+            read_text("\n".join(["time;acc_x [g]", *rows]), tmp_path)
+
+
 def test_ambiguous_dates_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"time: times are not understood.*01/02/2025.*2025-01-01T13"):
         read_text("time,acc_x [g]\n01/02/2025 13:00:00,1\n01/02/2025 13:00:01,2\n", tmp_path)
