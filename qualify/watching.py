@@ -25,7 +25,7 @@ from scipy.stats import poisson
 
 from jackettwin import watching
 from jackettwin.watching import History, Look, Watch, diagnose, general_causes
-from jackettwin.watching.block import Block, begin, empty_bank
+from jackettwin.watching.block import Block, begin, no_begins
 from jackettwin.watching.design import Design, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Directions, directions_of
 from jackettwin.watching.memory import OCTAVES, learn
@@ -248,7 +248,7 @@ def _told(baseline: History, design: Design, rows: np.ndarray, kind: str) -> Blo
     learnt = learn(hours, np.outer(block.spread, design.priors), told=TOLD)
     return replace(
         block, memories=learnt.memories, beliefs=learnt.beliefs,
-        banks=tuple(empty_bank(4, belief.mean.size) for belief in learnt.beliefs),
+        banks=no_begins(4, learnt.beliefs),
         log_weights=learnt.log_weights, log_prior=learnt.log_weights,
     )  # fmt: skip
 

@@ -51,20 +51,25 @@ def test_innovations_are_those_of_the_cholesky_factor(rng: np.random.Generator) 
     assert abs(done.log_likelihood - expected) < 1e-8 * abs(expected)
 
 
-def test_what_is_said_of_a_step_is_that_of_the_whole_series(rng: np.random.Generator) -> None:
+def test_what_is_said_of_steps_is_that_of_the_whole_series(rng: np.random.Generator) -> None:
+    """Σ hhᵀ/s and Σ hν/s are SᵀΣ⁻¹S and SᵀΣ⁻¹y of the steps in the series; of two steps together as well."""
     hours, memory, prior = series(rng)
     sigma, y, at = covariance(hours, memory, prior)
-    first = 25
+    begins = (25, 40)
     belief = prior_belief(memory, prior)
-    before = Hours(*(getattr(hours, n)[:first] for n in hours.__dataclass_fields__))
-    after = Hours(*(getattr(hours, n)[first:] for n in hours.__dataclass_fields__))
-    one = filtered(memory, belief, empty_bank(M, belief.mean.size), before, -np.inf)
-    two = filtered(memory, one.belief, empty_bank(M, belief.mean.size, 1), after, float(before.days[-1]))
-    steps = (at[:, 0] >= first)[:, None] * (at[:, 1][:, None] == np.arange(M))
-    # Σ hhᵀ/s and Σ hν/s over the rows after the begin; before it h is zero
-    info, score = steps.T @ np.linalg.solve(sigma, steps), steps.T @ np.linalg.solve(sigma, y)
-    np.testing.assert_allclose(two.bank.info[0], info, rtol=1e-8)
-    np.testing.assert_allclose(two.bank.score[0], score, rtol=1e-7, atol=1e-6 * np.abs(score).max())
+    bank, last = empty_bank(M, belief.mean.size, ramps=True), -np.inf
+    for first, end in zip((0, *begins), (*begins, N), strict=True):
+        part = Hours(*(getattr(hours, n)[first:end] for n in hours.__dataclass_fields__))
+        done = filtered(memory, belief, bank.with_begin() if first else bank, part, last)
+        belief, bank, last = done.belief, done.bank, float(part.days[-1])
+    steps = [(at[:, 0] >= first)[:, None] * (at[:, 1][:, None] == np.arange(M)) for first in begins]
+    for k, step in enumerate(steps):
+        score = step.T @ np.linalg.solve(sigma, y)
+        np.testing.assert_allclose(bank.info[k], step.T @ np.linalg.solve(sigma, step), rtol=1e-8)
+        np.testing.assert_allclose(bank.score[k], score, rtol=1e-7, atol=1e-6 * np.abs(score).max())
+    both = steps[1].T @ np.linalg.solve(sigma, steps[0])
+    assert bank.cross is not None
+    np.testing.assert_allclose(bank.cross[1, 0], both, rtol=1e-7, atol=1e-9 * np.abs(both).max())
 
 
 def test_a_day_at_a_time_is_the_whole_at_once(rng: np.random.Generator) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -128,7 +129,7 @@ def begin(
         spread=spread,
         memories=learnt.memories,
         beliefs=learnt.beliefs,
-        banks=tuple(empty_bank(m, belief.mean.size) for belief in learnt.beliefs),
+        banks=no_begins(m, learnt.beliefs),
         log_weights=learnt.log_weights,
         log_prior=learnt.log_weights,
         louder=np.ones(m),
@@ -249,7 +250,7 @@ def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tup
     """Return the block after some hours and what they say; its banks have grown by one begin."""
     beliefs, banks, likelihoods, spoken = [], [], [], None
     for memory, belief, bank in zip(block.memories, block.beliefs, block.banks, strict=True):
-        done = filtered(memory, belief, _with_begin(bank), hours, last_day)
+        done = filtered(memory, belief, bank.with_begin(), hours, last_day)
         beliefs.append(done.belief)
         banks.append(done.bank)
         likelihoods.append(done.log_likelihood)
@@ -260,13 +261,6 @@ def taken(block: Block, hours: Hours, apart: FloatArray, last_day: float) -> tup
     if spoken is None:
         raise ValueError("a block without models")
     return replace(block, beliefs=tuple(beliefs), banks=tuple(banks), log_weights=weights), spoken
-
-
-def _with_begin(bank: Bank) -> Bank:
-    def grown(x: FloatArray) -> FloatArray:
-        return np.concatenate([x, np.zeros((1, *x.shape[1:]))])
-
-    return Bank(grown(bank.response), grown(bank.info), grown(bank.score))
 
 
 def _spoken(block: Block, hours: Hours, apart: FloatArray, done: Filtered) -> Spoken:
@@ -316,8 +310,7 @@ def log_scatter(block: Block, spoken: Spoken) -> FloatArray:
 
 def thinned(block: Block, keep: BoolArray) -> Block:
     """Return the block with some of the begins only."""
-    banks = tuple(Bank(b.response[keep], b.info[keep], b.score[keep]) for b in block.banks)
-    return replace(block, banks=banks)
+    return replace(block, banks=tuple(bank.thinned(keep) for bank in block.banks))
 
 
 def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
@@ -356,5 +349,9 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
 
 def cleared(block: Block) -> Block:
     """Return the block without begins."""
-    banks = tuple(empty_bank(len(block.kept), belief.mean.size) for belief in block.beliefs)
-    return replace(block, banks=banks)
+    return replace(block, banks=no_begins(len(block.kept), block.beliefs))
+
+
+def no_begins(m: int, beliefs: Sequence[Belief]) -> tuple[Bank, ...]:
+    """Return a bank for each model; ramps are judged by the first alone."""
+    return tuple(empty_bank(m, belief.mean.size, ramps=i == 0) for i, belief in enumerate(beliefs))

@@ -118,16 +118,20 @@ def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArra
     ----------
     info, score : (n_begins, m, m), (n_begins, m) A and b of the steps of each quantity
     """
-    u, mu, v2 = directions.vectors, directions.sizes, directions.widths**2
-    a = np.einsum("di,tij,dj->td", u, info, u)[..., None]
-    c = (score @ u.T)[..., None]
-    wide = 1.0 + a * v2
-    each = -0.5 * np.log(wide) + 0.5 * (c * c * v2 + 2.0 * c * mu - a * mu * mu) / wide
-    along = np.logaddexp.reduce(each + directions.log_size_weights, axis=-1)
-    half = len(mu) // 2
+    u = directions.vectors
+    along = log_along(directions, np.einsum("di,tij,dj->td", u, info, u), score @ u.T)
+    half = len(directions.sizes) // 2
     both = np.logaddexp(directions.log_size_weights[:half], directions.log_size_weights[half:])
     free = _any(info, score, directions.sizes[half:])
     return np.concatenate([along, np.logaddexp.reduce(free + both, axis=-1)[:, None]], axis=1)
+
+
+def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArray:
+    """Return ln of the Bayes factors of changes whose shape has a and c, over the sizes; of any shape."""
+    a, c, mu, v2 = a[..., None], c[..., None], directions.sizes, directions.widths**2
+    wide = 1.0 + a * v2
+    each = -0.5 * np.log(wide) + 0.5 * (c * c * v2 + 2.0 * c * mu - a * mu * mu) / wide
+    return np.asarray(np.logaddexp.reduce(each + directions.log_size_weights, axis=-1))
 
 
 def _any(info: FloatArray, score: FloatArray, stds: FloatArray) -> FloatArray:

@@ -59,11 +59,16 @@ def _covariance_with(cov, x, q, m, g):
 
 
 @compiled
-def _follow(response, info, score, x, q, m, g, nu, s, h):
+def _follow(response, info, score, cross, x, q, m, g, nu, s, steps):
     """Let every step that may have begun see one value: add what it says, and how the state follows it."""
     for t in range(response.shape[0]):
+        h = steps[t]
         for d in range(m):
             h[d] = (1.0 if d == q else 0.0) - _through(response[t, d], x, q, m)
+        for before in range(t + 1 if cross.shape[0] else 0):
+            for d in range(m):
+                for e in range(m):
+                    cross[t, before, d, e] += h[d] * steps[before, e] / s
         for d in range(m):
             gain = h[d] / s
             score[t, d] += gain * nu
@@ -86,7 +91,9 @@ def _learn(mean, cov, g, nu, s):
 
 
 @compiled
-def filter_rows(mean, cov, response, info, score, rows, values, noise, gaps, rates, slow, innovation, spread):
+def filter_rows(
+    mean, cov, response, info, score, cross, rows, values, noise, gaps, rates, slow, innovation, spread
+):
     """Take some rows; change the state in place and return the log likelihood of the rows.
 
     Parameters
@@ -94,6 +101,8 @@ def filter_rows(mean, cov, response, info, score, rows, values, noise, gaps, rat
     mean, cov : (n,), (n, n) state
     response : (n_begins, m, n) how the state has followed a unit step of each quantity since each begin
     info, score : (n_begins, m, m), (n_begins, m) Σ hhᵀ/s and Σ hν/s of these steps, added to
+    cross : (n_begins, n_begins, m, m) Σ hhᵀ/s of a later and an earlier step, added to where the second began
+        no later; of no size if nobody asks
     rows : (n_rows, p) regressors
     values, noise : (n_rows, m) observations, NaN where missing, and the variances of their noise
     gaps : (n_rows,) days since the row before
@@ -102,7 +111,7 @@ def filter_rows(mean, cov, response, info, score, rows, values, noise, gaps, rat
     innovation, spread : (n_rows, m) filled with ν and its variance s, NaN where missing
     """
     m, p = slow.shape[1], rows.shape[1]
-    g, h = np.empty(mean.size), np.empty(m)
+    g, steps = np.empty(mean.size), np.empty((response.shape[0], m))
     log_likelihood = 0.0
     for r in range(rows.shape[0]):
         x = rows[r]
@@ -117,7 +126,7 @@ def filter_rows(mean, cov, response, info, score, rows, values, noise, gaps, rat
             _covariance_with(cov, x, q, m, g)
             s = _through(g, x, q, m) + noise[r, q]
             nu = values[r, q] - _through(mean, x, q, m)
-            _follow(response, info, score, x, q, m, g, nu, s, h)
+            _follow(response, info, score, cross, x, q, m, g, nu, s, steps)
             _learn(mean, cov, g, nu, s)
             innovation[r, q] = nu
             spread[r, q] = s

@@ -11,14 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import minimize
 from scipy.stats import chi2
 
+from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.kernels import filter_rows
 
-FloatArray = npt.NDArray[np.float64]
 Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
 """Time constants [days] and shares of the variance."""
 
@@ -130,16 +129,33 @@ class Bank:
     ----------
     response : (n_begins, m, n)
     info, score : (n_begins, m, m), (n_begins, m) of :func:`jackettwin.watching.kernels.filter_rows`
+    cross : (n_begins, n_begins, m, m) of the same, if ramps are to be judged; else None
     """
 
     response: FloatArray
     info: FloatArray
     score: FloatArray
+    cross: FloatArray | None = None
+
+    def with_begin(self) -> Bank:
+        """Return the bank with one more begin, of which nothing is known."""
+
+        def grown(x: FloatArray, axes: int = 1) -> FloatArray:
+            return np.pad(x, [(0, 1)] * axes + [(0, 0)] * (x.ndim - axes))
+
+        cross = None if self.cross is None else grown(self.cross, 2)
+        return Bank(grown(self.response), grown(self.info), grown(self.score), cross)
+
+    def thinned(self, keep: BoolArray) -> Bank:
+        """Return the bank with some of its begins only."""
+        cross = None if self.cross is None else self.cross[keep][:, keep]
+        return Bank(self.response[keep], self.info[keep], self.score[keep], cross)
 
 
-def empty_bank(m: int, n: int, begins: int = 0) -> Bank:
-    """Return a bank of steps nothing is known of."""
-    return Bank(np.zeros((begins, m, n)), np.zeros((begins, m, m)), np.zeros((begins, m)))
+def empty_bank(m: int, n: int, *, ramps: bool = False) -> Bank:
+    """Return a bank without begins."""
+    cross = np.zeros((0, 0, m, m)) if ramps else None
+    return Bank(np.zeros((0, m, n)), np.zeros((0, m, m)), np.zeros((0, m)), cross)
 
 
 @dataclass(frozen=True)
@@ -167,15 +183,19 @@ def filtered(memory: Memory, belief: Belief, bank: Bank, hours: Hours, last_day:
     if belief.mean.size != m * (hours.rows.shape[1] + len(memory.days)):
         raise ValueError("belief and rows are not of one model")
     mean, cov = belief.mean.copy(), belief.cov.copy()
-    grown = Bank(bank.response.copy(), bank.info.copy(), bank.score.copy())
+    none = np.zeros((0, 0, m, m))
+    cross = none if bank.cross is None else bank.cross.copy()
+    grown = Bank(bank.response.copy(), bank.info.copy(), bank.score.copy(), cross)
     innovation, spread = np.empty(hours.values.shape), np.empty(hours.values.shape)
     before = last_day if np.isfinite(last_day) else float(hours.days[0]) if hours.days.size else 0.0
     likelihood = filter_rows(
-        mean, cov, grown.response, grown.info, grown.score,
+        mean, cov, grown.response, grown.info, grown.score, cross,
         np.ascontiguousarray(hours.rows), np.ascontiguousarray(hours.values),
         np.ascontiguousarray(hours.noise * memory.scale**2), np.diff(hours.days, prepend=before),
         1.0 / memory.days, memory.slow, innovation, spread,
     )  # fmt: skip
+    if bank.cross is None:
+        grown = replace(grown, cross=None)
     return Filtered(Belief(mean, cov), grown, innovation, spread, likelihood + _scatter(memory, hours))
 
 

@@ -36,6 +36,7 @@ from jackettwin.watching.block import (
 from jackettwin.watching.design import Design, Lagged, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, directions_of
 from jackettwin.watching.history import History, Kind, typical
+from jackettwin.watching.ramps import log_ramps
 from jackettwin.watching.scatter import STRONGER
 
 YEAR_DAYS = 365.25
@@ -265,8 +266,12 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
     )  # fmt: skip
     worth = _worth(after)
     log_r = float(np.logaddexp.reduce((after.begins.log_stake[:, None] + worth).ravel()))
-    change = _change(after, worth, log_r) if log_r >= after.log_threshold else None
-    after = _without(after, change) if change is not None else _reconsidered(_merged(after, worth))
+    change = None
+    if log_r >= after.log_threshold:
+        change, begun = _change(after, worth, log_r)
+        after = _without(after, change, begun)
+    else:
+        after = _reconsidered(_merged(after, worth))
     rest, std = (np.concatenate([getattr(s, name) for s in spoken]) for name in ("rest", "rest_std"))
     return after, Look(float(day.days[-1]), rest, std, log_r, change, tuple(spoken))
 
@@ -329,7 +334,8 @@ def _reconsidered(watch: Watch) -> Watch:
     return replace(after, begins=begins)
 
 
-def _change(watch: Watch, worth: FloatArray, log_r: float) -> Change:
+def _change(watch: Watch, worth: FloatArray, log_r: float) -> tuple[Change, int]:
+    """Return the change that there is, and the begin that it has if it is a step."""
     begins = watch.begins
     posterior = np.exp(begins.log_stake[:, None] + worth - log_r)
     bet = int(np.argmax(posterior.sum(axis=0)))
@@ -337,23 +343,48 @@ def _change(watch: Watch, worth: FloatArray, log_r: float) -> Change:
     # when it began: by all bets that agree with the likeliest on its kind
     same = [b for b in range(worth.shape[1]) if _bet(watch, b)[0] == kind]
     by_begin = posterior[:, same].sum(axis=1)
-    cumulative = np.cumsum(by_begin) / by_begin.sum()
-    low, mid, high = (
-        int(np.searchsorted(cumulative, p).clip(0, begins.days.size - 1)) for p in (0.05, 0.5, 0.95)
-    )
+    low, mid, high = _quantiles(_gradual(watch, kind, direction, by_begin))
+    until = np.append(begins.since[1:], watch.last_day)  # a begin stands for those merged with it
     info, score = _all_info(watch)
     size, std = (
         _louder(watch, by_begin)
         if kind == "scatter"
         else _sizes(info, score, by_begin, _prior_precision(watch))
     )
-    return Change(
+    change = Change(
         watch.last_day, kind, direction,
-        float(0.5 * (begins.since[mid] + begins.days[mid])),
-        (float(begins.since[low]), min(float(begins.days[high]) + 1.0, watch.last_day)),
+        float(0.5 * (begins.since[mid] + until[mid])), (float(begins.since[low]), float(until[high])),
         members, size, std, info, score, begins.log_stake, begins.log_scatter, log_r,
         (size / np.where(std > 0.0, std, np.inf)) ** 2,
     )  # fmt: skip
+    return change, _quantiles(by_begin)[1]
+
+
+def _quantiles(by_begin: FloatArray) -> tuple[int, ...]:
+    cumulative = np.cumsum(by_begin) / by_begin.sum()
+    return tuple(int(np.searchsorted(cumulative, p).clip(0, by_begin.size - 1)) for p in (0.05, 0.5, 0.95))
+
+
+def _gradual(watch: Watch, kind: str, direction: str, by_begin: FloatArray) -> FloatArray:
+    """Return the weights of begins if the change was a step or, as likely, a ramp that goes on."""
+    block = next((b for b in watch.blocks if b.kind == kind), None)
+    if block is None or block.banks[0].cross is None:  # a bank kept by an earlier version has none
+        return by_begin
+    u, begins = _along(block, direction, int(np.argmax(by_begin))), watch.begins
+    logs = log_ramps(block.directions, u, block.banks[0], begins.days, watch.last_day) + begins.log_stake
+    ramp, step = np.logaddexp.reduce(logs, axis=1)
+    share = 1.0 / (1.0 + np.exp(np.clip(step - ramp, -500.0, 500.0)))
+    return np.asarray((1.0 - share) * by_begin / by_begin.sum() + share * np.exp(logs[0] - ramp))
+
+
+def _along(block: Block, direction: str, begun: int) -> FloatArray:
+    """Return the vector of a direction; of "any", that of the step that was seen."""
+    place = block.directions.names.index(direction)
+    if place < len(block.directions.vectors):
+        return np.asarray(block.directions.vectors[place])
+    info, score = block.banks[0].info[begun], block.banks[0].score[begun]
+    delta = np.linalg.solve(info + _LOOSE * np.eye(len(score)), score)
+    return np.asarray(-delta / np.abs(delta).max())
 
 
 def _bet(watch: Watch, bet: int) -> tuple[str, str, BoolArray]:
@@ -417,10 +448,9 @@ def _louder(watch: Watch, by_begin: FloatArray) -> tuple[FloatArray, FloatArray]
     return mean, np.sqrt(np.maximum(square - mean**2, 0.01)).reshape(m)
 
 
-def _without(watch: Watch, change: Change) -> Watch:
-    """Return the watch that looks for what changes next: this change is taken over, and no bets are left."""
+def _without(watch: Watch, change: Change, begun: int) -> Watch:
+    """Return the watch without bets that looks for what changes next; a change is taken over as a step."""
     blocks, first = [], 0
-    begun = int(np.argmin(np.abs(watch.begins.days - change.began)))
     for block in watch.blocks:
         m = len(block.kept)
         members = change.members[first : first + m]
