@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
+from tests.support.law_rows import law_rows
 
 from jackettwin.errors import InputError
 from jackettwin.response.certified import all_modes
@@ -10,7 +11,7 @@ from jackettwin.response.condensed import Condensed, condense
 from jackettwin.response.modal import damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
 from jackettwin.soil.support import Spring, Support, on_translations, pinned
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, law_rows, maxwell_3, zener
+from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

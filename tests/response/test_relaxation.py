@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.support.law_rows import law_rows
 
 from jackettwin.response.condensed import Condensed, condense
 from jackettwin.response.modal import damped_modes
@@ -9,7 +10,7 @@ from jackettwin.response.numbered import Points
 from jackettwin.response.relaxation import nearest_relaxation
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import on_translations
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, law_rows, maxwell_3, zener
+from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Assembly, Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

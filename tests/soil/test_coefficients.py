@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.support.law_rows import law_rows
 
 from jackettwin.response.condensed_kernels import _law
 from jackettwin.soil.coefficients import law_slope, law_stiffness, static_rows
@@ -13,8 +14,7 @@ LAWS: list[Law] = [
     maxwell_3(3e9, 0.2, 0.18),
     Springpot(2e9, 0.06, 1.1),
 ]
-WIDEST = max(law.row.size for law in LAWS)
-ROWS = np.array([np.pad(law.row, (0, WIDEST - law.row.size)) for law in LAWS])
+ROWS = law_rows(LAWS)
 
 
 def test_rows_hold_the_static_stiffness_of_every_law() -> None:
