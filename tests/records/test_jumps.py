@@ -40,3 +40,14 @@ def test_slope_and_scatter(rng: np.random.Generator) -> None:
     # 1/√(n³/12) for the slope; 1.2/√n for a median absolute deviation
     assert lines(series)[0] == pytest.approx(0.3, abs=0.002)
     assert scatter(series) == pytest.approx(1.0, abs=0.25)
+
+
+def test_a_series_that_jumps_back_for_a_window_tells_nothing():
+    series = np.repeat([[0.0], [1.0]], [4, 8], axis=0)
+    (step,) = steps(series, runs(series, 0.1), 0.1)
+    assert step.rows == (0,)
+    series[8] = 0.0
+    assert steps(series, runs(series, 0.1), 0.1) == []
+    # elsewhere is a window that was misread
+    series[8] = 3.0
+    assert [step.rows for step in steps(series, runs(series, 0.1), 0.1)] == [(0,)]

@@ -74,13 +74,21 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
 
 
 def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[ClockStep]:
-    """Return the steps between runs; a run of one window is the one in which a step lies."""
+    """Return the steps between runs; a run of one window is the one in which a step lies.
+
+    A clock does not jump back for one window: where a series does, two delays explain the phases alike, and
+    none is told.
+    """
     tolerance = _tolerance(series, reach)
     kept = [run for run in between if run[1] - run[0] > 1] or between
+    single = np.array([run[0] for run in between if run not in kept], dtype=np.intp)
     out = []
     for before, after in pairwise(kept):
-        by = np.median(series[slice(*after)], axis=0) - np.median(series[slice(*before)], axis=0)
-        rows = tuple(int(i) for i in np.flatnonzero(np.abs(by) > tolerance))
+        old, new = (np.median(series[slice(*run)], axis=0) for run in (before, after))
+        by = new - old
+        other = np.where(single[:, None] < after[0], new, old)
+        back = (np.abs(series[single] - other) < tolerance).any(axis=0)
+        rows = tuple(int(i) for i in np.flatnonzero((np.abs(by) > tolerance) & ~back))
         if rows:
             out.append(ClockStep(rows, by, before[1], after[0]))
     return out

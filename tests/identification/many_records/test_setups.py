@@ -67,6 +67,35 @@ def test_two_setups_give_the_whole_shape(
     assert fused.warnings == ("not every record has every channel: shapes are tied by z90, z80",)
 
 
+def test_fifteen_setups_of_velocities_beside_two_accelerometers() -> None:
+    """As a scanning vibrometer measures a frame: three moved velocities a setup, two fixed accelerations."""
+    rng = np.random.default_rng(15)
+    f, shapes = np.array([0.6, 1.4, 2.3]), rng.standard_normal((3, 47))
+    system = ModalSystem(f, np.full(3, 0.01), shapes, np.diag(f**-2.0), noise_ratio=0.02)
+    found = []
+    for k in range(15):
+        record = simulate(system, rng, duration_s=300.0, sample_rate_hz=8.0)
+        rows = [0, 1, *range(2 + 3 * k, 5 + 3 * k)]
+        data = record.data[rows]
+        omega = 2j * np.pi * np.fft.rfftfreq(data.shape[1], 1.0 / 8.0)
+        omega[0] = np.inf
+        data[2:] = np.fft.irfft(np.fft.rfft(data[2:], axis=1) / omega, data.shape[1], axis=1)
+        places = [("m/s²", "acceleration")] * 2 + [("m/s", "velocity")] * 3
+        channels = tuple(
+            Channel(f"p{i}", unit=unit, quantity=quantity, node=f"{i}")
+            for i, (unit, quantity) in zip(rows, places, strict=True)
+        )
+        record = replace(record, data=data, channels=channels, name=f"setup {k}")
+        found.append(identify(record, IdentificationSettings(lowest_frequency_hz=0.3, refine=False)))
+    fused = fuse(found)
+    assert [round(mode.frequency_hz, 1) for mode in fused.modes] == [0.6, 1.4, 2.3]
+    at = [int(channel.name[1:]) for channel in fused.channels]
+    assert sorted(at) == list(range(47))
+    for mode, shape in zip(fused.modes, shapes, strict=True):
+        # fifteen parts, each of which carries the error of its two fixed sensors
+        assert mac(mode.mode_shape, shape[at]) > 0.98
+
+
 def test_exact_parts_give_the_exact_shape(rng: np.random.Generator) -> None:
     whole = rng.standard_normal(7) + 1j * rng.standard_normal(7)
     rows = [np.array(r) for r in ((0, 1, 2, 3), (1, 0, 4), (0, 5, 1))]
