@@ -200,6 +200,11 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "no mode of the model has such a shape ({mac:.2f} at most), and the refinement could not confirm it",
     ),
+    "below_model": Kind(
+        "warning",
+        "below the lowest mode of the model, and in its shape (MAC {mac:.2f}): forces that the structure "
+        "follows, as those of waves",
+    ),
     "shape_twice": Kind(
         "warning", "another mode so near has the same shape: one peak told twice, or one that is not a mode's"
     ),

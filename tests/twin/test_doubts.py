@@ -98,3 +98,14 @@ def test_what_the_model_has_not_and_the_refinement_left_is_doubted() -> None:
     assert [reason.code for reason in now[1].reasons] == ["unlike_model"]
     # a record that shows nothing of the model tells nothing against it
     assert unlike_model(found, (unlike,) * 4) is found
+
+
+def test_what_moves_as_the_lowest_mode_far_below_it_follows_forces() -> None:
+    """Swell of 12 s is narrower than seas are: neither its breadth nor its shape tells it."""
+    first, swell, second = (replace(mode_of("ssi-cov"), frequency_hz=f) for f in (0.2, 0.085, 0.5))
+    seen = observation({1: first}, None).identification
+    found = replace(seen, modes=(swell, first, second))
+    paired, alike = Held(0, 0.2, 0.0, 0.99, "paired"), Held(0, 0.2, -0.6, 0.97, "frequency")
+    now = unlike_model(found, (alike, paired, alike)).modes
+    assert [mode.status for mode in now] == ["doubtful", "ok", "ok"]
+    assert [reason.code for reason in now[0].reasons] == ["below_model"]

@@ -18,6 +18,8 @@ from jackettwin.updating.pairing import Held
 
 Findings = tuple[Finding, ...]
 
+BELOW = 0.8
+"""Share of the lowest recognised frequency, below which a record holds no other mode of that shape."""
 UNFIT = ("another_time", "stored_backwards", "clocks_wander", "coarse_quantiser")
 """What is found of a record that makes every mode of it doubtful, unless it was repaired."""
 
@@ -57,16 +59,20 @@ def unlike_model(found: Identification, held: Sequence[Held]) -> Identification:
     """Doubt what no mode of the model resembles and what the refinement left as it was.
 
     Waves and the rotor make peaks between the modes, which subspace methods take for modes. One that the
-    refinement confirmed stays: a model may lack modes, as of blades.
+    refinement confirmed stays: a model may lack modes, as of blades. Below its lowest mode a structure
+    follows forces in the shape of that mode: a second peak of this shape there is of the forces, however
+    narrow.
     """
-    if not any(one.verdict == "paired" for one in held):
+    seen = [m.frequency_hz for m, one in zip(found.modes, held, strict=True) if one.verdict == "paired"]
+    if not seen:
         return found  # nothing of the model is in this record: it tells nothing of what is left
-    modes = [
-        mode.flagged(ModeStatus.DOUBTFUL, Finding("unlike_model", params={"mac": one.mac}))
-        if one.verdict == "shape" and mode.unrefined is None and mode.method != "decay"
-        else mode
-        for mode, one in zip(found.modes, held, strict=True)
-    ]
+    modes = []
+    for mode, one in zip(found.modes, held, strict=True):
+        if one.verdict == "shape" and mode.unrefined is None and mode.method != "decay":
+            mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("unlike_model", params={"mac": one.mac}))
+        elif one.verdict in ("frequency", "taken") and mode.frequency_hz < BELOW * min(seen):
+            mode = mode.flagged(ModeStatus.DOUBTFUL, Finding("below_model", params={"mac": one.mac}))
+        modes.append(mode)
     return replace(found, modes=tuple(modes))
 
 

@@ -11,8 +11,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.selection.screening import contrast
+from jackettwin.identification import IdentificationSettings, ModalEstimate, identify
+from jackettwin.identification.preparation.prepared import prepare
+from jackettwin.identification.selection.screening import (
+    Evidence,
+    contrast,
+    evidence,
+    rescued,
+    screened,
+    worth_keeping,
+)
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record
 
@@ -118,3 +126,43 @@ def test_one_moving_sensor_is_doubted(tower, rng):
     # the others could see it, and show no peak
     assert local.status == "not a mode: local"
     assert {m.status for m in found.modes if abs(m.frequency_hz - 0.7) > 0.1} == {"ok"}
+
+
+@pytest.fixture
+def clear(tower, rng) -> tuple[ModalEstimate, Evidence]:
+    """A mode of the tower at 1.2 Hz that nothing speaks against, and what it is judged by."""
+    record = simulate(tower, rng, sample_rate_hz=10.0)
+    modes = identify(record, IdentificationSettings(refine=False)).modes
+    mode = min(modes, key=lambda m: abs(m.frequency_hz - 1.2))
+    ready = prepare(record, IdentificationSettings(refine=False))
+    return mode, evidence(ready.y, ready, {})
+
+
+def test_a_known_frequency_is_kept_where_the_damping_is_not_known(clear):
+    mode, known = clear
+    assert screened([mode], known)[0].status == "ok"
+    # the logarithm of the damping is known to 1.5: within a factor of nineteen
+    unsure = replace(mode, log_covariance=np.diag([1e-6, 1.5**2]))
+    (judged,) = screened([unsure], known)
+    assert (judged.status, [r.code for r in judged.reasons]) == ("damping unknown", ["damping_unknown"])
+    assert worth_keeping(unsure, [], known)
+    assert rescued(unsure).status == "damping unknown"
+    assert rescued(unsure).frequency_interval_95 == mode.frequency_interval_95
+    # neither where the frequency is not known, nor what is known already, nor what has no peak
+    assert not worth_keeping(replace(unsure, frequency_std_hz=0.05), [], known)
+    assert not worth_keeping(unsure, [mode], known)
+    noise = np.random.default_rng(1).standard_normal((known.lines.shape[0], 6000))
+    assert not worth_keeping(unsure, [], replace(known, lines=np.fft.rfft(noise, axis=1)))
+
+
+def test_one_peak_told_twice_is_doubted(clear):
+    mode, known = clear
+    near = replace(mode, frequency_hz=mode.frequency_hz * 1.004)
+    for judged in screened([mode, near], known):
+        assert "shape_twice" in [reason.code for reason in judged.reasons]
+    # a close mode of another shape is one of a pair, one far away another of the tower's
+    other = replace(near, mode_shape=np.roll(mode.mode_shape, 2) * np.where(np.arange(8) % 2, -1.0, 1.0))
+    far = replace(mode, frequency_hz=mode.frequency_hz * 1.2)
+    for beside in (other, far):
+        judged = screened([mode, beside], known)
+        assert not {"shape_twice"} & {reason.code for one in judged for reason in one.reasons}
