@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 from gallery import schematics
 from jackettwin.arrays import FloatArray
 from jackettwin.report import style
-from jackettwin.soil.viscoelastic import Law, hysteresis
+from jackettwin.soil.viscoelastic import Law
 
 
 def damping_regimes(ratios: Sequence[tuple[str, float]]) -> go.Figure:
@@ -43,7 +43,8 @@ def stress_strain(elastic: Law, lossy: Law, frequency_hz: float) -> go.Figure:
         rows=1, cols=2, subplot_titles=("(a) elastic", "(b) viscoelastic"), horizontal_spacing=0.1
     )
     for col, law in ((1, elastic), (2, lossy)):
-        strain, stress = hysteresis(law, frequency_hz)
+        rotating = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 200))
+        strain, stress = rotating.real, (law.stiffness(2j * np.pi * frequency_hz) * rotating).real
         figure.add_scatter(
             x=strain,
             y=stress,

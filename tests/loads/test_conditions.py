@@ -1,20 +1,6 @@
 """Conditions of a record."""
 
-import pytest
-
-from jackettwin.errors import InputError
-from jackettwin.loads.conditions import Conditions, SeaState
-from jackettwin.loads.wind import Wind
-
-
-def test_states_choose_the_shaft() -> None:
-    assert Conditions().shaft == "locked"
-    assert Conditions(state="idling").shaft == "free"
-    with pytest.raises(InputError, match="parked, idling, operating"):
-        Conditions(state="stuck")
-    with pytest.raises(InputError, match="needs wind"):
-        Conditions(state="operating")
-    assert Conditions(state="operating", wind=Wind(10.0, 150.0)).wind is not None
+from jackettwin.loads.conditions import SeaState
 
 
 def test_a_sea_state_becomes_waves() -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.support.wave_loads import wave_loads
 
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
@@ -12,7 +13,6 @@ from jackettwin.loads.morison import (
     morison_points,
     nodal_loads,
     point_forces,
-    wave_loads,
     wetness,
 )
 from jackettwin.loads.waves import airy_wave

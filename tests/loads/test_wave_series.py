@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.support.wave_loads import wave_loads
 
 from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients
 from jackettwin.loads.current import Current
-from jackettwin.loads.morison import morison_points, wave_loads
+from jackettwin.loads.morison import morison_points
 from jackettwin.loads.wave_series import resultant_columns, wave_series
 from jackettwin.loads.waves import airy_wave, irregular_sea
 from jackettwin.structure import Section, Structure, assemble, read_structure

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy import stats
+from tests.support.sightings import sightings
 
 from jackettwin.identification import fuse
 from jackettwin.identification.estimate import ModalEstimate
 from jackettwin.identification.many_records.fusion import FusedMode
-from jackettwin.identification.many_records.sightings import sightings
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.report.figures_tracks import MOST_POINTS, tracks
 from jackettwin.report.many_page import build_many_page

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.support.wave_loads import wave_loads
 
 from jackettwin.errors import InputError
-from jackettwin.loads import airy_wave, morison_points, wave_loads
+from jackettwin.loads import airy_wave, morison_points
 from jackettwin.response.passage import wave_passage
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations

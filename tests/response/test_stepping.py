@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.signal import cont2discrete
+from tests.support.energy import energy
 
 from jackettwin.errors import InputError
-from jackettwin.response.energy import energy
 from jackettwin.response.sdof import sdof
 from jackettwin.response.system import Pencil
 from jackettwin.response.time import (

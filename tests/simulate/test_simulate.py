@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.support.energy import energy
 
 from jackettwin.errors import InputError
 from jackettwin.records import read_record, write_record
-from jackettwin.response.energy import energy
 from jackettwin.response.time import Hold, first_order_hold, march_with_feedback, state_space
 from jackettwin.simulate import loads_document, read_scenario, simulate
 from jackettwin.simulate.driving import loads_on

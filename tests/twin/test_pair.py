@@ -12,11 +12,11 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from observations import estimate, observation
+from tests.support.sightings import sightings
 
 from jackettwin.errors import InputError
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import average as average_of_sightings
-from jackettwin.identification.many_records.sightings import sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, read_record
 from jackettwin.records.identity import record_id

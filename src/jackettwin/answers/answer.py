@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.answers.fit import fit_answer
 from jackettwin.answers.next_steps import next_steps, records_for
@@ -19,6 +18,7 @@ from jackettwin.answers.result import (
     ModeAnswer,
     Span,
 )
+from jackettwin.arrays import FloatArray
 from jackettwin.soil.families import FAMILIES
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
@@ -26,8 +26,6 @@ from jackettwin.updating import Parameter, Update, law_probability
 from jackettwin.updating.budget import SOURCES
 from jackettwin.updating.identifiability import USABLE
 from jackettwin.updating.law_choice import approximate_probability, recommended
-
-FloatArray = npt.NDArray[np.float64]
 
 PRECISION = 0.2
 """A damping ratio known to ± so much (90 %) tells a design with half a per cent more from one without."""

@@ -11,17 +11,15 @@ from dataclasses import replace
 from math import exp, log, sqrt
 
 import numpy as np
-import numpy.typing as npt
 
 from jackettwin.answers.result import NextStep
+from jackettwin.arrays import FloatArray
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Problem, Update
 from jackettwin.updating.identifiability import USABLE, information
 from jackettwin.updating.nuisance_parameters import DASHPOTS
 from jackettwin.updating.problem import State
 from jackettwin.updating.targets import Residuals, Target
-
-FloatArray = npt.NDArray[np.float64]
 
 _POINTS = 6
 """Draws of the posterior at which the information is computed: their mean is of interest, not their tails."""

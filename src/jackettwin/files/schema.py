@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files.limits import in_words
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def validate(schema: type[S], data: Any, *, file: Path | str | None = None, fiel
         Names the first offending field, its value and what is allowed.
     """
     try:
-        valid = schema.model_validate(data)
+        with located(file=file, field=field):  # what a model itself finds wrong with its fields
+            valid = schema.model_validate(data)
     except ValidationError as error:
         errors = [{**e, "loc": _place(e, schema)} for e in error.errors()]
         first = _most_telling(errors)
@@ -166,9 +167,6 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
         )
     if kind == "missing":
         return InputError("required key is missing", field=field, remedy=f"add {location[-1]!r}")
-    if kind in ("value_error", "assertion_error") and isinstance(context.get("error"), InputError):
-        inner: InputError = context["error"]
-        return inner.at(field=field)
     broken = {key: context[key] for key in _BOUNDS if key in context}
     allowed = _range(schema, location, broken) if broken else context.get("expected")
     problem, remedy = _PLAIN.get(kind, (error["msg"][0].lower() + error["msg"][1:], None))

@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import ComplexArray, FloatArray
-
-if TYPE_CHECKING:
-    FloatArray = FloatArray
-    ComplexArray = ComplexArray
 
 
 def mac(a: npt.ArrayLike, b: npt.ArrayLike) -> FloatArray:

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 from jackettwin.doors import door
 
 if TYPE_CHECKING:
-    from jackettwin.loads.conditions import Conditions as Conditions, SeaState as SeaState
+    from jackettwin.loads.conditions import SeaState as SeaState
     from jackettwin.loads.files import read_rotor as read_rotor
-    from jackettwin.loads.morison import morison_points as morison_points, wave_loads as wave_loads
+    from jackettwin.loads.morison import morison_points as morison_points
     from jackettwin.loads.rotor import linearise as linearise
     from jackettwin.loads.waves import airy_wave as airy_wave
     from jackettwin.loads.wind import Wind as Wind

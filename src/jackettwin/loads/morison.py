@@ -19,9 +19,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.current import Current
 from jackettwin.loads.kernels import morison
-from jackettwin.loads.waves import Waves
 from jackettwin.structure import Assembly, Structure, beam
 from jackettwin.structure.mesh import Mesh
 
@@ -245,27 +243,6 @@ def nodal_loads(grid: MorisonPoints, forces: FloatArray) -> FloatArray:
     """Return loads on the assembly's DOFs (..., n_dof) from forces at the points (..., n, 3)."""
     flat = forces.reshape(-1, grid.points.size)
     return np.asarray((grid.N @ flat.T).T).reshape(*forces.shape[:-2], -1)
-
-
-def wave_loads(
-    grid: MorisonPoints,
-    waves: Waves,
-    t: FloatArray,
-    *,
-    current: Current | None = None,
-    velocity: FloatArray | None = None,
-) -> FloatArray:
-    """Return loads on the assembly's DOFs (n_times, n_dof) [N] of waves and current.
-
-    Linear theory without stretching wets the members up to still water, the other theories up to the
-    surface.
-    """
-    t = np.atleast_1d(np.asarray(t, dtype=np.float64))
-    u, du = waves.motion(grid.points, t)
-    if current is not None:
-        u = u + current.velocity(grid.points[:, 2])
-    forces = point_forces(grid, u, du, velocity=velocity, wet=wetness(grid, waves.surface(grid.points, t)))
-    return nodal_loads(grid, forces)
 
 
 def added_mass(grid: MorisonPoints, *, eta: float = 0.0) -> sp.csr_array:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup
 
+from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report import style
 from jackettwin.report.numbers import fixed, words
 from jackettwin.report.svg import Canvas
@@ -17,8 +18,6 @@ from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Update
 
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 Seen = tuple[tuple[Sensor, ...], ComplexArray]
 
 _WIDTH, _HEIGHT, _HEAD = 160.0, 330.0, 40.0

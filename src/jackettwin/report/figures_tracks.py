@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from jackettwin.arrays import FloatArray
 from jackettwin.identification import FusedMode
 from jackettwin.identification.intervals import TWO_SIDED_95
 from jackettwin.report import style
 from jackettwin.report.numbers import words
-
-FloatArray = npt.NDArray[np.floating[Any]]
 
 MOST_POINTS = 1000
 """More records than these are drawn as medians of neighbours: nobody can tell them apart."""
@@ -57,7 +54,11 @@ def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go
         for col, (value, log_std, scale, (low, high)) in enumerate(sides, start=1):
             reach = np.exp(TWO_SIDED_95 * np.nan_to_num(log_std))
             points = _Points(
-                seen.record + 1.0, scale * value, scale * value / reach, scale * value * reach, names
+                np.asarray(seen.record + 1.0),
+                scale * value,
+                scale * value / reach,
+                scale * value * reach,
+                names,
             )
             _draw(figure, label, _thinned(points), row=row, col=col)
             colour = style.rgba(style.mode_look(label).colour, 0.25)

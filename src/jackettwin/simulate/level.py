@@ -16,14 +16,12 @@ from math import exp, hypot, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from jackettwin.arrays import FloatArray
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import GRID_M, Instrument, Scenario
 from jackettwin.simulate.sensing import readings
-
-FloatArray = npt.NDArray[np.float64]
 
 FIRST, BETWEEN = "first pair", "between first and second pair"
 BANDS = {FIRST: (0.8, 1.2), BETWEEN: (1.7, 3.4)}

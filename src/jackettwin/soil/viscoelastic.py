@@ -308,15 +308,6 @@ def loss_factor(law: Law, frequency_hz: FloatArray | float) -> FloatArray:
     return np.asarray(D.imag / D.real)
 
 
-def hysteresis(
-    law: Law, frequency_hz: float, amplitude: float = 1.0, n: int = 200
-) -> tuple[FloatArray, FloatArray]:
-    """Return one steady loop (displacement [m], force [N]); its area is π Im D · amplitude²."""
-    phase = np.linspace(0.0, 2.0 * pi, n)
-    rotating = amplitude * np.exp(1j * phase)
-    return rotating.real, np.asarray((law.stiffness(2j * pi * frequency_hz) * rotating).real)
-
-
 def prony_fit(law: Springpot, low_hz: float, high_hz: float, per_decade: int = 4) -> Prony:
     r"""Return branches that follow a springpot between two frequencies (a start for exact solvers).
 

@@ -87,10 +87,3 @@ def von_mises_stress(assembly: Assembly, forces: SectionForces) -> FloatArray:
     sigma = np.abs(forces.axial) / A + forces.bending / W
     tau = np.abs(forces.torsion) * R / J + 2.0 * forces.shear / A
     return np.asarray(np.sqrt(sigma**2 + 3.0 * tau**2))
-
-
-def utilisation(
-    stress_pa: FloatArray, *, yield_stress_pa: float = 355e6, partial_factor: float = 1.1
-) -> FloatArray:
-    """Return the share of the design yield stress f_y/γ that is used: no check of buckling or joints."""
-    return np.asarray(stress_pa * partial_factor / yield_stress_pa)

@@ -10,8 +10,6 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, Int64Array
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from jackettwin.identification.estimate import ModalEstimate
 
 
@@ -51,16 +49,3 @@ class Sightings:
 def log_covariance(mode: ModalEstimate) -> FloatArray:
     """Return the covariance (2, 2) of (ln f, ln ζ), NaN where it is not known."""
     return UNKNOWN if mode.log_covariance is None else mode.log_covariance
-
-
-def sightings(modes: Sequence[ModalEstimate], duration_s: Sequence[float]) -> Sightings:
-    """Return one mode seen in records of these lengths, one after the other."""
-    n = np.arange(len(modes), dtype=np.int64)
-    return Sightings(
-        record=n,
-        mode=np.zeros_like(n),
-        frequency_hz=np.array([mode.frequency_hz for mode in modes]),
-        damping_ratio=np.array([mode.damping_ratio for mode in modes]),
-        duration_s=np.asarray(duration_s, dtype=float),
-        log_covariance=np.array([log_covariance(mode) for mode in modes]).reshape(-1, 2, 2),
-    )
