@@ -10,7 +10,6 @@ import numpy as np
 from jackettwin.answers.fit import fit_answer
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import (
-    NORMAL_90,
     Answers,
     Clearance,
     GroundAnswer,
@@ -19,6 +18,7 @@ from jackettwin.answers.result import (
     Span,
 )
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil.families import FAMILIES
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode
@@ -129,9 +129,9 @@ def _model_damping(u: Update, i: int, m: MeasuredMode) -> Span | None:
 
 def _span(draws: FloatArray | None, best: float) -> Span | None:
     """Return the median of draws with its interval, else the best fit; None for a mode there is not."""
-    kept = np.empty(0) if draws is None else draws[~np.isnan(draws)]
-    if kept.size:
-        low, middle, high = map(float, np.quantile(kept, [0.05, 0.5, 0.95]))
+    known = None if draws is None else interval_90(draws)
+    if known is not None:
+        low, middle, high = known
         return Span(middle, low, high)
     return None if np.isnan(best) else Span(best)
 

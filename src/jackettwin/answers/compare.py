@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import hypot, log
 from typing import Any
 
-from jackettwin.answers.result import NORMAL_90
+from jackettwin.intervals import NORMAL_90
 
 CHANGED = 2.0
 """Standard deviations of the difference from which a change is called one: by chance once in twenty."""

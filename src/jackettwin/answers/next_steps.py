@@ -14,6 +14,7 @@ import numpy as np
 
 from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90
 from jackettwin.twin.result import MeasuredMode
 from jackettwin.updating import Problem, Update
 from jackettwin.updating.identifiability import USABLE, information
@@ -226,7 +227,7 @@ def records_for(measured: Sequence[MeasuredMode], records: int, precision: float
     Its standard deviation falls with the root of their number, as the records' scatter does. Only of modes
     that are not known as well already.
     """
-    wanted = precision / 1.645
+    wanted = precision / NORMAL_90
     found = {}
     for m in measured:
         if m.damping_ratio and m.damping_ratio_std and records:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import Literal
 
-NORMAL_90 = 1.6448536269514722
-"""Half a central 90 % interval of a normal, in standard deviations."""
+from jackettwin.intervals import NORMAL_90
+
 LEAST_MODEL_ERROR = 0.01
 """Standard deviation by which a model of beams misses frequencies, where the twin states less."""
 

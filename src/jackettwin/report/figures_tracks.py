@@ -11,7 +11,7 @@ from plotly.subplots import make_subplots
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification import FusedMode
-from jackettwin.identification.intervals import TWO_SIDED_95
+from jackettwin.intervals import NORMAL_95
 from jackettwin.report import style
 from jackettwin.report.numbers import words
 
@@ -52,7 +52,7 @@ def tracks(modes: Sequence[tuple[str, FusedMode]], records: Sequence[str]) -> go
             (seen.damping_ratio, std[:, 1], 100.0, mode.damping_ratio_interval_95),
         )
         for col, (value, log_std, scale, (low, high)) in enumerate(sides, start=1):
-            reach = np.exp(TWO_SIDED_95 * np.nan_to_num(log_std))
+            reach = np.exp(NORMAL_95 * np.nan_to_num(log_std))
             points = _Points(
                 np.asarray(seen.record + 1.0),
                 scale * value,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
+from jackettwin.intervals import NORMAL_95
 from jackettwin.soil.families import FAMILIES
 
 UNKNOWN = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_Z95 = 1.959963984540054
 _WIDE = 0.2
 """Relative width of an interval whose ends two digits tell apart: they step by up to a tenth."""
 
@@ -79,7 +79,7 @@ def scientific(value: float | None, digits: int = 3) -> str:
 
 def log_interval_95(value: float, std: float) -> tuple[float, float]:
     """Return the 95 % interval of a positive number, symmetric in its logarithm."""
-    spread = math.exp(_Z95 * std / value)
+    spread = math.exp(NORMAL_95 * std / value)
     return value / spread, value * spread
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from jackettwin.intervals import interval_90
 from jackettwin.report import figures_posterior as draw
 from jackettwin.report import tables_updating as tables
 from jackettwin.report.numbers import UNKNOWN, fixed, words
@@ -95,8 +96,5 @@ def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> PageTable:
 
 
 def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:
-    kept = draws[~np.isnan(draws)]
-    if kept.size == 0:
-        return UNKNOWN
-    low, high = factor * np.quantile(kept, [0.05, 0.95])
-    return f"{fixed(low, decimals)} – {fixed(high, decimals)}"
+    known = interval_90(factor * draws)
+    return UNKNOWN if known is None else f"{fixed(known[0], decimals)} – {fixed(known[2], decimals)}"

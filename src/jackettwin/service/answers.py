@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 from fastapi import Path
 from sqlalchemy import Connection, select
 
-from jackettwin.answers.result import NORMAL_90
 from jackettwin.errors import InputError
+from jackettwin.intervals import NORMAL_90
 from jackettwin.service import engine
 from jackettwin.service.consequences import twin_folder
 from jackettwin.service.schemas import AlarmOut, ChangeOut, ComparisonOut, FindingOut, ModeOut, Page, TwinOut

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90
 from jackettwin.response.sensors import Sensor
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import GRID_M, Instrument, Scenario
@@ -45,8 +46,6 @@ BESIDE_OPENFAST = {
 """As docs/verification/response_level.md found them over seven OpenFAST records."""
 SPEEDS_M_S = (8.0, 16.0)
 """Mean winds of those records."""
-_NORMAL_90 = 1.645
-"""Half a 90 % interval in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +97,7 @@ def levels(motion: Motion, scenario: Scenario) -> tuple[Level, ...]:
 def expected(rms: float, band: str, direction: str, bandwidth_time: float) -> tuple[float, float]:
     """Return the 90 % interval of OpenFAST's level; both records scatter by ½/√(BT) in their logarithm."""
     ratio = BESIDE_OPENFAST[band, direction]
-    spread = _NORMAL_90 * hypot(ratio.std, sqrt(0.5 / bandwidth_time))
+    spread = NORMAL_90 * hypot(ratio.std, sqrt(0.5 / bandwidth_time))
     middle = log(rms / ratio.mean) if rms > 0.0 else -np.inf
     return exp(middle - spread), exp(middle + spread)
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import plain_picks
 from jackettwin.identification.status import ModeStatus
+from jackettwin.intervals import interval_90
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.held import held_document
 from jackettwin.twin.observation import Observation
@@ -233,11 +232,8 @@ def _named(names: list[str], values: FloatArray) -> dict[str, float]:
 
 def _quantiles(draws: FloatArray) -> dict[str, Any]:
     """Return median and 90 % interval, null where no draw has the mode."""
-    kept = draws[~np.isnan(draws)]
-    if kept.size == 0:
-        return {"median": None, "interval_90": None}
-    low, middle, high = np.quantile(kept, [0.05, 0.5, 0.95])
-    return {"median": float(middle), "interval_90": [float(low), float(high)]}
+    low, middle, high = interval_90(draws) or (None, None, None)
+    return {"median": middle, "interval_90": None if middle is None else [low, high]}
 
 
 def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError, located
+from jackettwin.intervals import NORMAL_95
 
 log = logging.getLogger(__name__)
 NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
@@ -22,8 +23,6 @@ DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_\[(]|$)", re.IGN
 PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
 OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
-TWO_SIDED_95 = 1.959964
-"""Half width of a 95 % interval in standard deviations."""
 _CELL = re.compile(
     r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
     r"\s*(?:(?:±|\+/?-|\()\s*(?P<std>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*\)?\s*(?P<unit2>%|Hz)?)?\s*$"
@@ -127,7 +126,7 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
             allowed=f"a ratio up to {MOST_RATIO}, or a column called damping [%]",
             remedy="write the unit into the name of the column",
         )
-    width = TWO_SIDED_95 if INTERVAL_95.search(column) else 1.0
+    width = NORMAL_95 if INTERVAL_95.search(column) else 1.0
     value = float(match["value"]) * scale
     if key.endswith(("_std", "_std_hz")):
         return {key: value / width}

@@ -16,12 +16,11 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.intervals import NORMAL_90, NORMAL_95
 from jackettwin.updating.descent import descend
 from jackettwin.updating.joint import GROWTH
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.problem import Problem
-
-_Q90, _Q95 = 1.645, 1.960
 
 
 @dataclass(frozen=True)
@@ -55,20 +54,20 @@ class Drift:
     @property
     def interval_90(self) -> tuple[float, float]:
         """Central 90 % interval of the slope."""
-        half = _Q90 * self.std_per_day
+        half = NORMAL_90 * self.std_per_day
         return self.slope_per_day - half, self.slope_per_day + half
 
     @property
     def detected(self) -> bool:
         """Whether the 95 % interval of the slope leaves out zero: one false alarm in twenty."""
-        return abs(self.slope_per_day) > _Q95 * self.std_per_day
+        return abs(self.slope_per_day) > NORMAL_95 * self.std_per_day
 
     def line(self, name: str, days: FloatArray) -> FloatArray:
         """Return a growing parameter at some days, (n_days, 3): median, low and high of 90 %."""
         i = self.names.index(name)
         along = np.zeros((days.size, self.z.size))
         along[:, i], along[:, -1] = 1.0, days
-        half = _Q90 * np.sqrt(np.einsum("ti,ij,tj->t", along, self.covariance, along))
+        half = NORMAL_90 * np.sqrt(np.einsum("ti,ij,tj->t", along, self.covariance, along))
         middle = along @ self.z
         return np.asarray(np.exp(np.stack([middle, middle - half, middle + half], axis=1)))
 

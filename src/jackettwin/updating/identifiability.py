@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.intervals import NORMAL_90
 from jackettwin.updating.misfit import Misfit
 from jackettwin.updating.problem import Found, Problem
 
@@ -19,8 +20,6 @@ factor of √2 either way. Beyond it two foundations that differ as much as desi
 BY_DATA, WEAK = 0.5, 0.8
 """Posterior over prior standard deviation of ln θ up to which the data outweigh a prior three to one in
 precision, and from which they tell nothing."""
-_NORMAL_90 = 2.0 * 1.645
-"""Length of a normal's 90 % interval in standard deviations."""
 _NEAR_BOUND = 0.5
 """An end of the interval nearer to a bound than this times its distance to the median is the bound's."""
 _TRADES = 0.7
@@ -105,7 +104,7 @@ def identifiability(
     if misfit is not None and not misfit.fits:
         deciders = ["misfit" if decider == "data" else decider for decider in deciders]
     before = expected_ratio(problem, problem.prior.draw(_DESIGN_POINTS, np.random.default_rng(seed)))
-    factor_before = np.exp(np.minimum(_NORMAL_90 * before * prior, _LARGEST_LOG))
+    factor_before = np.exp(np.minimum(2.0 * NORMAL_90 * before * prior, _LARGEST_LOG))
     reasons = _reasons(problem, z, ratio, factor, deciders)
     return tuple(
         Verdict(

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.many_records.setups import WEAK_TIE, tie
 from jackettwin.identification.many_records.tracking import Track, TrackedModes, follow
+from jackettwin.intervals import log_interval_95
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Sequence

@@ -10,7 +10,6 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ModalEstimate, Rejected
-from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.status import ModeStatus
@@ -18,6 +17,7 @@ from jackettwin.identification.tones.drifting_tones import tone_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import without_tones
+from jackettwin.intervals import log_interval_95
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from scipy.spatial.distance import squareform
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.estimate import RealPole
-from jackettwin.identification.intervals import log_interval_95
 from jackettwin.identification.mac import aligned, mac, normalised
+from jackettwin.intervals import log_interval_95
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

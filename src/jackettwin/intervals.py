@@ -1,0 +1,44 @@
+"""Central intervals: of a normal distribution, of draws, and on the logarithm of what is positive."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+
+NORMAL_90 = 1.6448536269514722
+"""Half a central 90 % interval of a normal distribution, in standard deviations."""
+NORMAL_95 = 1.959963984540054
+"""Half a central 95 % interval of a normal distribution, in standard deviations."""
+MOST = 50.0
+"""Logarithm beyond which an interval says nothing, and its ends would overflow."""
+
+
+def log_interval_95(value: float, log_std: float) -> tuple[float, float]:
+    """Return the 95 % interval of a positive value whose logarithm has a standard deviation.
+
+    Examples
+    --------
+    >>> low, high = log_interval_95(0.02, 0.1)
+    >>> round(low, 5), round(high, 5)
+    (0.01644, 0.02433)
+    """
+    factor = math.exp(min(NORMAL_95 * float(log_std), MOST))
+    return float(value) / factor, float(value) * factor
+
+
+def interval_90(draws: FloatArray) -> tuple[float, float, float] | None:
+    """Return (5 % quantile, median, 95 % quantile) of draws without those that are NaN; None if all are.
+
+    Examples
+    --------
+    >>> interval_90(np.arange(101.0))
+    (5.0, 50.0, 95.0)
+    """
+    kept = draws[~np.isnan(draws)]
+    if kept.size == 0:
+        return None
+    low, middle, high = map(float, np.quantile(kept, [0.05, 0.5, 0.95]))
+    return low, middle, high
