@@ -1,5 +1,6 @@
 """Drag on relative velocity in time: against Morison's equation at an instant, and the motion it drives."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -129,3 +130,18 @@ def test_given_kinematics_load_as_the_wave_they_were_taken_from(tmp_path: Path, 
 
 def wave_speed(wave) -> float:
     return float(wave.omega[0] / wave.k[0])
+
+
+def test_where_zero_stands_does_not_change_what_the_wind_does(scenario_file) -> None:
+    """Moments are about still water: the same turbine 7 m higher, with its sea, has the same ones."""
+    still = {"speed_m_s": 12.0, "turbulence": "none", "tower_drag": 0.5}
+    time = {"duration_s": 10.0, "step_s": 0.05}
+    scenario = read_scenario(scenario_file(**FEET, wind=still, rotor={"data": "iea15"}, time=time))
+    own = scenario.asset.structure
+    lifted = replace(
+        own,
+        nodes={name: (x, y, z + 7.0) for name, (x, y, z) in own.nodes.items()},
+        sea_level_z_m=own.sea_level_z_m + 7.0,
+    )
+    other = replace(scenario, asset=replace(scenario.asset, structure=lifted))
+    np.testing.assert_allclose(resultants(other)["wind"], resultants(scenario)["wind"], rtol=1e-9, atol=1.0)

@@ -136,3 +136,26 @@ def test_blades_have_the_damping_of_their_own() -> None:
 def test_a_body_lighter_than_its_blades_is_refused() -> None:
     with pytest.raises(InputError, match="does not hold its blades"):
         with_rotor(tower().with_masses((PointMass("top", 1e4),)), rotor(), "top")
+
+
+def test_two_turns_are_one() -> None:
+    start = in_modes()
+    twice, once = turned_nacelle(turned_nacelle(start, 0.5), 0.7), turned_nacelle(start, 1.2)
+    np.testing.assert_allclose([*twice.nodes.values()], [*once.nodes.values()], atol=1e-9)
+    assert abs(once.nodes["top_blades_1"][1]) > 1.0  # beside the tower's axis, or nothing was turned
+
+
+def test_blades_lean_into_the_wind_with_cone_and_tilt() -> None:
+    """Radial parts of three blades cancel: their centre lies up the wind along the shaft, by r sin(cone).
+
+    The wind blows along +x, to the rotor first; the shaft falls by the tilt towards its down-wind end.
+    """
+    tilt, cone = 0.1, 0.07
+    M = rotor_modes(replace(rotor(), tilt=tilt, cone=cone)).rigid
+    z = np.linspace(0.0, LENGTH, 41)
+    # lumped masses at the nodes of equal pieces: their centre is that of the blade
+    back = np.sin(cone) * z.mean()
+    centre = [M[1, 5] / M[0, 0], M[0, 4] / M[0, 0]]
+    np.testing.assert_allclose(
+        centre, [-OVERHANG - back * np.cos(tilt), back * np.sin(tilt)], rtol=1e-9, atol=1e-9
+    )

@@ -65,8 +65,8 @@ class Sea:
     gamma: float | None = None
     spreading: float | None = None
     relative_velocity: str = "linearised"
-    diffraction: bool = False
     """How drag knows the motion of the structure: ``none``, ``linearised`` or ``full``."""
+    diffraction: bool = False
     current: Current | None = None
     ends: EndCoefficients = EndCoefficients()
     elevation: Elevation | None = None

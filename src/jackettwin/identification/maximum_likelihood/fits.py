@@ -1,7 +1,7 @@
 """The fits of the spectral model that are believed: of the whole band if one will do, else of close modes.
 
 What a fit must be: converged, near the spectrum (``lack_of_fit``), and of the modes it started from
-(``straying.py``). First the modes alone are tried over the whole band; then with a background, which the
+(``mode_drift.py``). First the modes alone are tried over the whole band; then with a background, which the
 quasi-static response to waves is, else a mode leaves its peak to stand for it; then the groups that still
 stray, or all of them, in their narrow bands. What no fit describes is left as the subspace method found it.
 """
