@@ -205,6 +205,11 @@ CATALOGUE: dict[str, Kind] = {
         "below the lowest mode of the model, and in its shape (MAC {mac:.2f}): forces that the structure "
         "follows, as those of waves",
     ),
+    "sea_forced": Kind(
+        "warning",
+        "it is no further mode of the model, and {share:.0%} of its shape is how the sea moves the structure "
+        "at that frequency: a peak of the waves",
+    ),
     "shape_twice": Kind(
         "warning", "another mode so near has the same shape: one peak told twice, or one that is not a mode's"
     ),

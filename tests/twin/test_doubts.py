@@ -93,11 +93,11 @@ def test_what_the_model_has_not_and_the_refinement_left_is_doubted() -> None:
     seen = observation({1: plain}, None).identification
     found = replace(seen, modes=(plain, plain, refined, plain))
     held = (paired, unlike, unlike, far)
-    now = unlike_model(found, held).modes
+    now = unlike_model(found, held, (0.0,) * 4).modes
     assert [mode.status for mode in now] == ["ok", "doubtful", "ok", "ok"]
     assert [reason.code for reason in now[1].reasons] == ["unlike_model"]
     # a record that shows nothing of the model tells nothing against it
-    assert unlike_model(found, (unlike,) * 4) is found
+    assert unlike_model(found, (unlike,) * 4, (1.0,) * 4) is found
 
 
 def test_what_moves_as_the_lowest_mode_far_below_it_follows_forces() -> None:
@@ -106,6 +106,16 @@ def test_what_moves_as_the_lowest_mode_far_below_it_follows_forces() -> None:
     seen = observation({1: first}, None).identification
     found = replace(seen, modes=(swell, first, second))
     paired, alike = Held(0, 0.2, 0.0, 0.99, "paired"), Held(0, 0.2, -0.6, 0.97, "frequency")
-    now = unlike_model(found, (alike, paired, alike)).modes
+    now = unlike_model(found, (alike, paired, alike), (0.0,) * 3).modes
     assert [mode.status for mode in now] == ["doubtful", "ok", "ok"]
     assert [reason.code for reason in now[0].reasons] == ["below_model"]
+
+
+def test_what_moves_as_under_waves_is_doubted_even_if_it_was_refined() -> None:
+    """The sea's shape tells: a paired mode and a blade's keep their status."""
+    refined = mode_of("maximum-likelihood", mode_of("ssi-cov"))
+    found = replace(observation({1: refined}, None).identification, modes=(refined,) * 4)
+    paired, taken, unlike = (Held(0, 0.25, 0.0, 0.9, verdict) for verdict in ("paired", "taken", "shape"))
+    now = unlike_model(found, (paired, taken, unlike, unlike), (1.0, 0.98, 0.97, 0.91)).modes
+    assert [mode.status for mode in now] == ["ok", "doubtful", "doubtful", "ok"]
+    assert [reason.code for reason in now[1].reasons] == ["sea_forced"]

@@ -14,6 +14,7 @@ from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.operation import UNKNOWN
+from jackettwin.twin.sea_forced import sea_share
 from jackettwin.twin.sensor_polarity import sensor_polarity
 from jackettwin.updating.pairing import Held, held_against, pair
 from jackettwin.updating.softer_feet import Feet
@@ -70,9 +71,11 @@ def observed(record: Record, seen: Examination, model: TwinModel) -> Observation
         If a sensor sits where the structure has no place.
     """
     found = seen.identification
-    known = _known(seen, model, model.likest_feet(seen))
-    if model.identification.refine and known.held:
-        found = unlike_model(found, known.held)
+    feet = model.likest_feet(seen)
+    known = _known(seen, model, feet)
+    if model.identification.refine and known.held and feet is not None:
+        sea = sea_share(found.modes, model.structure, model.sees(seen), feet)
+        found = unlike_model(found, known.held, sea)
     said = {str(f) for f in (*seen.findings, *found.findings)}
     others = (Finding("identification", params={"text": t}) for t in found.warnings if t not in said)
     return Observation(
