@@ -49,7 +49,7 @@ def test_forces_and_lengths_are_shown() -> None:
     [
         (["--force", "tower_top"], "not NODE=FX,FY,FZ"),
         (["--force", "tower_tip=1,2,3"], "no such node"),
-        (["--force", "tower_top=1,2"], "3 or 6 components"),
+        (["--force", "tower_top=1,2"], "3 or 6 numbers"),
         (["--support", "kelvin-voigt:k=0,c=1e6"], "cannot stand on its support"),
     ],
 )

@@ -9,7 +9,7 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.cli.console import fixed, output, print_json
+from jackettwin.cli.console import fixed, numbers_of, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
@@ -157,12 +157,7 @@ def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
         If the text is not that.
     """
     node, _, numbers = text.partition("=")
-    try:
-        return node, tuple(float(part) for part in numbers.split(","))
-    except ValueError:
-        raise InputError(
-            "not NODE=FX,FY,FZ", field="--force", value=text, remedy="write e.g. tower_top=2e6,0,0"
-        ) from None
+    return node, numbers_of(numbers, "--force", "NODE=FX,FY,FZ[,MX,MY,MZ]", (3, 6), given=text)
 
 
 def _row(use: MemberUse) -> dict[str, Any]:

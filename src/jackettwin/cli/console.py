@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from math import isfinite
 from threading import Event, Thread
 from typing import Any
 
@@ -204,3 +205,29 @@ def fixed(value: float, decimals: int) -> str:
     '0.00'
     """
     return f"{round(value, decimals) + 0.0:,.{decimals}f}"
+
+
+def numbers_of(
+    text: str, option: str, form: str, counts: tuple[int, ...], *, given: str | None = None
+) -> tuple[float, ...]:
+    """Return the numbers of an option that takes some, joined by commas.
+
+    Parameters
+    ----------
+    form : as the help text writes them, e.g. ``X,Y,Z``
+    counts : how many there may be
+    given : what the user wrote, if the numbers are only a part of it
+
+    Raises
+    ------
+    InputError
+        If they are not finite numbers, or too few or too many.
+    """
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) not in counts or not all(map(isfinite, values)):
+        allowed = f"{' or '.join(map(str, counts))} numbers joined by commas"
+        raise InputError(f"not {form}", field=option, value=given or text, allowed=allowed)
+    return values

@@ -23,7 +23,7 @@ from jackettwin.records.readers.zones import read_zone
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
 from jackettwin.twin import examine_file, observation_document
-from jackettwin.twin.export import WRITERS, export_modes
+from jackettwin.twin.export import WRITERS, export_modes, group_name
 from jackettwin.twin.kept import KeptInFolder
 from jackettwin.twin.long_records import LONG, PIECE_S, without_long
 from jackettwin.twin.many import observe_many
@@ -295,13 +295,7 @@ def _print_many(document: Mapping[str, Any]) -> None:
     _print_fused(f"{n} records fused, {document['duration_s'] / 3600:.3g} h", document["modes"], n)
     groups = document["groups"]
     for group in groups if len(groups) > 1 else ():
-        wind, yaw, state = group["wind_speed_m_s"], group["yaw_deg"], group["state"]
-        title = ", ".join(
-            ([] if wind is None else [f"wind {wind[0]:g}–{wind[1]:g} m/s"])
-            + ([] if yaw is None else [f"yaw {yaw[0]:g}–{yaw[1]:g}°"])
-            + ([state] if state else [])
-        )
-        _print_fused(title or "conditions not known", group["modes"], len(group["records"]))
+        _print_fused(group_name(group), group["modes"], len(group["records"]))
     failed = document["failed"]
     for one in failed[:_SHOWN]:
         output.print(f"failed: {one['record']}: {one['problem']}", soft_wrap=True)

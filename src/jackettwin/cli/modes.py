@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from math import pi, radians
 from typing import Any
@@ -12,8 +11,8 @@ import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
-from jackettwin.cli.console import fixed, output, print_json
-from jackettwin.errors import InputError, located
+from jackettwin.cli.console import fixed, numbers_of, output, print_json
+from jackettwin.errors import located
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
@@ -93,12 +92,7 @@ def blades_option(text: str | None, structure: Structure) -> Structure:
     if text is None:
         return structure
     source, _, pitch = text.partition(",")
-    try:
-        angle = float(pitch or 90.0)
-    except ValueError:
-        raise InputError(
-            "not ROTOR,PITCH", field="--blades", value=text, remedy="write e.g. iea15,90"
-        ) from None
+    (angle,) = numbers_of(pitch or "90", "--blades", "ROTOR,PITCH", (1,), given=text)
     with located(field="--blades"):
         rotor = replace(read_flexible_rotor(source), pitch=radians(angle))
         return with_rotor(without_rotor(structure), rotor, structure.top_node)
@@ -129,14 +123,7 @@ def rayleigh_option(text: str | None) -> Rayleigh:
     """
     if text is None:
         return Rayleigh()
-    match = re.fullmatch(r"([^,]+),([^,]+)", text)
-    try:
-        zeta, f = (float(part) for part in match.groups()) if match else (np.nan, np.nan)
-    except ValueError:
-        zeta = f = np.nan
-    if not np.isfinite([zeta, f]).all():
-        raise InputError("not ZETA,F_HZ", field="--rayleigh", value=text, remedy="write e.g. 0.01,0.183")
-    return Rayleigh.minimum(zeta, f)
+    return Rayleigh.minimum(*numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2,)))
 
 
 def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:

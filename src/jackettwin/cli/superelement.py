@@ -10,7 +10,7 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.console import messages, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
 from jackettwin.response.extptfm_layouts import DEFAULT, LAYOUTS, Layout
@@ -190,13 +190,8 @@ def _report(document: dict[str, Any], as_json: bool) -> None:
 def _point(text: str | None) -> Vector | None:
     if text is None:
         return None
-    try:
-        x, y, z = (float(part) for part in text.split(","))
-    except ValueError:
-        x = y = z = np.nan
-    if not np.isfinite([x, y, z]).all():
-        raise InputError("not X,Y,Z", field="--reference", value=text, remedy="write e.g. 0,0,28")
-    return (x, y, z)
+    x, y, z = numbers_of(text, "--reference", "X,Y,Z", (3,))
+    return x, y, z
 
 
 def _matrices(element: Superelement, fixed_hz: FloatArray) -> dict[str, Any]:

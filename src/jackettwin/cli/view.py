@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
-from jackettwin.cli.console import output, print_json
+from jackettwin.cli.console import numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError, located
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
@@ -106,7 +106,7 @@ def view_command(
     motions = _modes(assembly, system, number)
     sensors: tuple[Sensor, ...] = ()
     if wave is not None:
-        H, T, *heading = _numbers(wave, "--wave", (2, 3))
+        H, T, *heading = numbers_of(wave, "--wave", "H,T[,HEADING]", (2, 3))
         with located(field="--wave"):
             passage = wave_passage(
                 system,
@@ -186,24 +186,9 @@ def _footprint(points: npt.NDArray[np.float64]) -> str:
 
 
 def _band(text: str) -> GrowthBand:
-    numbers = _numbers(text, "--growth", (3,))
+    numbers = numbers_of(text, "--growth", "TOP,BOTTOM,THICKNESS", (3,))
     with located(field="--growth"):
         return GrowthBand(*numbers)
-
-
-def _numbers(text: str, option: str, counts: tuple[int, ...]) -> tuple[float, ...]:
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        values = ()
-    if len(values) not in counts or not np.isfinite(values).all():
-        raise InputError(
-            "not numbers joined by commas",
-            field=option,
-            value=text,
-            allowed=f"{' or '.join(map(str, counts))} of them",
-        )
-    return values
 
 
 def _require_parts(assembly: Assembly, names: tuple[str, ...]) -> None:

@@ -66,7 +66,7 @@ def mode_rows(document: Mapping[str, Any]) -> Iterator[Row]:
         return
     yield from _rows("fused", document["modes"])
     for group in document["groups"]:
-        yield from _rows(_group_name(group), group["modes"])
+        yield from _rows(group_name(group), group["modes"])
     for record in document["records"]:
         yield from _rows(", ".join(record["records"]), record["modes"])
 
@@ -82,7 +82,8 @@ def _rows(name: str, modes: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
         yield {**row, "mode_shape": mode["mode_shape"]}
 
 
-def _group_name(group: Mapping[str, Any]) -> str:
+def group_name(group: Mapping[str, Any]) -> str:
+    """Return a group of records by its conditions."""
     wind, yaw = group["wind_speed_m_s"], group["yaw_deg"]
     parts = [
         "" if wind is None else f"wind {wind[0]:g} to {wind[1]:g} m/s",
