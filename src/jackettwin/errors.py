@@ -101,6 +101,24 @@ def located(*, file: Path | str | None = None, field: str | None = None) -> Iter
         raise error.at(file=file, field=field) from None
 
 
+def require_between(field: str, value: float, low: float, high: float, unit: str = "") -> None:
+    """Refuse a number outside a closed range, and one that is none.
+
+    Raises
+    ------
+    InputError
+        Names field, value, range and unit.
+    """
+    if not low <= value <= high:
+        raise InputError(
+            "out of range",
+            field=field,
+            value=value,
+            allowed=f"{low:g} to {high:g} {unit}".rstrip(),
+            remedy="check the number and its unit",
+        )
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
     """Return a remedy sentence naming the closest known word, or None."""
     match = get_close_matches(word, list(known), n=1, cutoff=0.6)

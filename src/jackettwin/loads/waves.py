@@ -16,7 +16,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.axes import GRAVITY_M_S2
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require_between
 
 STRETCHING = ("none", "vertical", "extrapolated", "wheeler")
 
@@ -67,9 +67,9 @@ def jonswap(frequency_hz: FloatArray, *, Hs: float, Tp: float, gamma: float | No
     γ is the standard's for Tp/√Hs.
     """
     gamma = peak_factor(Hs, Tp) if gamma is None else gamma
-    _check("Hs", Hs, 0.0, 40.0)
-    _check("Tp", Tp, 1.0, 40.0)
-    _check("gamma", gamma, 1.0, 10.0)
+    require_between("Hs", Hs, 0.0, 40.0)
+    require_between("Tp", Tp, 1.0, 40.0)
+    require_between("gamma", gamma, 1.0, 10.0)
     f, fp = np.asarray(frequency_hz, dtype=np.float64), 1.0 / Tp
     positive = np.maximum(f, 1e-6)
     sigma = np.where(f <= fp, 0.07, 0.09)
@@ -108,7 +108,7 @@ class AirySea:
     stretching: str = "wheeler"
 
     def __post_init__(self) -> None:
-        _check("depth", self.depth, 0.1, 12e3)
+        require_between("depth", self.depth, 0.1, 12e3)
         if self.stretching not in STRETCHING:
             raise InputError(
                 "unknown stretching",
@@ -209,8 +209,8 @@ def airy_wave(
     stretching: str = "none",
 ) -> AirySea:  # fmt: skip
     """Return one regular wave of ``height`` [m] and ``period`` [s] towards ``direction`` [rad] from +x."""
-    _check("height", height, 0.0, 0.8 * depth)
-    _check("period", period, 0.5, 60.0)
+    require_between("height", height, 0.0, 0.8 * depth)
+    require_between("period", period, 0.5, 60.0)
     one = np.ones(1)
     return AirySea(
         0.5 * height * one, 2.0 * np.pi / period * one, direction * one, phase * one, depth, stretching
@@ -264,14 +264,3 @@ def _headings(rng: np.random.Generator, s: float, n: int) -> FloatArray:
     beta = np.linspace(-np.pi, np.pi, 4001)
     cumulative = np.cumsum(np.cos(0.5 * beta) ** (2.0 * s))
     return np.interp(rng.uniform(size=n), cumulative / cumulative[-1], beta)
-
-
-def _check(field: str, value: float, low: float, high: float) -> None:
-    if not (np.isfinite(value) and low <= value <= high):
-        raise InputError(
-            "out of range",
-            field=field,
-            value=value,
-            allowed=f"{low:g} to {high:g}",
-            remedy="check the number and its unit",
-        )

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import InputError, did_you_mean, require_between
 from jackettwin.structure import beam
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.forces import tube_radius
@@ -179,13 +179,7 @@ def _on_member(assembly: Assembly, sensor: Sensor) -> tuple[int, float]:
             value=sensor.member,
             remedy=did_you_mean(str(sensor.member), names) or "name a member of the structure",
         )
-    if not 0.0 <= sensor.position <= 1.0:
-        raise InputError(
-            "out of range",
-            field=f"sensors.{sensor.channel}.position",
-            value=sensor.position,
-            allowed="0 to 1",
-        )
+    require_between(f"sensors.{sensor.channel}.position", sensor.position, 0.0, 1.0)
     elements = np.flatnonzero(assembly.mesh.member == names.index(sensor.member))
     pieces = sensor.position * elements.size
     k = min(int(pieces), elements.size - 1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require_between
 from jackettwin.soil.scour import NO_SCOUR, Scour
 
 _SAND_AT_MOST = {"beta": 10.0, "limit_friction_pa": 1e7, "bearing_factor": 1e4, "limit_bearing_pa": 1e9}
@@ -166,12 +166,5 @@ def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> fl
 
 
 def _check(field: str, value: float, low: float, high: float) -> None:
-    if not (np.isfinite(value) and low <= value <= high):
-        unit = next((unit for suffix, unit in _UNITS.items() if field.endswith(suffix)), None)
-        raise InputError(
-            "out of range",
-            field=field,
-            value=value,
-            allowed=f"{low:g} to {high:g}" + (f" {unit}" if unit else ""),
-            remedy="check the number and its unit",
-        )
+    unit = next((unit for suffix, unit in _UNITS.items() if field.endswith(suffix)), "")
+    require_between(field, value, low, high, unit)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from jackettwin.errors import InputError
+from jackettwin.errors import require_between
 
 _AT_MOST = 300.0
 """Metres, or pile diameters."""
@@ -27,15 +25,7 @@ class Scour:
 
     def __post_init__(self) -> None:
         for field in ("general_m", "local_m", "recovery_diameters"):
-            value = getattr(self, field)
-            if not (np.isfinite(value) and 0.0 <= value <= _AT_MOST):
-                raise InputError(
-                    "out of range",
-                    field=f"scour.{field}",
-                    value=value,
-                    allowed=f"0 to {_AT_MOST:g}",
-                    remedy="check the number and its unit",
-                )
+            require_between(f"scour.{field}", getattr(self, field), 0.0, _AT_MOST)
 
     @property
     def total_m(self) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.errors import InputError, did_you_mean, located, require_between
 from jackettwin.structure.two_node import TwoNodeElement
 
 if TYPE_CHECKING:
@@ -19,17 +19,6 @@ Vector = tuple[float, float, float]
 _LONGEST_M = 5e3
 """No member of a structure is longer; one given in millimetres is."""
 Inertia = tuple[float, float, float, float, float, float]
-
-
-def _require_between(field: str, value: float, low: float, high: float) -> None:
-    if not low <= value <= high:
-        raise InputError(
-            "out of range",
-            field=field,
-            value=value,
-            allowed=f"{low:g} to {high:g}",
-            remedy="check the number and its unit",
-        )
 
 
 @dataclass(frozen=True)
@@ -42,9 +31,9 @@ class Material:
 
     def __post_init__(self) -> None:
         # generous bounds: they only keep typing errors and overflow out
-        _require_between("youngs_modulus_pa", self.youngs_modulus_pa, 1e3, 1e18)
-        _require_between("shear_modulus_pa", self.shear_modulus_pa, 1e3, 1e18)
-        _require_between("density_kg_m3", self.density_kg_m3, 0.0, 1e8)
+        require_between("youngs_modulus_pa", self.youngs_modulus_pa, 1e3, 1e18)
+        require_between("shear_modulus_pa", self.shear_modulus_pa, 1e3, 1e18)
+        require_between("density_kg_m3", self.density_kg_m3, 0.0, 1e8)
 
     @classmethod
     def isotropic(cls, *, youngs_modulus_pa: float, poisson_ratio: float, density_kg_m3: float) -> Material:
@@ -69,7 +58,7 @@ class Section:
     thickness_m: float
 
     def __post_init__(self) -> None:
-        _require_between("outer_diameter_m", self.outer_diameter_m, 1e-4, 1e3)
+        require_between("outer_diameter_m", self.outer_diameter_m, 1e-4, 1e3)
         if not 0.0 < self.thickness_m <= 0.5 * self.outer_diameter_m:
             raise InputError(
                 "thickness must be positive and at most the radius",
@@ -114,9 +103,9 @@ class PointMass:
     part: str = ""
 
     def __post_init__(self) -> None:
-        _require_between("mass_kg", self.mass_kg, 0.0, 1e12)
+        require_between("mass_kg", self.mass_kg, 0.0, 1e12)
         for value in self.cg_offset_m:
-            _require_between("cg_offset_m", value, -1e4, 1e4)
+            require_between("cg_offset_m", value, -1e4, 1e4)
         inertia = self.inertia_kg_m2
         if not np.isfinite(inertia).all() or np.linalg.eigvalsh(self.inertia_tensor).min() < -1e-6 * max(
             np.abs(inertia)
@@ -188,7 +177,7 @@ class Structure:
         for name, point in self.nodes.items():
             for value in point:
                 with located(field=f"nodes.{name}"):
-                    _require_between("coordinate", value, -1e6, 1e6)
+                    require_between("coordinate", value, -1e6, 1e6)
         self._check_members()
         for kind, names in (
             ("masses", [m.node for m in self.masses]),
