@@ -1,7 +1,7 @@
 """What a change was: causes planted in two jackets, told apart by the modes' changes.
 
 Usage: python qualify/diagnosis.py [draws a cause and size] [first seed]
-       python qualify/diagnosis.py chain FOLDER
+       python qualify/diagnosis.py chain FOLDER [standing jackets of each kind]
 
 The truth is another jacket than the model's: the stiffness of every foot, the ground's loss and what the
 model misses are drawn, and a cause is solved anew at its size. What the watch knows of the change is drawn
@@ -183,7 +183,7 @@ def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
 
 # the whole chain
 
-SEEDS, TRUTHS, SEASONS = 6, 2, 2
+SEEDS, SEASONS = 6, 4
 BEGUN, LONGEST = 395.0, 120.0
 """Day of the change, after a year of baseline, and for how long an alarm is waited for."""
 CLOCK, NOISE, NOISY_DAYS = 1e-3, 1.0, 10.0
@@ -237,11 +237,13 @@ def changed_pools(
         )  # fmt: skip
 
 
-def chained(pieces: Pieces, jacket: str, structure: Structure, source: str, where: Path) -> list[Case]:
+def chained(
+    pieces: Pieces, jacket: str, structure: Structure, source: str, where: Path, truths: int
+) -> list[Case]:
     """Return what became of every cause and size in one jacket, through the whole chain."""
     made = bench(structure, source, where)
     out: list[Case] = []
-    for number in range(TRUTHS):
+    for number in range(truths):
         standing = truth(structure, np.random.default_rng((32, len(jacket), number)))
         name = f"{jacket}/{number}"
         before = pieces.of(
@@ -338,7 +340,8 @@ def main() -> None:
         if chain:
             pieces = Pieces(Path(sys.argv[2]))
             sources = dict(zip(stand, ("jacket15", str(where / "three_legs.yaml")), strict=True))
-            found = [c for j, s in stand.items() for c in chained(pieces, j, s, sources[j], where)]
+            truths = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+            found = [c for j, s in stand.items() for c in chained(pieces, j, s, sources[j], where, truths)]
             json.dump(found, (Path(sys.argv[2]) / "cases.json").open("w"))
         else:
             draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 
 import numpy as np
 import pytest
 from observations import BEGUN, seen
 
 from jackettwin.twin import Observation, TwinModel, TwinState, advance_all
+from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.judge import JUDGED, Judged, judge
 
 MODEL = TwinModel("asset")
+SIXTY = WatchSettings(baseline_days=60)
 CHANGED = seen(100, step=-0.008)
 
 
@@ -22,7 +24,7 @@ def state_of(observations: list[Observation]) -> TwinState:
 
 @pytest.fixture(scope="module")
 def judged() -> Judged:
-    return judge(MODEL, state_of(CHANGED), baseline_days=60)[0]
+    return judge(MODEL, state_of(CHANGED), settings=SIXTY)[0]
 
 
 def test_levels_and_temperatures_are_kept_with_their_days() -> None:
@@ -31,7 +33,7 @@ def test_levels_and_temperatures_are_kept_with_their_days() -> None:
 
 
 def test_nothing_is_said_before_a_baseline_is_whole() -> None:
-    kept, (finding,) = judge(MODEL, state_of(CHANGED[:100]), baseline_days=60)
+    kept, (finding,) = judge(MODEL, state_of(CHANGED[:100]), settings=SIXTY)
     assert finding.code == "watch_learning" and kept.watch is None
     assert "24 of 60 days" in str(finding)
 
@@ -41,17 +43,17 @@ def test_a_change_is_an_alarm_and_quiet_days_are_none(judged: Judged) -> None:
     assert alarm["kind"] == "frequency" and alarm["size"] == pytest.approx(-0.008, abs=0.002)
     low, high = alarm["began_interval_90"]
     assert low <= (datetime(2025, 1, 1, tzinfo=UTC) + timedelta(days=BEGUN)).isoformat() <= high
-    assert judge(MODEL, state_of(seen(100)), baseline_days=60)[0].alarms == ()
+    assert judge(MODEL, state_of(seen(100)), settings=SIXTY)[0].alarms == ()
 
 
 def test_an_alarm_is_said_once_and_says_what_changed() -> None:
     until = [o for o in CHANGED if o.start_utc and o.start_utc < datetime(2025, 3, 10, tzinfo=UTC)]
-    kept, found = judge(MODEL, state_of(until), baseline_days=60)
+    kept, found = judge(MODEL, state_of(until), settings=SIXTY)
     assert [f.code for f in found] == ["watch_begins"]
-    kept, found = judge(MODEL, state_of(CHANGED), kept, baseline_days=60)
+    kept, found = judge(MODEL, state_of(CHANGED), kept, settings=SIXTY)
     assert [(f.code, f.severity) for f in found] == [("structure_changed", "alarm")]
     assert "began 2025-03-1" in str(found[0])
-    assert judge(MODEL, state_of(CHANGED), kept, baseline_days=60)[1] == ()
+    assert judge(MODEL, state_of(CHANGED), kept, settings=SIXTY)[1] == ()
 
 
 def test_order_pieces_and_the_disk_make_no_difference(judged: Judged) -> None:
@@ -61,10 +63,10 @@ def test_order_pieces_and_the_disk_make_no_difference(judged: Judged) -> None:
     late = some[:7]
     state = state_of(some[7:])
     for last in ("2025-03-05", "2025-03-20"):
-        kept, _ = judge(MODEL, state.until(last), kept, baseline_days=60)
+        kept, _ = judge(MODEL, state.until(last), kept, settings=SIXTY)
         kept = JUDGED.load(json.loads(json.dumps(JUDGED.dump(kept))))
     state, _ = advance_all(state, late)
-    kept, _ = judge(MODEL, state, kept, baseline_days=60)
+    kept, _ = judge(MODEL, state, kept, settings=SIXTY)
     assert json.dumps(JUDGED.dump(kept)) == json.dumps(JUDGED.dump(judged))
 
 
@@ -72,6 +74,15 @@ def test_what_is_kept_does_not_grow() -> None:
     """A judgement of two quantities of each of two modes is some hundred kilobytes, however many days."""
     sizes = []
     for days in (100, 130):
-        kept, _ = judge(MODEL, state_of(seen(days)), baseline_days=60)
+        kept, _ = judge(MODEL, state_of(seen(days)), settings=SIXTY)
         sizes.append(len(json.dumps(JUDGED.dump(kept))))
     assert sizes[1] < 1.05 * sizes[0] < 1.5e6
+
+
+def test_a_baseline_is_learnt_anew_on_a_persons_word(judged: Judged) -> None:
+    """From the day of the change on what changed is the baseline: nothing changes after it."""
+    anew = WatchSettings(baseline_days=30, relearn=date(2025, 1, 2) + timedelta(days=BEGUN))
+    state = state_of(seen(130, step=-0.008))
+    kept, _ = judge(MODEL, state, judged, anew)
+    assert judged.alarms and not kept.alarms and kept.relearn == "2025-03-18"
+    assert json.dumps(JUDGED.dump(kept)) == json.dumps(JUDGED.dump(judge(MODEL, state, None, anew)[0]))

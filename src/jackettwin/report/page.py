@@ -51,6 +51,8 @@ class Plot:
     figure: go.Figure
     big: bool = False
     """Drawn on request only."""
+    fits: bool = False
+    """Drawn as narrow as the screen is; others are moved sideways on a small one."""
     kind: Literal["plot"] = "plot"
 
     @property

@@ -39,7 +39,9 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
             "What conditions do not explain of each frequency, day by day. Grey: where nine days of ten "
             "lie if nothing has changed. Orange: when the change began, 90 %; red: the alarm, and its size."
         )
-        outcome.append(Plot("unexplained_through_time", caption, unexplained_through_time(watched)))
+        outcome.append(
+            Plot("unexplained_through_time", caption, unexplained_through_time(watched), fits=True)
+        )
     sections.append(PageSection("Has it changed?", tuple(outcome)))
     sections += [
         PageSection(
@@ -53,11 +55,16 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
             f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
         )
         sections.append(
-            PageSection("Evidence", (Plot("evidence_through_time", caption, evidence_through_time(watched)),))
+            PageSection(
+                "Evidence",
+                (Plot("evidence_through_time", caption, evidence_through_time(watched), fits=True),),
+            )
         )
     caption = "What explains how much of the variance of each quantity over the baseline."
     sections.append(
-        PageSection("What moves the modes", (Plot("explained_shares", caption, explained_shares(watched)),))
+        PageSection(
+            "What moves the modes", (Plot("explained_shares", caption, explained_shares(watched), fits=True),)
+        )
     )
     if watched.limits:
         sections.append(PageSection("Limits", (Text(watched.limits, "list"),)))
@@ -73,11 +80,11 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     document = alarm_document(watched.watch, watched.table.time, alarm)
     rows = []
     for cause in document["causes"]:
-        size = "–" if np.isnan(cause["size"]) else _size(cause)
-        rows.append((cause["cause"], f"{100.0 * cause['probability']:.1f}", size))
-    caption = "Causes, after the data of the change; sizes with 90 % intervals."
+        size = ("–", "–") if np.isnan(cause["size"]) else _size(cause)
+        rows.append((cause["cause"], f"{100.0 * cause['probability']:.1f}", *size))
+    caption = "Causes, after the data of the change."
     blocks: list[Block] = [
-        PageTable(caption, ("cause", "probability [%]", "size"), tuple(rows)),
+        PageTable(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
         Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm)),
     ]
     if document["inseparable"]:
@@ -88,8 +95,9 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     return blocks
 
 
-def _size(cause: dict[str, Any]) -> str:
+def _size(cause: dict[str, Any]) -> tuple[str, str]:
+    """Return size and interval in words."""
     low, high = cause["interval_90"]
     if cause["unit"] == "-":
-        return f"{100.0 * cause['size']:+.2f} % ({100.0 * low:+.2f} to {100.0 * high:+.2f})"
-    return f"{cause['size']:.3g} {cause['unit']} ({low:.3g} to {high:.3g})"
+        return f"{100.0 * cause['size']:+.2f} %", f"{100.0 * low:+.2f} to {100.0 * high:+.2f} %"
+    return f"{cause['size']:.3g} {cause['unit']}", f"{low:.3g} to {high:.3g}"

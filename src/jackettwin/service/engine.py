@@ -271,9 +271,8 @@ def watched(
     kept : mapping or None
         What an earlier call returned; it only saves time.
     """
-    promise = {"baseline_days": twin.config.watch.baseline_days, "arl_years": twin.config.watch.arl_years}
     last = max(state.days)
-    judged, new = judge(twin.model, state, JUDGED.load(kept) if kept else None, **promise)
+    judged, new = judge(twin.model, state, JUDGED.load(kept) if kept else None, twin.config.watch)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
     return JUDGED.dump(judged), tuple(_finding(f) | {"time_utc": at, "day": at[:10]} for at, f in said)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import date
 from math import hypot
 from pathlib import Path
 from typing import Annotated, Literal
@@ -130,6 +131,8 @@ class WatchSettings(Schema):
     """Days from the first record that tell what is normal; a year has a round of seasons."""
     arl_years: Annotated[float, Field(ge=0.1, le=1000.0)] = 10.0
     """A false alarm once in so many years, or more rarely, of all quantities together."""
+    relearn: date | None = None
+    """First day of a new baseline, on a person's word: after a repair, a change, an adopted model."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ class Judged:
 
     Attributes
     ----------
-    baseline_days, arl_years : the promise it was made with
+    baseline_days, arl_years, relearn : the promise it was made with
     baseline, judged : fingerprints of the records of the baseline, and of the days after it up to
         ``through``
     through : the last day that was judged; empty before the first one
@@ -52,6 +52,12 @@ class Judged:
     learnt: Watch | None = None
     watch: Watch | None = None
     alarms: tuple[Mapping[str, Any], ...] = ()
+    relearn: str = UNDATED
+
+    @property
+    def promise(self) -> tuple[float, float, str]:
+        """What must not differ if it is to go on."""
+        return self.baseline_days, self.arl_years, self.relearn
 
 
 JUDGED = StoredSchema("twin_judged", Judged)
@@ -62,9 +68,7 @@ def judge(
     model: TwinModel,
     state: TwinState,
     kept: Judged | None = None,
-    *,
-    baseline_days: float = _USUAL.baseline_days,
-    arl_years: float = _USUAL.arl_years,
+    settings: WatchSettings = _USUAL,
 ) -> tuple[Judged, tuple[Finding, ...]]:
     """Return what the days of a state say of a change, and what is worth saying that was not said before.
 
@@ -73,26 +77,27 @@ def judge(
     Parameters
     ----------
     kept : what an earlier call returned; any of the same promise, it need not be of the same days
+    settings : the promise; days before ``settings.relearn`` are left out
     """
-    kept = kept or Judged(baseline_days, arl_years)
-    dates = [d for d in state.days if d != UNDATED][:-1]
+    first = settings.relearn.isoformat() if settings.relearn else UNDATED
+    fresh = Judged(settings.baseline_days, settings.arl_years, relearn=first)
+    kept = kept or fresh
+    dates = [d for d in state.days if d != UNDATED and d >= first][:-1]
     if not dates:
-        return kept, ()
-    end = (date.fromisoformat(dates[0]) + timedelta(days=baseline_days)).isoformat()
+        return fresh if kept.promise != fresh.promise else kept, ()
+    end = (date.fromisoformat(dates[0]) + timedelta(days=settings.baseline_days)).isoformat()
     before, after = [d for d in dates if d < end], [d for d in dates if d >= end]
     if not after or len(before) < FEWEST_DAYS:
         days = float(_number(dates[-1]) - _number(dates[0]) + 1)
-        return Judged(baseline_days, arl_years), (
-            Finding("watch_learning", None, {"days": days, "needed": baseline_days}),
-        )
-    known = _known(kept, state, before, after, baseline_days, arl_years)
+        return fresh, (Finding("watch_learning", None, {"days": days, "needed": settings.baseline_days}),)
+    known = _known(kept, fresh, state, before, after)
     findings = []
     columns = Columns.of(model, state, before)
     baseline = history_of(columns, state, before)
     if known.learnt is None:
-        watch = start(baseline, arl_years=arl_years)
+        watch = start(baseline, arl_years=settings.arl_years)
         known = replace(known, baseline=_fingerprint(state, before), learnt=watch, watch=watch)
-        findings.append(Finding("watch_begins", None, {"from": end, "arl_years": arl_years}))
+        findings.append(Finding("watch_begins", None, {"from": end, "arl_years": settings.arl_years}))
     for day in (d for d in after if d > known.through):
         known = _day(model, known, baseline, history_of(columns, state, [day]), day)
     known = replace(known, judged=_fingerprint(state, after))
@@ -101,16 +106,10 @@ def judge(
 
 
 def _known(
-    kept: Judged,
-    state: TwinState,
-    before: Sequence[str],
-    after: Sequence[str],
-    baseline_days: float,
-    arl_years: float,
+    kept: Judged, fresh: Judged, state: TwinState, before: Sequence[str], after: Sequence[str]
 ) -> Judged:
     """Return what still holds of what is kept."""
-    fresh = Judged(baseline_days, arl_years)
-    if (kept.baseline_days, kept.arl_years) != (baseline_days, arl_years):
+    if kept.promise != fresh.promise:
         return fresh
     if kept.learnt is None or kept.baseline != _fingerprint(state, before):
         return fresh
