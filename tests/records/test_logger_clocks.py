@@ -44,6 +44,19 @@ def test_clocks_in_step_are_not_spoken_of(tower: SimpleNamespace) -> None:
         assert said(tower.record(seed)) == []
 
 
+@pytest.mark.parametrize("share", [0.15, 0.4])
+def test_a_long_gap_says_nothing_of_clocks(share: float, tower: SimpleNamespace) -> None:
+    for seed, channel in enumerate((0, 3, 5, 6)):
+        record = tower.record(seed)
+        n = record.data.shape[1]
+        long = int(share * n)
+        for gap in (slice(0, long), slice(n - long, n), slice(n // 3, n // 3 + long)):
+            data = record.data.copy()
+            data[channel, gap] = np.nan
+            codes = {finding.code for finding in assess(replace(record, data=data)).findings}
+            assert not codes & {*CODES, "time_lost", "another_time", "stored_backwards"}
+
+
 @pytest.mark.parametrize("samples", [2, 4, 60, 400])
 def test_a_logger_that_is_late_is_brought_into_step(samples: int, tower: SimpleNamespace) -> None:
     """Which of two halves is right is not known; in step they are."""

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, assess
 
 UP = (0.0, 0.0, 1.0)
@@ -83,3 +84,25 @@ def test_a_sensor_on_the_nacelle_is_not_parallel_to_a_fixed_one(tower: SimpleNam
     data[0] = -data[0]
     turning = replace(record.channels[0], frame="nacelle")
     assert not sign_findings(replace(record, data=data, channels=(turning, *record.channels[1:])))
+
+
+@pytest.mark.parametrize("sea", [0.0, 3.0])
+def test_every_reversed_sensor_of_a_parked_tower_is_found(sea: float) -> None:
+    """Three levels, two directions, bending modes of either; waves of 5.5 s push at all levels."""
+    shapes = np.array([np.kron(s, d) for s in ([1.0, 0.6, 0.25], [-0.4, 0.6, 0.7]) for d in np.eye(2)])
+    forces = np.diag([1.0, 1.0, 0.5, 0.5]) / np.outer(f := np.array([0.33, 0.345, 0.91, 1.0]), f)
+    tower = ModalSystem(f, np.full(4, 0.012), shapes, forces, noise_ratio=0.05)
+    swell = ModalSystem(np.array([0.18]), np.array([0.07]), shapes[:1] + shapes[1:2], np.eye(1), 0.0)
+    rng = np.random.default_rng(4)
+    record, waves = (simulate(s, rng, duration_s=600.0, sample_rate_hz=30.0) for s in (tower, swell))
+    data = record.data + sea * 0.3 * record.data.std() * waves.data / waves.data.std()
+    channels = tuple(
+        Channel(f"acc_{z}_{axis}", height_m=z, direction=direction)
+        for z in (90.0, 60.0, 25.0)
+        for axis, direction in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)))
+    )
+    for i, channel in enumerate(channels):
+        turned = data.copy()
+        turned[i] *= -1.0
+        found = assess(replace(record, data=turned, channels=channels)).findings
+        assert [one.subject for one in found if one.code == "sign_turned"] == [channel.name]

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from jackettwin.records.record import Record
 
 
-LEAST_PRESENT = 0.5
-"""Share of the samples of a channel whose clock can be judged."""
+LEAST_PRESENT = 0.75
+"""Share of the samples of a channel whose clock can be judged: a longer gap, bridged, looks like another
+time."""
 
 
 def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:

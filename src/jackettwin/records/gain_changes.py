@@ -20,6 +20,8 @@ EARLIER = 0.9
 """Share of its duration that the earlier part needs for its sensitivity to be taken for the right one."""
 MARGIN = 0.15
 """Share of a window beside a jump that may be of the other sensitivity and not show."""
+FEWEST_TOLD = 2
+"""Windows on either side of a jump that tell of the channel: one may be half of a gap."""
 LEAST_GROWTH = 1.25
 """Least growth of a sensitivity over the record that counts."""
 FEWEST_TURNED = 0.1
@@ -36,7 +38,10 @@ def gain_changes(
     """Return the channels whose sensitivity against the others jumps once, and those in which it grows."""
     network = replace(network, reach_s=float(np.log(LEAST_FACTOR)))
     series = by_channel(network, gain_trajectories(seen), weight)
-    jumps = _jumps(seen, network, series, length)
+    told = np.array(
+        [(weight[:, (network.pairs == i).any(axis=1)] > 0.0).any(axis=1) for i in range(network.n)]
+    )
+    jumps = _jumps(seen, network, series, told, length)
     return jumps, () if jumps else _growing(series)
 
 
@@ -50,13 +55,25 @@ def _growing(series: FloatArray) -> tuple[GrowingGain, ...]:
     return tuple(GrowingGain((int(i),), float(n * slope[i])) for i in np.flatnonzero(clear))
 
 
-def _jumps(seen: Phases, network: Network, series: FloatArray, length: int) -> tuple[GainJump, ...]:
-    """Return the channels whose sensitivity against the others jumps once, those that jump alike together."""
+def _jumps(
+    seen: Phases, network: Network, series: FloatArray, told: BoolArray, length: int
+) -> tuple[GainJump, ...]:
+    """Return the channels whose sensitivity against the others jumps once, those that jump alike together.
+
+    Parameters
+    ----------
+    told : (n_channels, n_windows)
+        Which windows tell of a channel; others are filled from those beside them.
+    """
     found = steps(series, runs(series, network.reach_s), network.reach_s)
     if len(found) != 1:
         return ()
     step = found[0]
-    jumping = list(step.rows)
+    sides = told[:, : step.before].sum(axis=1), told[:, step.after :].sum(axis=1)
+    jumping = [i for i in step.rows if min(side[i] for side in sides) >= FEWEST_TOLD]
+    if not jumping:
+        return ()
+    step = replace(step, rows=tuple(jumping))
     level = np.median(series[: step.before, jumping], axis=0)
     passed = np.median((series[:, jumping] - level) / step.by[jumping], axis=1)
     before = int(np.argmax(passed > PASSED))
