@@ -104,6 +104,19 @@ def test_every_question_is_answered_without_nats() -> None:
     assert "about 60 % probable among 2 laws; the data do not tell the laws apart" in words
 
 
+def test_a_step_that_narrows_nothing_is_not_advised() -> None:
+    """Torsion was said to narrow an interval "to a factor of 2.8 (now 2.8)"; an hour was "1 hours"."""
+    same = NextStep("torsion", {"loss_factor": 39.9})
+    hour = NextStep("records", {"loss_factor": 1.9}, 1.0 / 24.0)
+    told = " ".join(
+        str(part)
+        for part in sentences(replace(ANSWERS, next_steps=(*ANSWERS.next_steps, same))).__dict__.values()
+    )
+    assert "at the feet" in told and "torsion as well" not in told
+    told = " ".join(str(part) for part in sentences(replace(ANSWERS, next_steps=(hour,))).__dict__.values())
+    assert "ecord 1 hour of the same" in told and "to a factor of 1.9 (now 40)" in told
+
+
 def test_a_law_far_above_the_others_is_said_to_be() -> None:
     sure = replace(
         ANSWERS, laws=(replace(ANSWERS.laws[0], probability=0.99), replace(ANSWERS.laws[1], probability=0.01))

@@ -423,21 +423,27 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
             f"For damping ratios to ±{100 * a.precision:.0f} %, so many records like these: {listed(needs)} "
             f"(now {a.records})."
         )
-    rest = [step for step in a.next_steps[1:] if step.what != "records"]
+    rest = [step for step in a.next_steps[1:] if step.what != "records" and _gains(a, step)]
     return tuple(short), tuple(_step(a, step) for step in rest)
 
 
 def _step(a: Answers, step: NextStep) -> str:
+    what, gains = step_words(a, step), _gains(a, step)
+    narrows = f"narrows the 90 % interval of {listed(gains)}" if gains else "narrows no interval noticeably"
+    return f"{what[0].upper()}{what[1:]}. It {narrows}."
+
+
+def _gains(a: Answers, step: NextStep) -> list[str]:
+    """Return what becomes surer by a step: of stiffness and of damping the surest, if one sees it at all."""
     kinds = {g.name: g.kind for g in a.ground}
     gains: dict[str, tuple[str, float]] = {}  # of stiffness and of damping, the one that becomes surest
     for name, left in sorted(step.factors.items(), key=lambda item: item[1]):
         gains.setdefault(kinds.get(name, ""), (name, left))
-    texts = [
+    return [
         f"{parameter_words(name)} to a factor of {factor(left)} (now {factor(_now(a, name))})"
         for name, left in gains.values()
+        if factor(left) != factor(_now(a, name))
     ]
-    what = step_words(a, step)
-    return f"{what[0].upper()}{what[1:]}. It narrows the 90 % interval of {listed(texts)}."
 
 
 def step_words(a: Answers, step: NextStep) -> str:
@@ -454,7 +460,7 @@ def _records(a: Answers, step: NextStep) -> str:
     days = step.days or 0.0
     times = days * 1440.0 / max(a.minutes, 1e-9)
     enough = max(step.factors.values()) <= a.usable
-    length = f"{days:.0f} days" if days >= 2.0 else f"{24 * days:.0f} hours"
+    length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
     if enough:
         return f"record {length} of the same ({round(times * a.records)} records instead of {a.records})"
     return f"more records alone do not make it known, not even {length} of them"
