@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.stats import chi2
+from scipy.special import chdtr
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.watching.hours import Hours
@@ -342,7 +342,7 @@ def _larger(freedom: float) -> FloatArray:
     degrees of freedom: the estimated covariance times ν/χ²_ν, one factor for all quantities.
     """
     between = np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1]))
-    above = np.append(chi2.cdf(freedom / between**2, freedom), 0.0)
+    above = np.append(chdtr(freedom, freedom / between**2), 0.0)
     share = np.concatenate([[1.0 - above[0]], above[:-1] - above[1:]])
     return np.asarray(np.maximum(share, 1e-12))
 
