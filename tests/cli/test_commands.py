@@ -47,6 +47,13 @@ def test_a_help_text_loads_no_numerics() -> None:
     assert not {"numpy", "scipy", "numba", "pydantic", "plotly", "pyarrow"} & set(loaded)
 
 
+def test_watching_a_table_needs_no_statistics_library() -> None:
+    """``scipy.stats`` takes half a second to load."""
+    code = "import sys, jackettwin.cli.watch; print('scipy.stats' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False"]
+
+
 def test_an_unknown_command_is_bad_input() -> None:
     done = CliRunner().invoke(main, ["mods"])
     assert done.exit_code == 2 and "No such command" in done.stderr

@@ -8,8 +8,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, read_record, write_record
-from jackettwin.records.readers import Format, formats, registry
-from jackettwin.records.readers.table import ReadTable
+from jackettwin.records.readers import formats
 
 WRITABLE = [form.extensions[0] for form in formats() if form.write]
 
@@ -166,22 +165,3 @@ def test_one_description_serves_a_folder(record: Record, tmp_path: Path) -> None
     )
     assert [c.height_m for c in read_record(tmp_path / "a.parquet").channels] == [90.0]
     assert read_record(tmp_path / "b.parquet").channels == record.channels
-
-
-def test_an_installed_package_may_bring_a_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Entry points of the group ``jackettwin.readers``, each a ``Format``."""
-
-    def read(path: Path) -> ReadTable:
-        return ReadTable(("acc_x",), np.array([[1.0, 2.0, 3.0]]), sample_rate_hz=10.0, unit="m/s^2")
-
-    class Point:
-        def load(self) -> Format:
-            return Format("logger of another make", (".xyz",), read)
-
-    monkeypatch.setattr(registry, "entry_points", lambda group: [Point()])
-    registry.formats.cache_clear()
-    (tmp_path / "r.xyz").write_bytes(b"1")
-    try:
-        assert read_record(tmp_path / "r.xyz").data.tolist() == [[1.0, 2.0, 3.0]]
-    finally:
-        registry.formats.cache_clear()
