@@ -95,7 +95,7 @@ def explained_shares(watched: Watched) -> go.Figure:
     for name in names:
         share = [100.0 * max(watched.explained[key].get(name, 0.0), 0.0) for key in keys]
         figure.add_bar(y=labels, x=share, name=name, orientation="h")
-    figure.update_xaxes(title=style.title("share of the variance over the baseline", "%"))
+    figure.update_xaxes(title=style.title("share of the variance", "%"))
     figure.update_layout(barmode="stack")
     return style.finish(figure, height=max(300, 34 * len(keys) + 130))
 
