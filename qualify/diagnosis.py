@@ -312,8 +312,9 @@ CHAINED = (
     "{kinds} kind(s), feet of their own. Records of ten minutes under waves and wind,",
     f"{SEEDS} before and {SEEDS} after each change, of the same seeds, are simulated, identified and",
     "recognised as the twin does it. Their modes with their stated standard deviations fill the seasons of",
-    f"[watching](watching.md): a year of baseline, then day by day until the alarm, for {LONGEST:.0f} days at most",
-    f"(failing sensor {NOISY_DAYS:.0f}). What raised no alarm by then is not judged and not counted. {SEASONS} turbines' seasons for each.",
+    "[watching](watching.md): a year of baseline, then day by day until the alarm,",
+    f"{LONGEST:.0f} days at most (failing sensor {NOISY_DAYS:.0f}). What raised no alarm by then is not",
+    f"judged and not counted. {SEASONS} turbines' seasons for each.",
     "",
 )
 
