@@ -316,6 +316,11 @@ CHAINED = (
     f"{LONGEST:.0f} days at most (failing sensor {NOISY_DAYS:.0f}). What raised no alarm by then is not",
     f"judged and not counted. {SEASONS} turbines' seasons for each.",
     "",
+    "The bars of drawn modes are not met here. All rows of a season come from the same few records, so that",
+    "what these err by, above all in ζ and in the axes of close pairs, does not average out as it would over",
+    "the hundreds of records that the watch takes them for: it is seen as a change of its own. How much of",
+    "the errors below is that, and how much identification itself, is not told apart.",
+    "",
 )
 
 

@@ -44,6 +44,9 @@ def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -
     one_percent = direction(model, "mass of the RNA") * 0.01 * 809000.0
     np.testing.assert_allclose(one_percent[:2], -0.0043, atol=5e-4)
     assert abs(one_percent[2]) < 1e-4
+    (mass,) = [c for c in model.causes if c.name == "mass of the RNA"]
+    three = mass.steps(np.array([3.0 * 0.01 * 809000.0]))[0]
+    np.testing.assert_allclose(three[:2], 3.0 * one_percent[:2], rtol=0.05)  # ½ Δm: bent by ¾ Δm² alone
 
 
 def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:

@@ -206,7 +206,7 @@ def _tops(structure: Structure) -> Iterator[Happening]:
 
     def apply(standing: Standing) -> Standing:
         masses = list(standing.structure.masses)
-        masses[heaviest] = replace(masses[heaviest], mass_kg=1.01 * mass)
+        masses[heaviest] = replace(masses[heaviest], mass_kg=masses[heaviest].mass_kg + 0.01 * mass)
         return replace(standing, structure=standing.structure.with_masses(tuple(masses)))
 
     yield Happening("mass", "mass of the RNA", apply, 0.01 * mass, 0.01 * mass, 0.8, "kg", both_ways=True)
