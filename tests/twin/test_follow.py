@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,8 +19,8 @@ from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, TwinConfig, TwinModel, follow, read_twin, twin_model
 from jackettwin.twin.follow import follow_observations, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
-from jackettwin.twin.followed import Followed
-from jackettwin.updating import Problem, family, support_model, update
+from jackettwin.twin.followed import Followed, Known
+from jackettwin.updating import Problem, SupportModel, family, support_model, update
 
 MODES, TRUTH = (1, 2, 4), np.array([3e9, 0.1])
 F_STD, ZETA_STD = 5e-4, 0.1
@@ -137,6 +138,34 @@ def update_module():  # type: ignore[no-untyped-def]
 
     assert callable(update)
     return sys.modules["jackettwin.updating.update"]
+
+
+def test_the_posterior_of_a_thousand_days_costs_that_of_ten(
+    config: TwinConfig, model: TwinModel, records: list[Observation], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In evaluations of the model; climbing a ladder rung by rung took 1.8 times as many."""
+    counted = SupportModel.predict_many
+    taken = {10: 0, 1000: 0}
+    state = follow.empty_state(model)
+    question = None
+    for i in range(1000):
+        shown = records[i % 2]
+        state, _ = follow.advance(
+            state, replace(shown, start_utc=NOON + timedelta(days=i), record_id=f"r{i:04d}")
+        )
+        if i + 1 in taken:
+            question = question or follow._question(config, model, state, None, None)
+
+            def counting(
+                self: SupportModel, theta: np.ndarray, *args: Any, day: int = i + 1, **options: Any
+            ) -> Any:
+                taken[day] += len(theta)
+                return counted(self, theta, *args, **options)
+
+            monkeypatch.setattr(SupportModel, "predict_many", counting)
+            known = question._known(state, Known("day", NOON, 1, "", {}, {}))
+            assert known.status == "ok"
+    assert taken[1000] <= 1.2 * taken[10]
 
 
 def test_many_days_cost_what_ten_do(model: TwinModel, records: list[Observation]) -> None:

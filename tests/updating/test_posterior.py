@@ -114,9 +114,12 @@ def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
     np.testing.assert_array_equal(first.log_theta, second.log_theta)
 
 
-def test_islands_that_disagree_are_no_posterior(model: SupportModel) -> None:
+def test_islands_that_disagree_are_no_posterior(model: SupportModel, rng: np.random.Generator) -> None:
+    problem = single(model, record_of(model, 600.0))
+    z = rng.standard_normal((4, 200, 2))
+    z[3] += 2.0
     with pytest.raises(NumericalError, match="did not converge"):
-        sample_posterior(single(model, record_of(model, 6e5)), particles=6, islands=4)
+        gathered(problem, z=z, poles=z.astype(complex), log_l=z[..., 0], log_z=np.full(4, 9.0))
 
 
 def test_draws_that_agree_are_a_posterior_even_if_their_evidence_is_not_known(

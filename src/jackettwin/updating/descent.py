@@ -84,7 +84,7 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
         here = path.total(z)
         z, n = _least_squares(path, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
         taken += n
-    free, n = _least_squares(path, z, lambda path: (path.values, path.jacobian), tolerance=1e-10)
+    free, n = _least_squares(path, z, _free, tolerance=1e-10)
     taken += n
     back = z
     if np.abs(free - z).max() >= _POINT:
@@ -93,6 +93,13 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
         back, n = _least_squares(path, free, pull, tolerance=1e-8)
         taken += n
     return replace(_judged(problem, free if np.abs(free - back).max() < _POINT else z), evaluations=taken)
+
+
+def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
+    """Return roughly where the nearest minimum lies, from a start whose modes are known."""
+    path = Path(problem)
+    path.last = near
+    return _least_squares(path, start, _free, tolerance=1e-3, evaluations=30)[0]
 
 
 def settle(problem: Problem, end: End) -> End:
@@ -176,6 +183,10 @@ def _least_squares(
         max_nfev=evaluations,
     )
     return np.asarray(fit.x), int(fit.nfev)
+
+
+def _free(path: Path) -> tuple[Rows, Rows]:
+    return path.values, path.jacobian
 
 
 def _pulled(problem: Problem, allowance: float) -> Callable[[Path], tuple[Rows, Rows]]:

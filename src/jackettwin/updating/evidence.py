@@ -111,6 +111,14 @@ class Kernels:
         steps = rng.standard_normal((n, self.centres.shape[1]))
         return np.asarray(self.centres[which] + np.einsum("nij,nj->ni", self.roots[which], steps))
 
+    def evenly_with(self, other: Kernels) -> Kernels:
+        """Return the mixture of as many of these as of others, which are repeated as need be."""
+        repeats = np.resize(np.arange(len(other.centres)), len(self.centres))
+        return Kernels(
+            np.concatenate([self.centres, other.centres[repeats]]),
+            np.concatenate([self.roots, other.roots[repeats]]),
+        )
+
     def log_density(self, z: FloatArray) -> FloatArray:
         """Return ln q (n,) of points (n, d)."""
         log_q = np.empty((len(self.centres), len(z)))

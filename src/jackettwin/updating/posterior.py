@@ -1,9 +1,13 @@
 """Posterior of one law by tempered sequential Monte Carlo, and its evidence.
 
 Particles drawn from the prior go through a ladder of tempered posteriors
-prior · Lᵝ, β from 0 to 1; each rung reweights, resamples and moves them (Del Moral, Doucet & Jasra 2006;
-Ching & Chen 2007). Several independent islands run side by side: only if they agree is the result called a
-posterior. Their draws give the evidence (:mod:`jackettwin.updating.evidence`).
+prior · Lᵝ, β from 0 to 1; each rung reweights and resamples them (Del Moral, Doucet & Jasra 2006; Ching &
+Chen 2007) and draws new ones from a mixture of normals, on those that are left and on the posterior's
+hilltops. Its density is known, so that the next rung's weights are exact whatever the mixture (population
+Monte Carlo, Cappé et al. 2004), and a posterior as sharp as years of data make it costs no more rungs than
+that of some days. Where the mixture fits badly, and on the last rung, Markov chains move the particles.
+Several independent islands run side by side: only if they agree is the result called a posterior. Their
+draws give the evidence (:mod:`jackettwin.updating.evidence`).
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.linalg as la
 from scipy.spatial import KDTree
 from scipy.special import logsumexp
 
@@ -20,16 +25,27 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.convergence import Convergence, convergence
-from jackettwin.updating.evidence import bridged_evidence
+from jackettwin.updating.descent import bottom
+from jackettwin.updating.evidence import Kernels, bridged_evidence, fitted
+from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import Found, Problem
 
 _ESS = 0.5
 """Each rung of the ladder keeps this share of the particles effective."""
+_REDRAWN = 0.65
+"""Particles drawn anew on a rung are kept if so many times their first number are effective there, or
+``_ESS`` times at the last rung; else the old ones are moved. More than ``_ESS``: the next step is long."""
 _MOVES = 12
-"""Moves of every particle on every rung."""
+"""Moves of every particle on the last rung, and wherever they are not drawn anew."""
 _KEPT = 3
 """On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
+_FRESH = 4
+"""So many times as many points are drawn anew as there are particles."""
+_CLIMBS = 12
+"""Descents at most, from draws of the prior that are likelier than their neighbours."""
+_WIDER = (1.0, 1.5, 2.5)
+"""Normals on a hilltop have so many times its standard deviation: tails are heavier."""
 _SCOUTS = 40
 """So many particles of an island are evaluated first, for the others to start near one of them."""
 _LARGEST_SPREAD = 0.5
@@ -205,18 +221,70 @@ def _island(
     if n > _SCOUTS:
         rest = z[_SCOUTS:]
         swarm = swarm.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, swarm)))
-    beta, kept = 0.0, [swarm]
-    while beta < 1.0:
-        step = _next_step(swarm.log_l, 1.0 - beta)
-        weight = step * swarm.log_l
-        beta += step
-        swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), rng))
-        kept = []
-        for move in range(1, _MOVES + 1):
-            swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
-            if move % _KEPT == 0:
-                kept.append(swarm)
-            progress.within(f"{place}: {beta - step + step * move / _MOVES:.0%}")
+    beta, log_q, tops = 0.0, swarm.log_p, None
+    while True:
+        scattered = swarm
+        beta = _next_beta(swarm, log_q, beta, _ESS * n)
+        weight = beta * swarm.log_l + swarm.log_p - log_q
+        swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), n, rng))
+        progress.within(f"{place}: {beta:.0%}")
+        if beta == 1.0:
+            return _walk(problem, prior, swarm, beta, rng)
+        tops = tops or _hilltops(problem, scattered)
+        swarm, log_q = _renewed(problem, prior, swarm, beta, rng, tops)
+
+
+def _renewed(
+    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator, tops: Kernels
+) -> tuple[_Swarm, FloatArray]:
+    """Return other particles of the same tempered posterior, and ln of the density they are drawn from.
+
+    Half of them are drawn around the hilltops of the posterior itself: where they fit, the next step is the
+    last, however sharp it is; and a narrow hill that few particles stand on is not lost.
+    """
+    n = swarm.log_l.size
+    mixture = fitted(swarm.z, prior.std, rng).evenly_with(tops)
+    z = mixture.draw(2 * _FRESH * n, rng)
+    z = z[np.isfinite(prior.log_density(z))][: _FRESH * n]
+    fresh, log_q = _evaluate(problem, prior, z, _nearest(prior, z, swarm)), mixture.log_density(z)
+    here, at_last = (_effective(b * fresh.log_l + fresh.log_p - log_q) for b in (beta, 1.0))
+    if here >= _REDRAWN * n or at_last >= _ESS * n:
+        return fresh, log_q
+    moved = _walk(problem, prior, swarm, beta, rng)[-1]
+    return moved, beta * moved.log_l + moved.log_p
+
+
+def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
+    """Return normals around the tops of the posterior that draws from the prior lead to."""
+    centres: list[FloatArray] = []
+    roots: list[FloatArray] = []
+    for i in _tops(scattered):
+        z = bottom(problem, scattered.z[i], tuple(modes.some(np.array([i])) for modes in scattered.found))
+        root = la.cholesky(log_covariance(problem, np.exp(z)), lower=True)
+        apart = [la.solve_triangular(root, z - centre, lower=True) for centre in centres]
+        if all(x @ x > 1.0 for x in apart):
+            centres += [z] * len(_WIDER)
+            roots += [wider * root for wider in _WIDER]
+    return Kernels(np.array(centres), np.array(roots))
+
+
+def _tops(swarm: _Swarm) -> IntArray:
+    """Return the particles likelier than all their neighbours, the likeliest few of them."""
+    x = swarm.z / np.ptp(swarm.z, axis=0)
+    _, near = KDTree(x).query(x, k=min(2 * x.shape[1] + 1, len(x)))
+    top = np.flatnonzero(swarm.log_l >= swarm.log_l[near].max(axis=1))
+    return np.asarray(top[np.argsort(-swarm.log_l[top])][:_CLIMBS])
+
+
+def _walk(
+    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator
+) -> list[_Swarm]:
+    """Return the swarm after every few of its moves."""
+    kept = []
+    for move in range(1, _MOVES + 1):
+        swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
+        if move % _KEPT == 0:
+            kept.append(swarm)
     return kept
 
 
@@ -253,25 +321,29 @@ def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None)
     return _Swarm(z, log_l, prior.log_density(z), found)
 
 
-def _next_step(log_l: FloatArray, most: float) -> float:
-    """Return the step of β that leaves the effective sample size at its share, by bisection."""
-    below = log_l - log_l.max()
+def _next_beta(swarm: _Swarm, log_q: FloatArray, beta: float, least: float) -> float:
+    """Return the largest β up to 1 that leaves so many particles effective, by bisection."""
 
-    def effective(step: float) -> float:
-        w = np.exp(step * below)
-        return float(w.sum() ** 2 / (w @ w) / w.size)
+    def enough(at: float) -> bool:
+        return _effective(at * swarm.log_l + swarm.log_p - log_q) >= least
 
-    if effective(most) >= _ESS:
-        return most
-    low, high = 0.0, most
+    if enough(1.0):
+        return 1.0
+    low, high = beta, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if effective(middle) >= _ESS else (low, middle)
+        low, high = (middle, high) if enough(middle) else (low, middle)
     return high
 
 
-def _systematic(weight: FloatArray, rng: np.random.Generator) -> IntArray:
-    u = (rng.random() + np.arange(weight.size)) / weight.size
+def _effective(log_weight: FloatArray) -> float:
+    """Return the effective number of particles of unequal weights."""
+    w = np.exp(log_weight - log_weight.max())
+    return float(w.sum() ** 2 / (w @ w))
+
+
+def _systematic(weight: FloatArray, n: int, rng: np.random.Generator) -> IntArray:
+    u = (rng.random() + np.arange(n)) / n
     return np.minimum(np.searchsorted(np.cumsum(weight), u), weight.size - 1)
 
 
