@@ -18,21 +18,22 @@ compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"
 
 @compiled
 def between_levels(level, middle, half, nodes, fields, mixing, points, out):
-    """Write mixing @ fields at a moving level to ``points`` of ``out`` (n_times, all points, n_mixed).
+    """Write mixing @ fields at a moving level to ``points`` of ``out`` (n_mixed, all points, n_times).
 
     ``fields`` (n_fields, n_nodes, n_points, n_times) are known at middle + nodes·half of each point;
-    Lagrange interpolation to ``level`` (n_times, all points); the other arrays are of all points too.
+    Lagrange interpolation to ``level`` (all points, n_times); the other arrays are of all points too.
     """
     n_fields, n_nodes, n_points, n_times = fields.shape
     scale = _lagrange_scale(nodes)
     x, weight = np.empty(_BLOCK), np.empty((n_nodes, _BLOCK))
     value = np.empty((n_fields, _BLOCK))
-    for start in range(0, n_times, _BLOCK):
-        n = min(_BLOCK, n_times - start)
-        for p in range(n_points):
-            at = points[p]
+    for p in range(n_points):
+        at = points[p]
+        for start in range(0, n_times, _BLOCK):
+            n = min(_BLOCK, n_times - start)
+            here = level[at, start : start + n]
             for t in range(n):
-                x[t] = (level[start + t, at] - middle[at]) / half[at]
+                x[t] = (here[t] - middle[at]) / half[at]
             _lagrange(x[:n], nodes, scale, weight)
             value[:, :n] = 0.0
             for f in range(n_fields):
@@ -40,7 +41,7 @@ def between_levels(level, middle, half, nodes, fields, mixing, points, out):
                     known = fields[f, j, p, start : start + n]
                     for t in range(n):
                         value[f, t] += weight[j, t] * known[t]
-            _mix(mixing, value[:, :n], out[start : start + n, at])
+            _mix(mixing, value[:, :n], out[:, at, start : start + n])
 
 
 @compiled
@@ -56,13 +57,12 @@ def _lagrange(x, nodes, scale, weight):
 
 @compiled
 def _mix(mixing, value, out):
-    """Write mixing @ value (n_fields, n) to ``out`` (n, n_mixed)."""
-    for t in range(value.shape[1]):
-        for m in range(mixing.shape[0]):
-            total = 0.0
-            for f in range(value.shape[0]):
-                total += mixing[m, f] * value[f, t]
-            out[t, m] = total
+    """Write mixing @ value (n_fields, n) to ``out`` (n_mixed, n)."""
+    out[:] = 0.0
+    for m in range(mixing.shape[0]):
+        for f in range(value.shape[0]):
+            for t in range(value.shape[1]):
+                out[m, t] += mixing[m, f] * value[f, t]
 
 
 @compiled
@@ -78,23 +78,24 @@ def _lagrange_scale(nodes):
 
 @compiled
 def morison(drag, inertia, normal, u, du, length, out):
-    """Write length·(drag |v| v + inertia a), v and a normal to the member, (n_times, n_points, 3).
+    """Write length·(drag |v| v + inertia a), v and a normal to the member, (n_points, 3, n_times).
 
-    ``drag`` (n_points,) is ½ρC_D D, ``inertia`` (n_points,) ρC_M πD²/4, ``length`` (n_times, n_points).
+    ``drag`` (n_points,) is ½ρC_D D, ``inertia`` (n_points,) ρC_M πD²/4, ``length`` (n_points, n_times);
+    ``u`` and ``du`` (3, n_points, n_times).
     """
-    v, a = np.empty(3), np.empty(3)
-    for t in range(u.shape[0]):
-        for p in range(u.shape[1]):
-            speed = 0.0
-            for i in range(3):
-                v[i] = a[i] = 0.0
-                for j in range(3):
-                    v[i] += normal[p, i, j] * u[t, p, j]
-                    a[i] += normal[p, i, j] * du[t, p, j]
-                speed += v[i] * v[i]
-            speed = np.sqrt(speed)
-            for i in range(3):
-                out[t, p, i] = length[t, p] * (drag[p] * speed * v[i] + inertia[p] * a[i])
+    for p in range(u.shape[1]):
+        N, c, m = normal[p], drag[p], inertia[p]
+        for t in range(u.shape[2]):
+            x, y, z = u[0, p, t], u[1, p, t], u[2, p, t]
+            ax, ay, az = du[0, p, t], du[1, p, t], du[2, p, t]
+            vx = N[0, 0] * x + N[0, 1] * y + N[0, 2] * z
+            vy = N[1, 0] * x + N[1, 1] * y + N[1, 2] * z
+            vz = N[2, 0] * x + N[2, 1] * y + N[2, 2] * z
+            d = c * np.sqrt(vx * vx + vy * vy + vz * vz)
+            wet = length[p, t]
+            out[p, 0, t] = wet * (d * vx + m * (N[0, 0] * ax + N[0, 1] * ay + N[0, 2] * az))
+            out[p, 1, t] = wet * (d * vy + m * (N[1, 0] * ax + N[1, 1] * ay + N[1, 2] * az))
+            out[p, 2, t] = wet * (d * vz + m * (N[2, 0] * ax + N[2, 1] * ay + N[2, 2] * az))
 
 
 @compiled
@@ -105,57 +106,81 @@ def blade_elements(
     """Write force and moment at the tower top, (n, 6), of blade elements in wind (n, n_places, 3).
 
     Element e sees ``share`` of the places ``place`` from ``first[e]`` to ``first[e + 1]``.
-    ``along`` and ``across`` (n_elements, 6) are the directions of chord and normal, and their moments about
-    the hub, before the rotor turns by ``angle`` (n,) about ``shaft``; ``own`` (n_elements, 2) is the flow on
+    ``along`` and ``across`` (6, n_elements) are the directions of chord and normal, and their moments about
+    the hub, before the rotor turns by ``angle`` (n,) about ``shaft``; ``own`` (2, n_elements) is the flow on
     both that its speed and wake take away. ``scale`` is ½ρ c dr; ``motion`` (n, 6) that of the tower top.
+
+    What the elements see, their flow, their lift and their load are loops of their own: the second and the
+    last then run on several elements at once.
     """
-    turn = np.empty((3, 3))
-    v, load, w = np.empty(6), np.empty(6), np.empty(3)
+    n = station.size
+    turn, v, load = np.empty((3, 3)), np.empty(6), np.empty(6)
+    seen, flow, at = np.empty((3, n)), np.empty((2, n)), np.empty(n)
     for k in range(wind.shape[0]):
-        turned = angle[k] != 0.0
         _turn(shaft, angle[k], turn)
         _to_rotor(turn, shaft, hub, free, motion[k], v)
-        load[:] = 0.0
-        for e in range(along.shape[0]):
-            x = y = z = 0.0
-            for j in range(first[e], first[e + 1]):
-                seen, part = wind[k, place[j]], share[j]
-                x += part * seen[0]
-                y += part * seen[1]
-                z += part * seen[2]
-            if turned:
-                w[0], w[1], w[2] = x, y, z
-                _back(turn, w, w)
-                x, y, z = w[0], w[1], w[2]
-            x, y, z = x - v[0], y - v[1], z - v[2]
-            c, m = along[e], across[e]
-            wc = c[0] * x + c[1] * y + c[2] * z - c[3] * v[3] - c[4] * v[4] - c[5] * v[5] - own[e, 0]
-            wn = m[0] * x + m[1] * y + m[2] * z - m[3] * v[3] - m[4] * v[4] - m[5] * v[5] - own[e, 1]
-            at = (_arctan2(wn, wc) - first_alpha) / alpha_step
-            low = min(max(int(at), 0), polar.shape[1] - 2)
-            high, s = at - low, station[e]
-            lift = polar[s, low, 0] * (1.0 - high) + polar[s, low + 1, 0] * high
-            drag = polar[s, low, 1] * (1.0 - high) + polar[s, low + 1, 1] * high
-            speed = scale[e] * np.sqrt(wc * wc + wn * wn)
-            fc, fn = speed * (drag * wc - lift * wn), speed * (lift * wc + drag * wn)
-            for i in range(6):
-                load[i] += fc * c[i] + fn * m[i]
+        _seen_by_elements(wind[k], first, place, share, seen)
+        if angle[k] != 0.0:
+            for e in range(n):
+                _back(turn, seen[:, e], seen[:, e])
+        for e in range(n):
+            x, y, z = seen[0, e] - v[0], seen[1, e] - v[1], seen[2, e] - v[2]
+            chord = along[0, e] * x + along[1, e] * y + along[2, e] * z - own[0, e]
+            chord -= along[3, e] * v[3] + along[4, e] * v[4] + along[5, e] * v[5]
+            normal = across[0, e] * x + across[1, e] * y + across[2, e] * z - own[1, e]
+            normal -= across[3, e] * v[3] + across[4, e] * v[4] + across[5, e] * v[5]
+            at[e] = (_arctan2(normal, chord) - first_alpha) / alpha_step
+            flow[0, e], flow[1, e] = chord, normal
+        for e in range(n):
+            low = min(max(int(at[e]), 0), polar.shape[1] - 2)
+            high, s = at[e] - low, station[e]
+            for i in range(2):
+                seen[i, e] = polar[s, low, i] * (1.0 - high) + polar[s, low + 1, i] * high
+        _summed(along, across, scale, seen, flow, load)
         _to_top(turn, shaft, hub, free, load, out[k])
+
+
+@compiled
+def _seen_by_elements(wind, first, place, share, out):
+    """Write the wind (3, n_elements) that elements see of that at places (n_places, 3)."""
+    for e in range(first.size - 1):
+        x = y = z = 0.0
+        for j in range(first[e], first[e + 1]):
+            at, part = wind[place[j]], share[j]
+            x += part * at[0]
+            y += part * at[1]
+            z += part * at[2]
+        out[0, e], out[1, e], out[2, e] = x, y, z
+
+
+@compiled
+def _summed(along, across, scale, polar, flow, out):
+    """Write force and moment (6,) of all elements from their lift and drag coefficients and their flow."""
+    a = b = c = d = e = f = 0.0
+    for i in range(scale.size):
+        x, y, lift, drag = flow[0, i], flow[1, i], polar[0, i], polar[1, i]
+        speed = scale[i] * np.sqrt(x * x + y * y)
+        p, q = speed * (drag * x - lift * y), speed * (lift * x + drag * y)
+        a += p * along[0, i] + q * across[0, i]
+        b += p * along[1, i] + q * across[1, i]
+        c += p * along[2, i] + q * across[2, i]
+        d += p * along[3, i] + q * across[3, i]
+        e += p * along[4, i] + q * across[4, i]
+        f += p * along[5, i] + q * across[5, i]
+    out[0], out[1], out[2], out[3], out[4], out[5] = a, b, c, d, e, f
 
 
 @compiled
 def _arctan2(y, x):
     """Return the angle of (x, y) to 2e-8 rad (Abramowitz & Stegun 1964, eq. 4.4.49): a third of the work."""
     low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
-    t = low / high if high > 0.0 else 0.0
+    t = low / max(high, 1e-300)  # no branch: many angles at once
     q = t * t
     p = 0.0429096138 + q * (-0.0161657367 + q * 0.0028662257)
     p = -0.1420889944 + q * (0.1065626393 + q * (-0.0752896400 + q * p))
     angle = t * (1.0 + q * (-0.3333314528 + q * (0.1999355085 + q * p)))
-    if abs(y) > abs(x):
-        angle = 0.5 * np.pi - angle
-    if x < 0.0:
-        angle = np.pi - angle
+    angle = 0.5 * np.pi - angle if abs(y) > abs(x) else angle
+    angle = np.pi - angle if x < 0.0 else angle
     return -angle if y < 0.0 else angle
 
 

@@ -186,9 +186,9 @@ def compiled_rotor(
     own = [np.sum(lost * part[:, :3], axis=1) + rotor_speed * (part[:, 3:] @ d) for part in (along, across)]
     rotor_alone = CompiledRotor(
         (
-            along,
-            across,
-            np.stack(own, axis=1),
+            np.ascontiguousarray(along.T),
+            np.ascontiguousarray(across.T),
+            np.stack(own),
             np.tile(np.arange(blade.z.size), B),
             np.tile(0.5 * density * blade.chord * blade.weight, B),
             np.stack([blade.cl, blade.cd], axis=-1),

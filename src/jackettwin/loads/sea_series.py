@@ -57,17 +57,17 @@ def sea_series(
     inertia = np.ones(1) if scattered is None else scattered
     steady = _steady(sea, points)
     still = sea.stretching == "none"
-    eta = np.zeros((n_times, points.shape[0])) if still else _transformed(steady, lines, n_times).T
+    eta = np.zeros((points.shape[0], n_times)) if still else _transformed(steady, lines, n_times)
     if sea.stretching != "wheeler":
         mixing = _mixing(sea)
         fields = np.empty((mixing.shape[1], points.shape[0], n_times))
         _fields(sea, steady, points[:, 2], lines, inertia, fields)
-        both = np.einsum("mf,fpt->tpm", mixing, fields, optimize=True)
-        return SeaSeries(eta, both[..., :3], both[..., 3:])
-    level = np.minimum((points[:, 2] - eta) * sea.depth / (sea.depth + eta), 0.0)
-    middle, half = 0.5 * (level.max(0) + level.min(0)), 0.5 * np.ptp(level, axis=0) + 1e-9
+        return _series(eta, np.einsum("mf,fpt->mpt", mixing, fields, optimize=True))
+    level = np.minimum((points[:, 2:] - eta) * sea.depth / (sea.depth + eta), 0.0)
+    highest, lowest = level.max(axis=1), level.min(axis=1)
+    middle, half = 0.5 * (highest + lowest), 0.5 * (highest - lowest) + 1e-9
     mixing, wanted = _mixing(sea), _levels(sea, middle, half)
-    both = np.empty((n_times, points.shape[0], 6))
+    both = np.empty((6, points.shape[0], n_times))
     for number in np.unique(wanted):
         here = np.flatnonzero(wanted == number)
         nodes = np.cos(np.pi * (np.arange(number) + 0.5) / number)
@@ -77,7 +77,12 @@ def sea_series(
             z = middle[here] + node * half[here]
             _fields(sea, steady[here], z, lines, extra, fields[:, j])
         between_levels(level, middle, half, nodes, fields, mixing, here, both)
-    return SeaSeries(eta, both[..., :3], both[..., 3:])
+    return _series(eta, both)
+
+
+def _series(surface: FloatArray, both: FloatArray) -> SeaSeries:
+    """Return views of surface (n, n_times), and velocity and acceleration (6, n, n_times), time first."""
+    return SeaSeries(surface.T, both[:3].transpose(2, 1, 0), both[3:].transpose(2, 1, 0))
 
 
 def surface_series(sea: AirySea, points: FloatArray, *, period: float, n_times: int) -> FloatArray:
@@ -154,5 +159,5 @@ def _fields(
 def _transformed(amplitude: ComplexArray, lines: IntArray, n_times: int) -> FloatArray:
     """Return Σ Re(c e^{iωt}) (n, n_times) from amplitudes (n, n_waves)."""
     spectrum = np.zeros((amplitude.shape[0], n_times // 2 + 1), dtype=np.complex128)
-    spectrum[:, lines] = 0.5 * n_times * amplitude
-    return np.asarray(irfft(spectrum, n=n_times, axis=1, overwrite_x=True))
+    spectrum[:, lines] = 0.5 * amplitude
+    return np.asarray(irfft(spectrum, n=n_times, axis=1, norm="forward", overwrite_x=True))

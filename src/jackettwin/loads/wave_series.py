@@ -108,8 +108,8 @@ def wave_series(
         forces = point_forces(part, u, du, wet=wet)
         loads += forces.reshape(n_times, -1) @ columns[3 * start : 3 * start + 3 * part.weight.size]
         # the covariance of the water's velocity, seen across the member
-        spread = u[::4] - u.mean(axis=0)
-        covariance = np.einsum("tni,tnj->nij", spread, spread) / spread.shape[0]
+        spread = (u[::4] - u.mean(axis=0)).transpose(1, 2, 0)
+        covariance = spread @ spread.swapaxes(1, 2) / spread.shape[2]
         sigma[here] = np.sqrt(0.5 * np.maximum(np.einsum("nij,nij->n", part.normal, covariance), 0.0))
     if ends is not None:
         on_ends = end_forces(ends[0], waves, t, current=current)

@@ -1,7 +1,8 @@
 """Stepping of a model under a rotor that answers its motion, compiled.
 
 The scheme is that of ``march_with_feedback``: the rotor is the feedback that every asset in wind has, and
-twelve thousand calls of it in ten minutes cost more than what they compute.
+twelve thousand calls of it in ten minutes cost more than what they compute. Numba keeps the compiled march
+with the blade elements inside and does not see when these change: touch this file with ``loads/kernels.py``.
 """
 
 # mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-arg"
