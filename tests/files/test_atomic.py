@@ -1,5 +1,6 @@
 """A whole file or nothing."""
 
+import errno
 import json
 from pathlib import Path
 
@@ -25,3 +26,11 @@ def test_unknown_is_null_and_never_nan(tmp_path: Path) -> None:
     text = (tmp_path / "r.json").read_text()
     assert "NaN" not in text and "Infinity" not in text
     assert json.loads(text) == {"x": [1.0, None], "z": [1.0, 2.0], "n": 3, "4": [None, None, True]}
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EFBIG])
+def test_a_full_disk_names_what_was_being_written(number: int, tmp_path: Path) -> None:
+    target = tmp_path / "report.html"
+    with pytest.raises(OSError, match="full") as told, atomic_path(target):
+        raise OSError(number, "full")
+    assert told.value.filename == str(target)

@@ -61,10 +61,10 @@ def _named(target: Path) -> Iterator[None]:
 
 @contextmanager
 def _full_disk_named(target: Path) -> Iterator[None]:
-    """Let the error of a full disk, which names nothing, say what was being written."""
+    """Let the error of a full disk or a file too large, which names nothing, say what was being written."""
     try:
         yield
     except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
             raise OSError(error.errno, error.strerror or "no space left", str(target)) from None
         raise
