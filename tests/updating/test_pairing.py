@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.pairing import held_against, likeness, pair
+from jackettwin.updating.pairing import held_against, pair, pairing_score
 
 FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
 SHAPES = np.array(
@@ -96,6 +96,6 @@ def test_the_model_in_any_order_with_modes_lost_sight_of() -> None:
 
 def test_a_model_nearer_to_the_measured_modes_is_more_like_them() -> None:
     measured = tuple(estimate(f, SHAPES[:, i]) for i, f in enumerate(FREQUENCY))
-    assert likeness(measured, FREQUENCY, SHAPES) == pytest.approx(5.0)
-    assert likeness(measured, 1.1 * FREQUENCY, SHAPES) < 4.9
-    assert likeness((), FREQUENCY, SHAPES) == 0.0
+    assert pairing_score(measured, FREQUENCY, SHAPES) == pytest.approx(5.0)
+    assert pairing_score(measured, 1.1 * FREQUENCY, SHAPES) < 4.9
+    assert pairing_score((), FREQUENCY, SHAPES) == 0.0

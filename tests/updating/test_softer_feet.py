@@ -16,7 +16,7 @@ from jackettwin.soil.support import on_translations
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, assemble, read_structure
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.pairing import likeness, pair
+from jackettwin.updating.pairing import pair, pairing_score
 from jackettwin.updating.softer_feet import LOWEST_SHARE, Feet, softer_feet
 
 SYMMETRIC = """
@@ -87,7 +87,7 @@ def test_a_second_pair_on_soft_feet_is_paired_by_the_path_and_not_by_pins(
         for i in bending
     )
     pinned = pair(measured, path[0].frequency_hz, seen @ path[0].shapes)
-    best = max(path, key=lambda feet: likeness(measured, feet.frequency_hz, seen @ feet.shapes))
+    best = max(path, key=lambda feet: pairing_score(measured, feet.frequency_hz, seen @ feet.shapes))
     found = pair(measured, best.frequency_hz, seen @ best.shapes)
     assert 2.5e8 < best.stiffness_n_m < 1e9
     assert sorted(index for index, _ in found.values()) == [0, 1, 2, 3]

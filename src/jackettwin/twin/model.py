@@ -22,7 +22,7 @@ from jackettwin.twin.examine import Examination
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.stored import digest
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.pairing import likeness
+from jackettwin.updating.pairing import pairing_score
 from jackettwin.updating.softer_feet import Feet, softer_feet
 
 
@@ -152,7 +152,7 @@ class TwinModel:
         at = self.sees(seen)
         return max(
             self.feet,
-            key=lambda feet: likeness(seen.identification.modes, feet.frequency_hz, at @ feet.shapes),
+            key=lambda feet: pairing_score(seen.identification.modes, feet.frequency_hz, at @ feet.shapes),
         )
 
 

@@ -71,7 +71,7 @@ def pair(
     return {held.mode: (i, held.mac) for i, held in _paired(estimates, frequency_hz, shapes).items()}
 
 
-def likeness(
+def pairing_score(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
 ) -> float:
     """Return how like a model the measured modes are: the score of ``pair`` summed over the pairs."""

@@ -1,4 +1,4 @@
-"""The fits of the spectral model that are believed: of the whole band if one will do, else of close modes.
+"""The fits of the spectral model that are accepted: of the whole band if one will do, else of close modes.
 
 What a fit must be: converged, near the spectrum (``lack_of_fit``), and of the modes it started from
 (``mode_drift.py``). First the modes alone are tried over the whole band; then with a background, which the
@@ -30,7 +30,7 @@ BREAKDOWNS = (ArithmeticError, ValueError, NumericalError, RuntimeWarning)
 """What a fit that breaks down raises, ``LinAlgError`` among the value errors: a reason to keep what the
 subspace method found, never to lose the record."""
 MOST_LACK_OF_FIT = 1.4
-"""Mean square of the misfit over its expectation up to which a fit of the whole band is believed;
+"""Mean square of the misfit over its expectation up to which a fit of the whole band is accepted;
 records that are what the model says have 0.8 to 1.1."""
 MOST_LOCAL_LACK_OF_FIT = 2.0
 """The same in a narrow band, where the covariance is multiplied by what exceeds 1."""
@@ -76,7 +76,7 @@ class FitStart:
 
 
 @dataclass(frozen=True)
-class Believed:
+class AcceptedFit:
     """A fit and the candidates it speaks for.
 
     Attributes
@@ -102,8 +102,8 @@ class _Tried:
 
 def accepted_fits(
     y: FloatArray, sample_rate_hz: float, band_hz: tuple[float, float], start: FitStart
-) -> tuple[list[Believed], tuple[Finding, ...]]:
-    """Return the fits that are believed, and a finding on each group of modes that none describes.
+) -> tuple[list[AcceptedFit], tuple[Finding, ...]]:
+    """Return the fits that are accepted, and a finding on each group of modes that none describes.
 
     Parameters
     ----------
@@ -124,13 +124,13 @@ def accepted_fits(
             local = _tried(partial(work, dither_share=share), MOST_LOCAL_LACK_OF_FIT, start, duration_s)
             lost = local.strayed & start.sure
             if local.fit is not None and not lost.any():
-                fits.append(_believed(local, group.members))
+                fits.append(_accepted(local, group.members))
                 break
         else:
             obstacle = local.obstacle or f"the fit left the peak at {_listed(start.frequency_hz[lost])} Hz"
             findings.append(not_refined(start.frequency_hz[group.members & start.sure], obstacle))
     if whole.fit is not None and left.any():
-        fits.append(_believed(whole, left))
+        fits.append(_accepted(whole, left))
     return fits, tuple(findings)
 
 
@@ -208,12 +208,12 @@ def _finite(refined: Refined) -> bool:
     return all(np.isfinite(x).all() for x in numbers) and bool(np.all(variances > 0.0))
 
 
-def _believed(tried: _Tried, candidates: BoolArray) -> Believed:
+def _accepted(tried: _Tried, candidates: BoolArray) -> AcceptedFit:
     """Return what a fit says of some candidates; one that strayed stood for the forces."""
     assert tried.fit is not None
     kept = (candidates & ~tried.strayed)[tried.fit.candidate]
     arrays = {name: getattr(tried.fit, name)[kept] for name in OF_EACH_MODE}
-    return Believed(candidates, replace(tried.fit, **arrays))
+    return AcceptedFit(candidates, replace(tried.fit, **arrays))
 
 
 def _listed(frequency_hz: FloatArray) -> str:
