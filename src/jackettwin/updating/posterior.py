@@ -12,7 +12,9 @@ draws give the evidence (:mod:`jackettwin.updating.evidence`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -227,15 +229,22 @@ def _island(
         beta = _next_beta(swarm, log_q, beta, _ESS * n)
         weight = beta * swarm.log_l + swarm.log_p - log_q
         swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), n, rng))
-        progress.within(f"{place}: {beta:.0%}")
+        tell = partial(progress.within, f"{place}: {beta:.0%}")
+        tell()
         if beta == 1.0:
-            return _walk(problem, prior, swarm, beta, rng)
+            return _walk(problem, prior, swarm, beta, rng, tell)
         tops = tops or _hilltops(problem, scattered)
-        swarm, log_q = _renewed(problem, prior, swarm, beta, rng, tops)
+        swarm, log_q = _renewed(problem, prior, swarm, beta, rng, tops, tell)
 
 
 def _renewed(
-    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator, tops: Kernels
+    problem: Problem,
+    prior: Prior,
+    swarm: _Swarm,
+    beta: float,
+    rng: np.random.Generator,
+    tops: Kernels,
+    tell: Callable[[], None],
 ) -> tuple[_Swarm, FloatArray]:
     """Return other particles of the same tempered posterior, and ln of the density they are drawn from.
 
@@ -250,7 +259,7 @@ def _renewed(
     here, at_last = (_effective(b * fresh.log_l + fresh.log_p - log_q) for b in (beta, 1.0))
     if here >= _REDRAWN * n or at_last >= _ESS * n:
         return fresh, log_q
-    moved = _walk(problem, prior, swarm, beta, rng)[-1]
+    moved = _walk(problem, prior, swarm, beta, rng, tell)[-1]
     return moved, beta * moved.log_l + moved.log_p
 
 
@@ -277,12 +286,18 @@ def _tops(swarm: _Swarm) -> IntArray:
 
 
 def _walk(
-    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator
+    problem: Problem,
+    prior: Prior,
+    swarm: _Swarm,
+    beta: float,
+    rng: np.random.Generator,
+    tell: Callable[[], None],
 ) -> list[_Swarm]:
     """Return the swarm after every few of its moves."""
     kept = []
     for move in range(1, _MOVES + 1):
         swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
+        tell()
         if move % _KEPT == 0:
             kept.append(swarm)
     return kept
