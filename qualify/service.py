@@ -65,7 +65,7 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
     with Server(store) as server:
         warm(server)
         quiet = asked(server, lambda: time.sleep(given.quiet_s))
-        begin, cpu, memory = time.monotonic(), server.cpu_s(), []
+        begin, cpu, memory = time.monotonic(), server.cpu_s(), list[dict[int, int]]()
 
         def send() -> None:
             for k in range(given.records):
@@ -73,7 +73,7 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
                 server.send(*one, asset=f"wtg_{k % 100:02d}")
                 while server.records()["received"] > 3:
                     time.sleep(0.1)
-                memory.append((k, server.resident_bytes()))
+                memory.append(server.resident_bytes())
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
 
@@ -86,7 +86,7 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
             "worker_cpu_s_a_record": (spent[1] - cpu[1]) / given.records,
             "quiet": quiet,
             "busy": busy,
-            **growth(memory),
+            "memory_mb": next(iter(memory[-1].values())) / 2**20,
         }
 
 
@@ -135,24 +135,32 @@ def asked(server: Server, during: Callable[[], None]) -> Figures:
     return {"answers": len(delays), "p50_ms": p50, "p95_ms": p95, "wrong": len(wrong), "cpu_ms": cpu_ms}
 
 
-def growth(memory: list[tuple[int, int]]) -> Figures:
-    """Return the server's memory, and what it grows by in a thousand records, over the second half."""
-    late = np.array(memory[len(memory) // 2 :], dtype=float)
-    slope, _ = np.polyfit(late[:, 0], late[:, 1], 1)
-    return {"memory_mb": late[-1, 1] / 2**20, "memory_mb_a_thousand": slope * 1000 / 2**20}
+def spread(memory: list[dict[int, int]]) -> Figures:
+    """Return the memory of server and workers [MB], and how far from its middle each ever is [%].
+
+    The first third is warm-up: libraries are loaded when they are first needed, and caches fill.
+    """
+    late = memory[len(memory) // 3 :]
+    lowest, highest = (np.array([part(m[pid] for m in late) for pid in late[0]]) for part in (min, max))
+    return {
+        "memory_mb": [[m[pid] / 2**20 for pid in memory[0]] for m in (memory[0], late[0], memory[-1])],
+        "spread_percent": list(100.0 * (highest - lowest) / (highest + lowest)),
+    }
 
 
 def long_run(folder: Path, given: argparse.Namespace) -> Figures:
-    """Send many cheap records; return what the server's memory does."""
+    """Send many cheap records; return what the memory of server and workers does."""
     memory = []
     with Server(living.new_store(folder, CHEAP_TWIN)) as server:
         for k in range(given.long):
             server.send(f"r{k}.parquet", record_file(k, samples=CHEAP), description(hour(k)))
             while k % 10 == 9 and server.records()["received"] > 4:
                 time.sleep(0.1)
-            memory.append((k, server.resident_bytes()))
+            memory.append(server.resident_bytes())
+            if k % 50 == 0:
+                print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
         server.wait_until_observed(given.long, seconds=3600.0)
-    return {"records": given.long, **growth(memory)}
+    return {"records": given.long, **spread(memory)}
 
 
 def kills(folder: Path, given: argparse.Namespace) -> Figures:
@@ -399,12 +407,20 @@ def _load(f: Figures) -> list[str]:
 
 
 def _memory(f: Figures) -> list[str]:
-    share = f["memory_mb_a_thousand"] / f["memory_mb"]
+    names = ["server", *(f"worker {i}" for i, _ in enumerate(f["spread_percent"][1:], start=1))]
     return [
         "## Memory",
         "",
-        f"{f['records']} records of a minute: {f['memory_mb']:.0f} MB in the end; over the second half it",
-        f"grew by {f['memory_mb_a_thousand']:.1f} MB a thousand records ({share:.1%}).",
+        f"{f['records']} records of a minute, an hour apart, of one turbine; the first third is warm-up.",
+        "",
+        "| MB | after the first record | after warm-up | in the end | from its middle, after warm-up | bar |",
+        "|---|---|---|---|---|---|",
+        *(
+            f"| {name} | {first:.0f} | {warm:.0f} | {last:.0f} | ± {share:.1f} % | ± 5 % |"
+            for name, first, warm, last, share in zip(
+                names, *f["memory_mb"], f["spread_percent"], strict=True
+            )
+        ),
         "",
     ]
 

@@ -277,11 +277,14 @@ class Server:
         assert self._process is not None
         return _cpu_s(self._process.pid), sum(_cpu_s(pid) for pid in self.workers())
 
-    def resident_bytes(self) -> int:
-        """Return the memory of the server's own process."""
+    def resident_bytes(self) -> dict[int, int]:
+        """Return the memory of the server's own process, then of its workers, by process."""
         assert self._process is not None
-        pages = int(Path(f"/proc/{self._process.pid}/statm").read_text().split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE")
+        page = os.sysconf("SC_PAGE_SIZE")
+        return {
+            pid: page * int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+            for pid in (self._process.pid, *sorted(self.workers()))
+        }
 
     @contextmanager
     def _database(self) -> Iterator[Engine]:

@@ -2,11 +2,15 @@
 
 import gzip
 import re
+import resource
 from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
 from urllib.parse import quote
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
@@ -17,6 +21,7 @@ from jackettwin.service import ServiceSettings, auth, pages
 from jackettwin.service.app import API, ROUTERS, create_app
 from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
+from jackettwin.service.tasks import read_file
 from jackettwin.store import people, results, writing
 
 PASSWORD = "three small words"
@@ -199,6 +204,21 @@ def test_a_file_that_expands_beyond_the_limit_is_refused(
         assert (answer.status_code, answer.json()["field"]) == (422, "file")
         assert "expands" in answer.json()["detail"]
         assert not list(small.settings.store.glob("records/**/*.parquet"))
+
+
+def test_a_file_is_stopped_while_it_expands(tmp_path: Path) -> None:
+    """Thirty million zeros in some kilobytes; nothing near their 240 MB may be held meanwhile."""
+    path, zeros = tmp_path / "bomb.parquet", pa.table({"x": np.zeros(10**7)})
+    with pq.ParquetWriter(path, zeros.schema) as writer:
+        for _ in range(3):
+            writer.write_table(zeros)
+    assert path.stat().st_size < 200_000
+    held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    limit = resource.getrlimit(resource.RLIMIT_DATA)
+    parsed = read_file(str(path), "wtg", str(tmp_path), 10**9, memory_bytes=0)
+    assert parsed.problem is not None and "expands" in parsed.problem["detail"]
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - held < 150_000
+    assert resource.getrlimit(resource.RLIMIT_DATA) == limit
 
 
 def test_a_file_that_is_read_too_long_is_given_up(client: TestClient, service: Service, monkeypatch) -> None:

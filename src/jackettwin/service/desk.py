@@ -68,7 +68,7 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
         assets.found_version(connection, asset)
 
     def parse(file: Path, whose: str) -> Parsed:
-        return read_file(str(file), whose, str(store), settings.samples_limit)
+        return read_file(str(file), whose, str(store), settings.samples_limit, settings.worker_memory_bytes)
 
     return take_file(database, Desk(settings, database).now, parse, asset, path, path.name)
 

@@ -89,15 +89,21 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def read_file(path: str, asset: str, store: str, samples_limit: int) -> Parsed:
-    """Read a file of any known format and keep its samples in the store."""
+def read_file(path: str, asset: str, store: str, samples_limit: int, memory_bytes: int) -> Parsed:
+    """Read a file of any known format and keep its samples in the store.
+
+    What it expands to is bounded by ``memory_bytes`` of this process while it is read, and by the number of
+    samples in the end.
+    """
     from jackettwin.records import read_record
     from jackettwin.records.identity import record_id
+    from jackettwin.service.room import at_most
     from jackettwin.store import waveform_path, write_waveform
 
     source = Path(path)
     try:
-        record = read_record(source)
+        with at_most(memory_bytes):
+            record = read_record(source)
         if record.data.size > samples_limit:
             raise InputError(
                 "the file expands to too many samples",
@@ -120,7 +126,11 @@ def read_file(path: str, asset: str, store: str, samples_limit: int) -> Parsed:
     except MemoryError:
         return Parsed(
             file_hash(source),
-            problem={"detail": "the file needs more memory than a worker has", "field": "file"},
+            problem={
+                "detail": "the file expands to more than the memory of a worker",
+                "field": "file",
+                "remedy": "send it in pieces of an hour",
+            },
         )
     return Parsed(number, place, size, about(record))
 

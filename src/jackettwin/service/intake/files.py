@@ -74,9 +74,9 @@ def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
     settings = service.settings
 
     def parse(path: Path, asset: str) -> Parsed:
-        arguments = (str(path), asset, str(settings.store), settings.samples_limit)
+        limits = (settings.samples_limit, settings.worker_memory_bytes)
         for _ in range(work.MOST_TRIES):
-            future = service.compute.submit(read_file, *arguments, priority=100)
+            future = service.compute.submit(read_file, str(path), asset, str(settings.store), *limits, priority=100)
             try:
                 found: Parsed = future.result(timeout=settings.parse_limit_s)
                 return found
