@@ -33,11 +33,14 @@ _DASK = {
     "distributed.scheduler.work-stealing": False,
     "distributed.admin.tick.limit": "60s",
     "distributed.worker.daemon": True,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.log-length": 100,
     "distributed.worker.preload": [f"import os; os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"],
 }
 """A worker over its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try.
+A task that ended a worker comes back to us at once, and counts a try. Dask's profiler and monitor keep an
+hour of what every thread did, half a gigabyte a worker: off.
 """
 
 

@@ -43,7 +43,7 @@ class ServiceSettings:
     parse_limit_s, observe_limit_s : float
         After which reading or observing a record is given up.
     worker_memory_bytes : int
-        Of one worker; beyond it is ended, and the record counts a try.
+        Of one worker: no file may expand beyond it; who observes beyond it is ended, a try of the record.
     """
 
     store: Path

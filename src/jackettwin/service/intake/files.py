@@ -76,7 +76,9 @@ def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
     def parse(path: Path, asset: str) -> Parsed:
         limits = (settings.samples_limit, settings.worker_memory_bytes)
         for _ in range(work.MOST_TRIES):
-            future = service.compute.submit(read_file, str(path), asset, str(settings.store), *limits, priority=100)
+            future = service.compute.submit(
+                read_file, str(path), asset, str(settings.store), *limits, priority=100
+            )
             try:
                 found: Parsed = future.result(timeout=settings.parse_limit_s)
                 return found
