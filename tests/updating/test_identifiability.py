@@ -100,7 +100,7 @@ def test_an_interval_that_is_the_priors_is_not_the_datas(problem: Problem) -> No
 
 
 def test_zener_between_bounds_of_seven_decades_is_not_identified(jacket15: Assembly) -> None:
-    """Its posterior is a quarter of the prior's width, and still spans a factor too large to use."""
+    """Its posterior is a quarter of the prior's width, and still spans a factor of dozens."""
     model = support_model(
         jacket15, family=family("zener"), rayleigh=Rayleigh.minimum(0.0055, 0.1832), highest_mode=5
     )
@@ -112,9 +112,9 @@ def test_zener_between_bounds_of_seven_decades_is_not_identified(jacket15: Assem
         Target(4, f[2], 5e-3 * f[2]),
     )
     wide = single(model, Residuals(targets, relative=False))
-    draws = sample_posterior(wide, particles=100, islands=3, seed=1).log_theta
+    draws = sample_posterior(wide, particles=300, islands=3, seed=1).log_theta
     found = {v.name: v for v in identifiability(wide, draws)}
-    assert found["k0"].ratio < 0.4 and found["k0"].interval_factor > 5.0 > USABLE
+    assert found["k0"].ratio < 0.4 and found["k0"].interval_factor > 10.0 > USABLE
     assert (found["k0"].verdict, found["k0"].decided_by) == ("weak", "data")
     assert found["k1"].decided_by == "bounds"
 

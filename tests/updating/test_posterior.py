@@ -9,7 +9,17 @@ import pytest
 from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, law_probability, single
+from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating import (
+    Problem,
+    Residuals,
+    SupportModel,
+    Target,
+    family,
+    law_probability,
+    single,
+    support_model,
+)
 from jackettwin.updating.convergence import convergence
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.nested import sample_nested
@@ -112,6 +122,20 @@ def test_the_same_seed_gives_the_same_draws(model: SupportModel) -> None:
         sample_posterior(single(model, residuals), particles=150, islands=2, seed=4) for _ in range(2)
     )
     np.testing.assert_array_equal(first.log_theta, second.log_theta)
+
+
+@pytest.mark.parametrize("particles", [6, 12])
+def test_too_few_particles_are_refused(jacket15: Assembly, particles: int) -> None:
+    """A curved valley over seven decades, which six can neither fill nor make a covariance of."""
+    model = support_model(
+        jacket15, family=family("zener"), rayleigh=Rayleigh.minimum(0.0055, 0.1832), highest_mode=5
+    )
+    poles = model.predict(np.array([2.6e9, 8e8, 1e10]), (1, 2, 4)).poles
+    f, zeta = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    targets = (Target(1, f[0], 3e-3 * f[0], zeta[0], 0.15 * zeta[0]), Target(2, f[1], 3e-3 * f[1]))
+    problem = single(model, Residuals((*targets, Target(4, f[2], 5e-3 * f[2])), relative=False))
+    with pytest.raises(NumericalError, match="did not converge"):
+        sample_posterior(problem, particles=particles, islands=4, seed=1)
 
 
 def test_islands_that_disagree_are_no_posterior(model: SupportModel, rng: np.random.Generator) -> None:

@@ -140,17 +140,17 @@ def fitted(z: FloatArray, scale: FloatArray, rng: np.random.Generator) -> Kernel
     """
     n, d = z.shape
     floor = np.diag((_FLOOR * scale) ** 2)
-    whole = la.cholesky(np.atleast_2d(np.cov(z.T)) + floor, lower=True)
+    whole = root_of(np.atleast_2d(np.cov(z.T)) + floor)
     x = la.solve_triangular(whole, z.T, lower=True).T
     centres = rng.choice(n, min(_KERNELS, n), replace=False)
     count = min(n, max(round(_NEIGHBOURS * n), 2 * d + 1))
     roots = []
     for i in centres:
         near = np.argpartition(((x - x[i]) ** 2).sum(axis=1), count - 1)[:count]
-        roots.append(_root(np.atleast_2d(np.cov(z[near].T)) + floor))
+        roots.append(root_of(np.atleast_2d(np.cov(z[near].T)) + floor))
     return Kernels(z[centres], np.array(roots))
 
 
-def _root(covariance: FloatArray) -> FloatArray:
-    """Return the lower Cholesky factor of a covariance of few draws, which may lack a direction."""
+def root_of(covariance: FloatArray) -> FloatArray:
+    """Return the lower Cholesky factor of a covariance that may lack a direction: few draws, or rounding."""
     return np.asarray(la.cholesky(covariance + 1e-6 * np.diag(np.diag(covariance)), lower=True))

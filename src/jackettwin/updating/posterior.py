@@ -28,7 +28,7 @@ from jackettwin.errors import InputError, NumericalError
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.convergence import Convergence, convergence
 from jackettwin.updating.descent import bottom
-from jackettwin.updating.evidence import Kernels, bridged_evidence, fitted
+from jackettwin.updating.evidence import Kernels, bridged_evidence, fitted, root_of
 from jackettwin.updating.laplace import log_covariance
 from jackettwin.updating.prior import Prior
 from jackettwin.updating.problem import Found, Problem
@@ -269,7 +269,7 @@ def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
     roots: list[FloatArray] = []
     for i in _tops(scattered):
         z = bottom(problem, scattered.z[i], tuple(modes.some(np.array([i])) for modes in scattered.found))
-        root = la.cholesky(log_covariance(problem, np.exp(z)), lower=True)
+        root = root_of(log_covariance(problem, np.exp(z)))
         apart = [la.solve_triangular(root, z - centre, lower=True) for centre in centres]
         if all(x @ x > 1.0 for x in apart):
             centres += [z] * len(_WIDER)
