@@ -89,13 +89,10 @@ class Database:
         initdb, server = found("initdb"), found("postgres")
         if not self.data.exists():
             self.data.mkdir(parents=True)
-            if self._as_user:  # PostgreSQL refuses to run as root
-                for parent in self.data.parents:
-                    if str(parent) not in ("/", "/tmp"):
-                        parent.chmod(parent.stat().st_mode | 0o711)
-                shutil.chown(self.data, "postgres")
+            self._let_in()
             arguments = ["-D", str(self.data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "--no-sync"]
             subprocess.run([*self._as_user, initdb, *arguments], check=True, capture_output=True, cwd="/")
+        self._let_in()
         (self.data / "postmaster.pid").unlink(missing_ok=True)
         arguments = ["-D", str(self.data), "-p", str(self.port), "-k", "", "-h", "127.0.0.1"]
         arguments += ["-c", "fsync=off"]  # we kill it, not the machine it runs on
@@ -105,6 +102,17 @@ class Database:
             )
         wait_for_port(self.port, 120.0)
         time.sleep(0.5)  # it listens a moment before it answers
+
+    def _let_in(self) -> None:
+        """Let PostgreSQL, which refuses to run as root, reach its folder.
+
+        Each time it starts: another run of pytest closes the folder of all of them.
+        """
+        if self._as_user:
+            for parent in self.data.parents:
+                if str(parent) not in ("/", "/tmp"):
+                    parent.chmod(parent.stat().st_mode | 0o711)
+            shutil.chown(self.data, "postgres")
 
     def _user(self) -> str | None:
         return "postgres" if self._as_user else None
