@@ -39,8 +39,8 @@ _DASK = {
 }
 """A worker over its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try. Dask's profiler and monitor keep an
-hour of what every thread did, half a gigabyte a worker: off.
+A task that ended a worker comes back to us at once, and counts a try. Dask's profiler and monitor keep
+what every thread did for an hour, and let workers grow meanwhile: off, and short.
 """
 
 
