@@ -16,6 +16,7 @@ from typing import Any
 import click
 from rich.console import Console
 
+from jackettwin.cli.interrupts import insisting
 from jackettwin.cli.plain_progress import EVERY_S, plain_progress
 from jackettwin.errors import InputError, JackettwinError
 
@@ -88,7 +89,8 @@ class Commands(click.Group):
         """Run a command; turn errors into one message and an exit code."""
         _hear()
         try:
-            return super().invoke(ctx)
+            with insisting():
+                return super().invoke(ctx)
         except InputError as error:
             messages.print(f"[bold red]error:[/] {_plain(str(error))}", soft_wrap=True)
             ctx.exit(BAD_INPUT)
@@ -184,6 +186,14 @@ def progress(total: int, title: str) -> Iterator[ConsoleStep]:
 
         yield ConsoleStep(announce, lambda what: bar.update(task, description=what))
         bar.update(task, completed=total, description=title)
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Say what is being done for as long as the block takes."""
+    with progress(1, what) as step:
+        step(what)
+        yield
 
 
 def print_json(document: object) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import fixed, output, print_json
+from jackettwin.cli.console import fixed, output, print_json, working
 from jackettwin.simulate import loads_document, read_scenario
 
 
@@ -17,7 +17,8 @@ from jackettwin.simulate import loads_document, read_scenario
 def loads_command(scenario: str, as_json: bool) -> None:
     """Wave and wind loads of SCENARIO on an asset that stands still, about still water and about the bed."""
     chosen = read_scenario(scenario)
-    document = loads_document(chosen)
+    with working(f"loads of {chosen.name}"):
+        document = loads_document(chosen)
     if as_json:
         print_json(document)
     else:

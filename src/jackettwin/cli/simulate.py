@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import output, print_json
+from jackettwin.cli.console import output, print_json, working
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
@@ -31,7 +31,8 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     """Simulate SCENARIO, a shipped name or a YAML file, and write its record."""
     chosen = read_scenario(scenario)
     path = _record_path(out or f"out/{chosen.name}")
-    done = simulate(chosen)
+    with working(f"simulate {chosen.name}"):
+        done = simulate(chosen)
     write_record(done.record, path)
     asset = chosen.asset
     odd = check(assemble(asset.structure)).warnings

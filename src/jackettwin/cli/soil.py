@@ -10,7 +10,7 @@ import click
 import numpy as np
 from rich.table import Table
 
-from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.console import messages, output, print_json, working
 from jackettwin.soil.curves import Curve
 from jackettwin.soil.foundation import Foundation, read_foundation
 from jackettwin.soil.impedance import head_impedance
@@ -43,12 +43,15 @@ def soil_command(
 ) -> None:
     """Reaction curves, head stiffness, capacity and pushover of a pile of FOUNDATION, and a page of them."""
     ground = read_foundation(foundation)
-    pushed = None if ground.curves is None else pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
-    document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
-    # drawing takes a second to load: not before it is needed
-    from jackettwin.report.soil_page import write_soil_page
+    pushed = None
+    with working(f"piles of {Path(foundation).stem}"):
+        if ground.curves is not None:
+            pushed = pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
+        document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
+        # drawing takes a second to load: not before it is needed
+        from jackettwin.report.soil_page import write_soil_page
 
-    path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
+        path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
     document["page"] = str(path)
     if as_json:
         print_json(document)
