@@ -23,14 +23,13 @@ update: {laws: [kelvin-voigt], particles: 20, starts: 2, damping_of: all}
 MODES = {1: estimate(0.1755, 0.012, 2e-3, 0.1), 2: estimate(0.1785, 0.011, 2e-3, 0.1)}
 
 
-@pytest.fixture(scope="module")
-def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
-    folder: Path = tmp_path_factory.mktemp("twin")
+def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
+    """Return what is known of three records that show some modes, and the page on it."""
     (folder / engine.TWIN_FILE).write_text(TWIN)
     model = engine.load_twin(folder).model
     documents = []
     for k in range(3):
-        made = observation(MODES, NOON + timedelta(minutes=10 * k), name=f"r{k}")
+        made = observation(modes, NOON + timedelta(minutes=10 * k), name=f"r{k}")
         made = type(made)(**{**vars(made), "model_hash": model.model_hash})
         documents.append(json.dumps(OBSERVATION.dump(made)))
     folded = engine.advance_day(model, "2025-03-01", None, documents)
@@ -40,6 +39,20 @@ def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
     outcome = know(asked)
     assert outcome.page is not None and outcome.of == "it"
     return json.loads(outcome.document)["known"], gzip.decompress(outcome.page).decode()
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
+    return asked_of(tmp_path_factory.mktemp("twin"), MODES)
+
+
+def test_what_no_ground_explains_has_no_interval(tmp_path: Path) -> None:
+    """The report's headline and the answer of the API are one."""
+    odd = {1: MODES[1], 2: estimate(0.30, 0.011, 2e-3, 0.1)}
+    known, page = asked_of(tmp_path, odd)
+    assert known["status"] == engine.CANNOT_MEET
+    assert {found["interval_90"] for found in known["parameters"].values()} == {None}
+    assert "cannot meet what was measured on any ground" in page
 
 
 def test_parameters_have_intervals_and_units(answered: tuple[dict, str]) -> None:

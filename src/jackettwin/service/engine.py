@@ -44,6 +44,8 @@ from jackettwin.twin.sums import average
 from jackettwin.version import __version__
 
 TWIN_FILE = "twin.yaml"
+CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
+"""What is said of parameters that come nearest to the data and do not explain them."""
 DAY = StoredSchema("twin_day", Day)
 """How the state of one day is kept."""
 
@@ -229,10 +231,12 @@ def known(twin: Twin, seen: Basis) -> tuple[dict[str, Any], list[PageSection] | 
     (u,) = result.updates
     sure = u.uncertainty
     median = u.best.theta if sure is None else sure.median
-    spans = [None] * len(median) if sure is None else sure.interval_90.tolist()
+    meets = answers.fit is None or answers.fit.fits
+    spans = sure.interval_90.tolist() if sure is not None and meets else [None] * len(median)
+    status = "without standard deviations, no interval" if sure is None else sure.status
     return {
         "law": u.law,
-        "status": "without standard deviations, no interval" if sure is None else sure.status,
+        "status": status if meets else CANNOT_MEET,
         "records": seen.in_all[0],
         "until_utc": max(day.time_utc for day in state.days.values() if day.time_utc).isoformat(),
         "parameters": {
