@@ -41,7 +41,7 @@ COMMANDS: dict[str, list[str]] = {
     "soil": ["soil", "jacket15", "--json"],
     "verify": ["verify"],
 }
-WHOLE = (".html", ".json", ".npz", ".parquet", ".csv", ".nc", ".png", ".gz")
+WHOLE = (".html", ".json", ".yaml", ".npz", ".parquet", ".csv", ".nc", ".png", ".gz")
 """Endings of what a command may leave: a file that it had finished."""
 
 
@@ -117,8 +117,8 @@ def main() -> None:
             "# Ctrl-C and silence",
             "",
             f"`python qualify/interrupts.py --moments {moments}`: every command once to its end, then",
-            f"interrupted at {moments} moments spread over that time. The exit code is 130, or 0 of one that",
-            "had ended before.",
+            f"interrupted at {moments} moments spread over that time. The exit code is 130; −2 where Python",
+            "itself was still starting, 0 of one that had ended before.",
             "",
             "| command | whole [s] | longest silence [s] | ended after Ctrl-C [s] | exit codes | faults |",
             "|---|---|---|---|---|---|",
