@@ -11,7 +11,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from common.planted import random_system
 
+from jackettwin.identification.synthetic import simulate
 from jackettwin.records import Record, assess, repair
 from jackettwin.records.repair import common_time
 
@@ -106,6 +108,19 @@ def test_a_clock_that_runs_fast_is_slowed_down(tower: SimpleNamespace) -> None:
     assert set(late.rows) in ({*UPPER}, {*LOWER})
     assert abs(late.drift) == pytest.approx(200e-6, abs=6.0 * late.drift_std)
     assert late.drift_std < 20e-6
+
+
+@pytest.mark.parametrize("drawn", [(13, 100), (77, 185)])
+def test_close_modes_that_take_turns_are_no_drift(drawn: tuple[int, int]) -> None:
+    """Sound systems, two of 620 drawn: phases wander by 0.15 and 0.3 rad, each channel its own way."""
+    system = random_system(np.random.default_rng(drawn))
+    record = simulate(
+        system.system,
+        np.random.default_rng((*drawn, 0)),
+        duration_s=system.duration_s,
+        sample_rate_hz=system.sample_rate_hz,
+    )
+    assert said(record) == []
 
 
 def test_complex_modes_are_no_delay(tower: SimpleNamespace) -> None:

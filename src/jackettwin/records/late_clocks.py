@@ -20,6 +20,11 @@ from jackettwin.records.jumps import SIGMAS, lines, scatter
 
 DRIFT_RAD = 0.1
 """The same of a drift over the whole record: changes are free of what the modes do."""
+PARALLEL = 1.5
+"""Spreads of the slopes within either group that the gap between them exceeds: channels of one logger drift
+alike, those of modes that take turns each in its own way."""
+FEWEST_ON_A_LINE = 6
+"""Windows: the scatter about a line through fewer is not known well enough to tell a drift."""
 PARTED = 0.1
 """Share of the spread of the slopes of all channels within which that of a sharp one is known."""
 LEAST_GAIN = 0.04
@@ -51,6 +56,8 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
     std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(power)
     least = DRIFT_RAD / REACH_RAD * network.reach_s / n
     out, spread = np.zeros(len(slope)), np.zeros(len(slope))
+    if n < FEWEST_ON_A_LINE:
+        return out, spread
     for part in joined(network):
         clear = max(0.4 * least, PARTED * float(np.ptp(slope[part])))
         sharp = [i for i in part if std[i] < clear]
@@ -61,10 +68,13 @@ def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray
         own = {i: int(np.argmin(np.abs(middle - slope[i]))) for i in part}
         sizes = [sorted(i for i in part if own[i] == k) for k in range(len(groups))]
         main = sizes.index(largest(sizes))
+        spread_in = np.array([np.ptp(slope[g]) for g in groups])
         known = np.array([1.0 / np.sqrt(np.sum(1.0 / np.maximum(std[g], 1e-9) ** 2)) for g in groups])
         for i, k in own.items():
             apart, error = middle[k] - middle[main], float(np.hypot(known[k], known[main]))
-            if abs(apart) > max(least, SIGMAS * error):
+            gap = np.abs(slope[groups[k]][:, None] - slope[groups[main]]).min()
+            alike = gap > PARALLEL * max(spread_in[k], spread_in[main])
+            if alike and abs(apart) > max(least, SIGMAS * error):
                 out[i], spread[i] = apart, error
     return out, spread
 
