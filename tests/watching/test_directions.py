@@ -1,10 +1,11 @@
 """Bayes factors of steps against numerical integration."""
 
 import numpy as np
+import pytest
 from scipy.stats import f as fisher
 from scipy.stats import norm
 
-from jackettwin.watching.directions import SIZE_WEIGHTS, SIZES, directions_of, log_bayes_factors
+from jackettwin.watching.directions import SIZE_WEIGHTS, SIZES, Pattern, directions_of, log_bayes_factors
 from jackettwin.watching.next_look import expected_information
 from jackettwin.watching.scatter import STRONGER, log_ratios, steadiness
 
@@ -16,6 +17,23 @@ def test_pairs_and_all_modes_are_bet_on_and_stakes_add_up_to_the_share() -> None
     assert found.names == ("a", "b", "c", "a and b", "all modes", "any")
     assert abs(np.exp(found.log_weights).sum() - 0.7) < 1e-12
     assert abs(np.exp(found.log_size_weights).sum() - 1.0) < 1e-12
+
+
+def test_a_pattern_is_one_more_bet_and_those_alike_are_one() -> None:
+    soft, brace = np.array([-0.1, -0.1, -1.0]), np.array([0.0, -0.3, -0.2])
+    given = (Pattern("soil", soft), Pattern("scour", 1.1 * soft, 0.5), Pattern("brace", brace, 0.5))
+    found = directions_of("frequency", LABELS, HZ, given)
+    assert found.names[5:] == ("soil (or 1 alike)", "brace", "any")
+    assert abs(np.exp(found.log_weights).sum() - 0.7) < 1e-12
+    assert found.log_weights[5] - found.log_weights[6] == pytest.approx(np.log(3.0))
+    assert found.members[6].tolist() == [False, True, True]
+
+
+def test_a_pattern_that_falls_is_bet_on_as_a_mode_that_falls(rng: np.random.Generator) -> None:
+    found = directions_of("frequency", LABELS, HZ, [Pattern("of the model", np.array([0.0, 0.0, -3e-3]))])
+    info, score = 1e6 * np.eye(3), 1e3 * rng.standard_normal(3)
+    factors = log_bayes_factors(found, info[None], score[None])[0]
+    assert factors[found.names.index("of the model")] == pytest.approx(factors[found.names.index("c")])
 
 
 def test_a_factor_is_the_integral_over_sizes(rng: np.random.Generator) -> None:

@@ -1,16 +1,30 @@
 """The watch on small series: quiet ones stay quiet, a step is found, dated, measured and named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.watching import Change, History, Look, Watch, diagnose, general_causes, start, step
+from jackettwin.watching import (
+    Change,
+    History,
+    Look,
+    Pattern,
+    Watch,
+    diagnose,
+    general_causes,
+    start,
+    step,
+)
 
 from .conftest import made
 
 
-def watched(history: History, baseline: float = 100.0) -> tuple[Watch, list[Look], list[Change]]:
-    watch = start(history.between(0.0, baseline))
+def watched(
+    history: History, baseline: float = 100.0, patterns: tuple[Pattern, ...] = ()
+) -> tuple[Watch, list[Look], list[Change]]:
+    watch = start(history.between(0.0, baseline), patterns=patterns)
     looks = []
     for day in history.between(baseline, np.inf).by_day():
         watch, look = step(watch, day)
@@ -34,6 +48,16 @@ def test_a_step_is_found_dated_measured_and_named(stepped: History) -> None:
     found = diagnose(change, causes, [kind for kind, _ in watch.quantities])
     assert found.verdicts[0].cause in ("first and second alike", "all modes alike")
     assert abs(sum(v.probability for v in found.verdicts) - 1.0) < 1e-9
+
+
+def test_a_cause_that_the_model_expects_is_found_earlier(quiet: History) -> None:
+    """A pair that parts is no mode alone, no pair alike and not all: only the pattern says it."""
+    parts = np.array([-1.0, 1.0])
+    moved = quiet.frequency * np.exp(0.003 * parts * (quiet.days >= 120.0)[:, None])
+    expected = (Pattern("brace", parts),)
+    told, untold = (watched(replace(quiet, frequency=moved), patterns=p) for p in (expected, ()))
+    assert told[2][0].day < untold[2][0].day and told[2][0].direction == "brace"
+    assert not watched(quiet, patterns=expected)[2]
 
 
 def test_the_same_days_give_the_same_answer(stepped: History) -> None:

@@ -23,12 +23,13 @@ from jackettwin.response.modal import UndampedModes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import Spring, Support
-from jackettwin.structure import Structure, assemble
+from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
 from jackettwin.watching import (
     Cause,
     CauseVerdict,
     Diagnosis,
+    Pattern,
     expected_information,
     lognormal_sizes,
     sensor_noise,
@@ -69,6 +70,8 @@ LOOKS = (
 """Where causes show to who looks, by their names; what is in the ground does not."""
 _ONE_SIZE = 0.1
 """Spread of ln size below which a cause is there or not."""
+_SHOWS = 3e-4
+"""A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -89,6 +92,16 @@ class ModelCauses:
     frequency_hz: FloatArray
     causes: tuple[Cause, ...]
     traceless: tuple[str, ...]
+
+    def patterns(self, labels: Sequence[str]) -> tuple[Pattern, ...]:
+        """Return what the causes do to frequencies, of those that would show, over modes by label."""
+        found = []
+        for cause in self.causes:
+            once = cause.draws.mean(axis=0)
+            change = np.array([once[self.labels.index(n)] if n in self.labels else 0.0 for n in labels])
+            if np.abs(change).max() * np.median(np.abs(cause.sizes)) > _SHOWS:
+                found.append(Pattern(cause.name, change, cause.prior))
+        return tuple(found)
 
 
 def model_causes(
@@ -112,7 +125,8 @@ def model_causes(
         If no label is that of a mode of the model.
     """
     typical = Standing(structure, *(np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS) for _ in "hv"))
-    named = _Modes.of(typical, gravity)
+    assembly = assemble(structure, gravity=gravity)
+    named = _Modes.of(typical, assembly)
     places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
     if max(places, default=-1) < 0:
         raise InputError(
@@ -120,25 +134,26 @@ def model_causes(
             allowed=", ".join(named.labels), remedy="label modes as `jackettwin modes` does",
         )  # fmt: skip
     rng = np.random.default_rng((77, seed))
-    stands, fitted = _standings(typical, named, places, frequency_hz, gravity, rng)
+    stands, fitted = _standings(typical, named, places, frequency_hz, assembly, rng)
     zeta = np.full(MODES, 0.01)
     for place, value in zip(places, damping_ratio, strict=True):
         if place >= 0 and np.isfinite(value):
             zeta[place] = value
     loss = _LOSS[0] * np.exp(_LOSS[1] * rng.standard_normal(_DRAWS))
-    bases = [_Modes.of(standing, gravity, like=named) for standing in stands]
+    bases = [_Modes.of(standing, assembly, like=named) for standing in stands]
     found: list[tuple[str, Cause]] = []
     traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
     for event in happenings(typical):
+        after = assemble(event.apply(typical).structure, gravity=gravity)  # whatever the feet
         draws = np.array([
-            _effect(event, standing, base, eta, zeta, gravity)
+            effect(event, standing, after, base, eta, zeta)
             for standing, base, eta in zip(stands, bases, loss, strict=True)
         ])  # fmt: skip
         if np.abs(draws * event.median).max() < _TRACE:
             traceless.append(event.name)
         else:
             sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
-            bend = _bend(event, stands[0], bases[0], loss[0], zeta, gravity, draws[0])
+            bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
             found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit, bend=bend)))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
     return ModelCauses(named.labels, fitted, causes, tuple(traceless))
@@ -157,15 +172,9 @@ class _Modes:
     soil_share: FloatArray
 
     @classmethod
-    def of(cls, standing: Standing, gravity: bool, like: _Modes | None = None) -> _Modes:
-        structure = standing.structure
-        assembly = assemble(structure, gravity=gravity)
-        springs = tuple(
-            Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0]))
-            for node, h, v in zip(
-                structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True
-            )
-        )
+    def of(cls, standing: Standing, assembly: Assembly, like: _Modes | None = None) -> _Modes:
+        feet = zip(standing.structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
+        springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node, h, v in feet)
         modes = undamped_modes(build_system(assembly, Support(springs)), MODES if like is None else MODES + 6)
         if like is not None:
             order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
@@ -176,44 +185,57 @@ class _Modes:
             if like is None
             else like.labels
         )
-        feet = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
+        moved = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
         energy = np.zeros(len(modes.omega))
         for spring in springs:
-            u = feet[assembly.mesh.node_names.index(spring.node)]
+            u = moved[assembly.mesh.node_names.index(spring.node)]
             energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
         return cls(labels, modes, assembly.mass, energy / modes.omega**2)
 
 
-def _effect(
-    event: Happening, standing: Standing, base: _Modes, eta: float, zeta: FloatArray, gravity: bool
+def effect(
+    event: Happening, standing: Standing, assembly: Assembly, base: _Modes, eta: float, zeta: FloatArray
 ) -> FloatArray:
     """Return the change of ln f and ln ζ by one unit of an event, (2·MODES,).
 
     The ground's part of ζ is ½η times its share of the strain energy.
+
+    Parameters
+    ----------
+    assembly : of the structure after the event
     """
-    after = _Modes.of(event.apply(standing), gravity, like=base)
+    after = _Modes.of(event.apply(standing), assembly, like=base)
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
     return np.concatenate([ln_f, more / zeta]) / event.per
 
 
+def repeated(event: Happening, times: int) -> Happening:
+    """Return an event that happens so many times over, as one; its effect is per event still."""
+
+    def apply(standing: Standing) -> Standing:
+        for _ in range(times):
+            standing = event.apply(standing)
+        return standing
+
+    return replace(event, apply=apply, per=times * event.per)
+
+
 def _bend(
     event: Happening,
     standing: Standing,
+    gravity: bool,
     base: _Modes,
     eta: float,
     zeta: FloatArray,
-    gravity: bool,
     once: FloatArray,
 ) -> FloatArray:
     """Return how an event's direction turns with each further median size, (2·MODES,), if it has sizes."""
     if event.spread < _ONE_SIZE:
         return np.zeros(0)
-
-    def thrice(s: Standing) -> Standing:
-        return event.apply(event.apply(event.apply(s)))
-
-    often = _effect(replace(event, apply=thrice, per=3.0 * event.per), standing, base, eta, zeta, gravity)
+    thrice = repeated(event, 3)
+    after = assemble(thrice.apply(standing).structure, gravity=gravity)
+    often = effect(thrice, standing, after, base, eta, zeta)
     return np.asarray(0.5 * (often - once) * event.median / event.per)
 
 
@@ -222,7 +244,7 @@ def _standings(
     named: _Modes,
     places: Sequence[int],
     frequency_hz: FloatArray,
-    gravity: bool,
+    assembly: Assembly,
     rng: np.random.Generator,
 ) -> tuple[list[Standing], FloatArray]:
     """Return draws of the feet's stiffness that agree with the measured frequencies, and the fitted ones."""
@@ -234,7 +256,7 @@ def _standings(
         )
 
     def residual(x: FloatArray) -> FloatArray:
-        omega = _Modes.of(at(x), gravity, like=named).modes.omega
+        omega = _Modes.of(at(x), assembly, like=named).modes.omega
         off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
         return np.array([*off, *x])
 
@@ -242,7 +264,7 @@ def _standings(
     slope: FloatArray = np.asarray(fit.jac)
     covariance = np.linalg.inv(slope.T @ slope)
     points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
-    best = _Modes.of(at(fit.x), gravity, like=named)
+    best = _Modes.of(at(fit.x), assembly, like=named)
     drawn = [at(x) for x in points]
     apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
     drawn = [

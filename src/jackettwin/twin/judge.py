@@ -8,22 +8,25 @@ saves time: a day that a late record has changed since is judged anew, from the 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, timedelta
+from functools import cache
 from typing import Any
 
 import numpy as np
 
+from jackettwin.errors import InputError
 from jackettwin.findings import Finding
+from jackettwin.twin.causes import ModelCauses, seen_causes
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
 from jackettwin.twin.stored import StoredSchema
 from jackettwin.twin.sums import UNIT, ModeSums
-from jackettwin.twin.watched import explained_alarm, structure_causes
+from jackettwin.twin.watched import begun, explained_alarm, structure_causes
 from jackettwin.twin.watched_document import alarm_document
-from jackettwin.watching import History, Watch, start, step
+from jackettwin.watching import History, Watch, step
 from jackettwin.watching.watch import FEWEST_DAYS
 
 EPOCH = date(1970, 1, 1)
@@ -94,12 +97,13 @@ def judge(
     findings = []
     columns = Columns.of(model, state, before)
     baseline = history_of(columns, state, before)
+    causes = cache(lambda: _causes(model, baseline))  # seconds, needed rarely
     if known.learnt is None:
-        watch = start(baseline, arl_years=settings.arl_years)
+        watch = begun(baseline, settings.arl_years, causes())
         known = replace(known, baseline=_fingerprint(state, before), learnt=watch, watch=watch)
         findings.append(Finding("watch_begins", None, {"from": end, "arl_years": settings.arl_years}))
     for day in (d for d in after if d > known.through):
-        known = _day(model, known, baseline, history_of(columns, state, [day]), day)
+        known = _day(known, baseline, history_of(columns, state, [day]), day, causes)
     known = replace(known, judged=_fingerprint(state, after))
     told = {alarm["time_utc"] for alarm in kept.alarms}
     return known, (*findings, *(finding_of(a) for a in known.alarms if a["time_utc"] not in told))
@@ -118,15 +122,27 @@ def _known(
     return kept
 
 
-def _day(model: TwinModel, known: Judged, baseline: History, day: History, name: str) -> Judged:
+def _causes(model: TwinModel, baseline: History) -> ModelCauses | None:
+    """Return what may happen to the structure; None if there is none, or its modes were not seen."""
+    if model.assembly is None:
+        return None
+    try:
+        return structure_causes(model.structure.structure, True, baseline)
+    except InputError:
+        return None
+
+
+def _day(
+    known: Judged, baseline: History, day: History, name: str, causes: Callable[[], ModelCauses | None]
+) -> Judged:
     """Return what is known after one more day."""
     if known.watch is None or not day.days.size:
         return replace(known, through=name)
     watch, look = step(known.watch, day)
     alarms = known.alarms
     if look.change is not None:
-        has = model.assembly is not None
-        seen = structure_causes(model.structure.structure, True, watch, baseline) if has else None
+        of = causes()
+        seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
         found = explained_alarm(look.change, watch, baseline, seen)
         alarms = (*alarms, alarm_document(watch, _time, found))
     return replace(known, watch=watch, through=name, alarms=alarms)

@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
-from jackettwin.twin.causes import SeenCauses, model_causes, next_measurements, seen_causes
+from jackettwin.twin.causes import ModelCauses, SeenCauses, model_causes, next_measurements, seen_causes
 from jackettwin.twin.modal_table import ModalTable
 from jackettwin.watching import (
     Cause,
@@ -112,13 +112,14 @@ def watch_table(
             f"all {history.days[-1] - first:.0f} days lie in the baseline of {baseline_days:g}: "
             "nothing is watched yet"
         )
-    progress("baseline")
-    watch = start(baseline, arl_years=arl_years)
-    limits += _limits(watch, baseline, rest)
-    explained, unexplained = _explained(watch, baseline)
     if structure is not None:
         progress("causes")
-    seen = None if structure is None else structure_causes(structure, gravity, watch, baseline)
+    causes = None if structure is None else structure_causes(structure, gravity, baseline)
+    progress("baseline")
+    watch = begun(baseline, arl_years, causes)
+    limits += _limits(watch, baseline, rest)
+    explained, unexplained = _explained(watch, baseline)
+    seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
     if seen is not None:
         limits.append(f"leaves no trace in these quantities: {', '.join(seen.model.traceless)}")
         strange = [label for label in watch.labels if label not in seen.model.labels]
@@ -163,12 +164,17 @@ def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -
     return found
 
 
-def structure_causes(structure: Structure, gravity: bool, watch: Watch, baseline: History) -> SeenCauses:
-    """Return what may happen to a structure with these modes, over the watched quantities."""
-    model = model_causes(
-        structure, watch.labels, typical(baseline.frequency), typical(baseline.damping), gravity=gravity
+def structure_causes(structure: Structure, gravity: bool, baseline: History) -> ModelCauses:
+    """Return what may happen to a structure that had these modes."""
+    return model_causes(
+        structure, baseline.labels, typical(baseline.frequency), typical(baseline.damping), gravity=gravity
     )
-    return seen_causes(model, watch.quantities, watch.labels)
+
+
+def begun(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:
+    """Return the watch at the end of a baseline; a structure's causes are among what it looks for."""
+    patterns = () if causes is None else causes.patterns(baseline.labels)
+    return start(baseline, arl_years=arl_years, patterns=patterns)
 
 
 def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:

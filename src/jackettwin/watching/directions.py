@@ -5,7 +5,7 @@ The weights of all directions of both kinds and of the scatter add up to one: th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,6 +33,12 @@ _FALLING = {"frequency": 0.7, "damping": 0.4}
 """Share of the stake on falling values: what breaks or is washed out is softer, and damps more."""
 _ANY = 0.1
 """Share of a kind's stake on a change in no particular direction."""
+_PATTERNED = 0.4
+"""Share of the rest on a model's causes, if there is one."""
+_ALIKE = 0.9
+"""Cosine from which patterns are one direction: its Bayes factor loses little by the difference."""
+_MOVES = 0.1
+"""Of the largest change of a pattern: what moves by less does not count as moving."""
 
 
 @dataclass(frozen=True)
@@ -60,51 +66,80 @@ class Directions:
     log_size_weights: FloatArray
 
 
+@dataclass(frozen=True)
+class Pattern:
+    """Changes of the logarithms of all modes' frequencies (m,) that a model expects of a cause.
+
+    Only their direction counts; ``weight`` is before the data, relative to other patterns.
+    """
+
+    name: str
+    change: FloatArray
+    weight: float = 1.0
+
+
 def directions_of(
-    kind: str,
-    labels: tuple[str, ...],
-    typical_hz: FloatArray,
-    patterns: Mapping[str, FloatArray] | None = None,
+    kind: str, labels: tuple[str, ...], typical_hz: FloatArray, patterns: Sequence[Pattern] = ()
 ) -> Directions:
-    """Return each mode alone, each close pair, all modes alike, given patterns, and any.
+    """Return each mode alone, each close pair, all modes alike, patterns that differ, and any.
 
     Parameters
     ----------
     typical_hz : (m,) frequencies, by which pairs are found
-    patterns : {name: (m,)}, optional
-        Changes of the logarithms that a model expects; only their direction counts, falling or rising.
+    patterns : that a model expects
     """
     m = len(labels)
-    named: list[tuple[str, FloatArray, float]] = [
-        (label, np.eye(m)[q], 1.0) for q, label in enumerate(labels)
-    ]
+    named = [Pattern(label, np.eye(m)[q], 1.0) for q, label in enumerate(labels)]
     order = np.argsort(typical_hz)
     for i, j in zip(order, order[1:], strict=False):
         if typical_hz[j] / typical_hz[i] < 1.0 + PAIR:
-            pair = np.zeros(m)
-            pair[[i, j]] = 1.0
-            named.append((f"{labels[i]} and {labels[j]}", pair, 2.0))
+            named.append(Pattern(f"{labels[i]} and {labels[j]}", np.eye(m)[i] + np.eye(m)[j], 2.0))
     if m > 1:
-        named.append(("all modes", np.ones(m), 2.0))
-    for name, pattern in (patterns or {}).items():
-        largest = float(np.max(np.abs(pattern)))
-        if largest > 0.0:
-            named.append((name, np.asarray(pattern, dtype=np.float64) / largest, 1.0))
-    weights = np.array([weight for *_, weight in named])
-    stakes = np.append((1.0 - _ANY) * weights / weights.sum(), _ANY) if m > 1 else np.array([0.9, 0.1])
-    vectors = np.array([vector for _, vector, _ in named])
-    size, share = np.array(SIZES[kind]), np.array(SIZE_WEIGHTS[kind])
+        named.append(Pattern("all modes", np.ones(m), 2.0))
+    expected = _joined(patterns)
+    general = np.array([p.weight for p in named])
+    own = np.array([p.weight for p in expected])
+    share = _PATTERNED if expected else 0.0
+    weights = np.concatenate([(1.0 - share) * general / general.sum(), share * own / max(own.sum(), 1e-300)])
+    stakes = np.append((1.0 - _ANY) * weights, _ANY)
+    vectors = np.array([p.change for p in (*named, *expected)])
+    size, of_size = np.array(SIZES[kind]), np.array(SIZE_WEIGHTS[kind])
     falling = _FALLING[kind]
     return Directions(
         kind,
-        (*(name for name, *_ in named), "any"),
-        np.vstack([vectors != 0.0, np.ones((1, m), dtype=np.bool_)]),
+        (*(p.name for p in (*named, *expected)), "any"),
+        np.vstack([np.abs(vectors) > _MOVES, np.ones((1, m), dtype=np.bool_)]),
         vectors,
         np.log(SHARES[kind] * stakes),
         np.concatenate([-size, size]),
         _WIDTH * np.concatenate([size, size]),
-        np.log(np.concatenate([falling * share, (1.0 - falling) * share])),
+        np.log(np.concatenate([falling * of_size, (1.0 - falling) * of_size])),
     )
+
+
+def _joined(patterns: Sequence[Pattern]) -> tuple[Pattern, ...]:
+    """Return the patterns that differ, of largest change one, with the weight of all that are alike.
+
+    They point upwards, as the directions of modes do: that values fall is in the odds of the sizes.
+    """
+    groups: list[list[Pattern]] = []
+    for one in sorted(patterns, key=lambda p: -p.weight):
+        near = next((g for g in groups if abs(_cosine(g[0].change, one.change)) > _ALIKE), None)
+        if near is None:
+            groups.append([one])
+        else:
+            near.append(one)
+    out = []
+    for group in groups:
+        first = group[0].change
+        upwards = first * np.sign(first[np.argmax(np.abs(first))]) / np.abs(first).max()
+        name = group[0].name if len(group) == 1 else f"{group[0].name} (or {len(group) - 1} alike)"
+        out.append(Pattern(name, upwards, sum(p.weight for p in group)))
+    return tuple(out)
+
+
+def _cosine(one: FloatArray, other: FloatArray) -> float:
+    return float(one @ other / np.sqrt((one @ one) * (other @ other)))
 
 
 def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArray) -> FloatArray:
@@ -123,7 +158,7 @@ def log_bayes_factors(directions: Directions, info: FloatArray, score: FloatArra
     half = len(directions.sizes) // 2
     both = np.logaddexp(directions.log_size_weights[:half], directions.log_size_weights[half:])
     free = _any(info, score, directions.sizes[half:])
-    return np.concatenate([along, np.logaddexp.reduce(free + both, axis=-1)[:, None]], axis=1)
+    return np.concatenate([along, log_sum(free + both)[:, None]], axis=1)
 
 
 def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArray:
@@ -131,7 +166,13 @@ def log_along(directions: Directions, a: FloatArray, c: FloatArray) -> FloatArra
     a, c, mu, v2 = a[..., None], c[..., None], directions.sizes, directions.widths**2
     wide = 1.0 + a * v2
     each = -0.5 * np.log(wide) + 0.5 * (c * c * v2 + 2.0 * c * mu - a * mu * mu) / wide
-    return np.asarray(np.logaddexp.reduce(each + directions.log_size_weights, axis=-1))
+    return log_sum(each + directions.log_size_weights)
+
+
+def log_sum(x: FloatArray) -> FloatArray:
+    """Return ln Σ exp over the last axis; several times as fast as ``np.logaddexp.reduce``."""
+    most = np.max(x, axis=-1, keepdims=True)
+    return np.asarray(most[..., 0] + np.log(np.sum(np.exp(x - most), axis=-1)))
 
 
 def _any(info: FloatArray, score: FloatArray, stds: FloatArray) -> FloatArray:

@@ -141,7 +141,9 @@ class Bank:
         """Return the bank with one more begin, of which nothing is known."""
 
         def grown(x: FloatArray, axes: int = 1) -> FloatArray:
-            return np.pad(x, [(0, 1)] * axes + [(0, 0)] * (x.ndim - axes))
+            more = np.zeros((*(n + 1 for n in x.shape[:axes]), *x.shape[axes:]))
+            more[tuple(slice(n) for n in x.shape)] = x
+            return more
 
         cross = None if self.cross is None else grown(self.cross, 2)
         return Bank(grown(self.response), grown(self.info), grown(self.score), cross)

@@ -12,7 +12,7 @@ stays what it was.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -34,7 +34,7 @@ from jackettwin.watching.block import (
     watched,
 )
 from jackettwin.watching.design import Design, Lagged, design_of, fresh, regressors
-from jackettwin.watching.directions import SHARES, directions_of
+from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.ramps import log_ramps
 from jackettwin.watching.scatter import STRONGER
@@ -187,14 +187,13 @@ def start(
     baseline: History,
     *,
     arl_years: float = 10.0,
-    patterns: Mapping[Kind, Mapping[str, FloatArray]] | None = None,
+    patterns: Sequence[Pattern] = (),
 ) -> Watch:
     """Return the watch at the end of a baseline.
 
     Parameters
     ----------
-    patterns : {kind: {cause: (m,)}}, optional
-        Changes of the logarithms by which a model's causes would show; they are bet on beside the others.
+    patterns : by which a model's causes would show in the frequencies; they are bet on beside the others
 
     Raises
     ------
@@ -219,7 +218,8 @@ def start(
         if not len(columns):
             continue
         labels = tuple(baseline.labels[q] for q in columns)
-        given = {name: np.asarray(v)[columns] for name, v in (patterns or {}).get(kind, {}).items()}
+        shown = [replace(p, change=p.change[columns]) for p in patterns if p.change[columns].any()]
+        given = shown if kind == "frequency" else ()
         directions = directions_of(kind, labels, frequency[columns], given)
         blocks.append(begin(baseline, design, rows, kind, directions, columns)[0])
     total = sum(len(block.kept) for block in blocks)

@@ -1,0 +1,178 @@
+"""Diagnosis through the whole chain: records of changed jackets are identified and their modes watched.
+
+Usage: python qualify/diagnosis_chain.py [folder] [records of each state] [seasons of each change]
+
+Records of two jackets, as they stand and after each of twelve causes at three sizes, are simulated and
+identified (``common/chain.py``); each is a piece that is kept in the folder, so that a run that was stopped
+goes on where it was. Seasons made of them are watched day by day, and what the watch says of the first alarm
+is counted as in ``diagnosis.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from common.chain import Bench, Row, bench, identified, late, louder, record, season, watched_labels
+from common.page import write_page
+from diagnosis import SENSORS, TIMES, Case, case, jackets, name_of, page, planted, truth
+
+from jackettwin.records import Record
+from jackettwin.structure import Structure
+from jackettwin.twin.causes import _ONE_SIZE, ModelCauses, model_causes, seen_causes
+from jackettwin.twin.changed_structures import Standing
+from jackettwin.watching import Change, History, Watch, diagnose, start, step
+
+RECORDS, BLOCK, SEASONS = 24, 6, 3
+"""Records of each state, made so many of all states at a time, and seasons that each change is watched in."""
+BASELINE, BEGUN, LONGEST = 365.0, 395.0, 60.0
+"""Days of the baseline, day of the change, and for how long an alarm is waited for."""
+NOISE = 1.0
+"""Of a failing sensor: standard deviation in those of what it shows, at the least size."""
+CHAINED = (
+    "# Diagnosis through the whole chain",
+    "",
+    "`python qualify/diagnosis_chain.py FOLDER {number}`: two jackets, feet of their own stiffness.",
+    "{number} records of ten minutes under waves and wind before and after each of twelve causes at three",
+    "sizes, of the same seeds, are simulated, identified and recognised as the twin does it. Their modes",
+    "with their stated standard deviations fill the seasons of [watching](watching.md), two rows each time",
+    f"that the rotor is parked: a year of baseline, then day by day until the alarm, {LONGEST:.0f} days at",
+    f"most, in {SEASONS} turbines' seasons for each. What raised no alarm by then is not judged and not",
+    "counted.",
+    "",
+)
+
+
+@dataclass(frozen=True)
+class State:
+    """A jacket as it stands before or after a change: ``key`` names its pieces."""
+
+    key: str
+    cause: str
+    times: int
+    standing: Standing
+    spoil: Callable[[Record], Record] = lambda found: found
+
+
+def states(jacket: str, structure: Structure) -> Iterator[State]:
+    """Yield the jacket before, then after every cause and size."""
+    standing = truth(structure, np.random.default_rng((32, len(jacket), 0)))
+    yield State(f"{jacket}/before", "", 0, standing)
+    for times in TIMES:
+        for event in planted(structure):
+            if times == 1 or event.spread > _ONE_SIZE:  # what is gone is gone
+                after = standing
+                for _ in range(times):
+                    after = event.apply(after)
+                yield State(f"{jacket}/{event.name}/{times}", event.name, times, after)
+        clock = times * SENSORS["sensor: clock"]
+        yield State(
+            f"{jacket}/clock/{times}", "sensor: clock", times, standing, lambda r, by=clock: late(r, by)
+        )
+        noise = times * NOISE
+        yield State(
+            f"{jacket}/noise/{times}", "sensor: more scatter", times, standing,
+            lambda r, by=noise: louder(r, by),
+        )  # fmt: skip
+
+
+class Pieces:
+    """Identified records, kept in a file as soon as they are made."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path = folder / "diagnosis_chain.jsonl"
+        lines = self.path.read_text().splitlines() if self.path.exists() else []
+        self.known: dict[str, Row] = dict(map(json.loads, lines))
+
+    def made(self, at: State, bench: Bench, seeds: range) -> None:
+        """Make what is missing of some records of a state."""
+        for key, seed in ((f"{at.key}/{seed}", seed) for seed in seeds):
+            if key not in self.known:
+                found = at.spoil(record(bench.scenario, at.standing, seed))
+                self.known[key] = identified(found, bench.model)
+                with self.path.open("a") as file:
+                    file.write(json.dumps([key, self.known[key]]) + "\n")
+        sys.stderr.write(f"{at.key} {seeds}\n")
+
+    def of(self, at: State, number: int) -> list[Row]:
+        """Return the modes of all records of a state."""
+        return [self.known[f"{at.key}/{seed}"] for seed in range(1, number + 1)]
+
+
+def make(pieces: Pieces, number: int, where: Path, stand: dict[str, Structure]) -> None:
+    """Make the records of all states, so many of each at a time that what is there covers all of them."""
+    sources = dict(zip(stand, ("jacket15", str(where / "three_legs.yaml")), strict=True))
+    benches = {jacket: bench(s, sources[jacket], where) for jacket, s in stand.items()}
+    for first in range(1, number + 1, BLOCK):
+        for jacket, structure in stand.items():
+            for at in states(jacket, structure):
+                pieces.made(at, benches[jacket], range(first, min(first + BLOCK, number + 1)))
+
+
+def chained(pieces: Pieces, jacket: str, structure: Structure, number: int) -> list[Case]:
+    """Return what became of every cause and size in one jacket."""
+    standing, *after = states(jacket, structure)
+    before = pieces.of(standing, number)
+    labels = watched_labels(before)
+    known = np.array([np.mean([row[n] for row in before if n in row], axis=0) for n in labels])
+    model = model_causes(structure, labels, np.exp(known[:, 0]), np.exp(known[:, 2]))
+    out: list[Case] = []
+    for seed in range(SEASONS):
+        out += in_seasons(jacket, before, [(at, pieces.of(at, number)) for at in after], model, labels, seed)
+    return out
+
+
+def in_seasons(
+    jacket: str, before: list[Row], after: list[tuple[State, list[Row]]], model: ModelCauses,
+    labels: tuple[str, ...], seed: int,
+) -> list[Case]:  # fmt: skip
+    """Return what a watch makes of every change in one turbine's seasons."""
+    quiet = season(before, before, labels, BEGUN, BEGUN + LONGEST, seed)
+    watch = start(quiet.between(0.0, BASELINE), patterns=model.patterns(labels))
+    seen = seen_causes(model, watch.quantities, labels)
+    kinds = [kind for kind, good in zip((k for k, _ in watch.quantities), seen.known, strict=True) if good]
+    for day in quiet.between(BASELINE, BEGUN).by_day():
+        watch, look = step(watch, day)
+        if look.change is not None:
+            sys.stderr.write(f"early alarm in {jacket} {seed}\n")
+            return []
+    out: list[Case] = []
+    for at, pool in after:
+        changed = season(before, pool, labels, BEGUN, BEGUN + LONGEST, seed).between(BEGUN, BEGUN + LONGEST)
+        change = first_change(watch, changed)
+        if change is None:
+            sys.stderr.write(f"not found: {jacket} {seed} {at.cause} × {at.times}\n")
+            continue
+        found = diagnose(change.restricted(seen.known), seen.causes, kinds)
+        out.append(case(jacket, name_of(at.cause, seen.causes), at.times, found))
+    return out
+
+
+def first_change(watch: Watch, days: History) -> Change | None:
+    """Return the first change that a watch finds in some days."""
+    for day in days.by_day():
+        watch, look = step(watch, day)
+        if look.change is not None:
+            return look.change
+    return None
+
+
+def main() -> None:
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/qualify")
+    number = int(sys.argv[2]) if len(sys.argv) > 2 else RECORDS
+    with tempfile.TemporaryDirectory() as name:
+        stand = jackets(Path(name))
+        pieces = Pieces(folder)
+        make(pieces, number, Path(name), stand)
+    found = [c for jacket, structure in stand.items() for c in chained(pieces, jacket, structure, number)]
+    write_page("diagnosis_chain", page(found, CHAINED, number=number))
+
+
+if __name__ == "__main__":
+    main()
