@@ -118,9 +118,20 @@ def mixed_zones(c: Columns) -> None:
     c["time"] = stamps
 
 
+def no_time_at_all(c: Columns) -> None:
+    c["time"] = np.array(["yesterday"] * len(c["time"]))
+
+
+def std_below_zero(c: Columns) -> None:
+    c["f1_std"] = np.full(len(c["f1"]), 0.002)
+    c["f1_std"][5] = -0.002
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
+        (no_time_at_all, "is no time (got 'yesterday')"),
+        (std_below_zero, "a standard deviation below zero (got -0.002)"),
         (unsorted_times, "times are not sorted"),
         (doubled_time, "a time stands twice"),
         (no_times, "no column of times"),
@@ -139,6 +150,27 @@ def test_what_is_wrong_is_refused(wide: Columns, tmp_path: Path, spoil, said: st
     assert not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--conditions", "f1"), "cannot be a condition (got 'f1')"),
+        (("--arl-years", "nan"), "--arl-years: not above zero"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(
+    wide: Columns, tmp_path: Path, options: tuple[str, ...], said: str
+) -> None:
+    done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1,f2", *options)
+    assert done.exit_code == 2 and said in done.stderr
+
+
+def test_a_row_without_a_label_is_refused(wide: Columns, tmp_path: Path) -> None:
+    rows = long(wide)
+    rows["label"][4] = ""
+    done = invoke(written(rows, tmp_path / "a.csv"))
+    assert done.exit_code == 2 and "a row without a label (got 'line 6')" in done.stderr
+
+
 def test_an_unknown_column_is_refused_with_the_nearest(wide: Columns, tmp_path: Path) -> None:
     done = invoke(written(wide, tmp_path / "a.csv"), "--columns", "f1,temprature")
     assert done.exit_code == 2 and "did you mean 'temperature'?" in done.stderr
@@ -155,6 +187,10 @@ def still(c: Columns) -> None:
     c["f1"][:] = 0.3
 
 
+def endless(c: Columns) -> None:
+    c["f1"][3] = np.inf
+
+
 def without_temperature(c: Columns) -> None:
     c["temperature"][200:] = np.nan
 
@@ -167,6 +203,7 @@ def another_state(c: Columns) -> None:
     ("spoil", "said"),
     [
         (still, "always the same: f1"),
+        (endless, "1 values of frequency_hz that are not above zero or infinite count as missing"),
         (without_temperature, "temperature is missing in 86 % of the rows watched"),
         (another_state, "not judged: idling (100 rows)"),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ _STATES = ("state", "operating_state", "operation")
 _MISSING = ["", "nan", "NaN", "NAN", "NA", "N/A", "n/a", "null", "NULL", "none", "None", "-", "--", "#N/A"]
 _OF_MODES = ("frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std")
 _SUFFIXES = ("_std", "_damping", "_damping_std")
+_QUANTITIES = dict(zip(_OF_MODES, ("frequency", "frequency_std", "damping", "damping_std"), strict=True))
 _MODAL = re.compile(
     r"^f_?\d|freq|zeta|damp|^mode|mac|_std$|interval|phase|complex|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
     re.I,
@@ -188,7 +189,15 @@ def _stamps(name: str, x: npt.NDArray[Any]) -> npt.NDArray[np.datetime64]:
 
 def _parsed(text: str) -> datetime:
     day_first = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", text)
-    return parse_time(re.sub(r"^(\d{4})/(\d\d)/(\d\d)", r"\1-\2-\3", day_first)).replace(tzinfo=None)
+    try:
+        return parse_time(re.sub(r"^(\d{4})/(\d\d)/(\d\d)", r"\1-\2-\3", day_first)).replace(tzinfo=None)
+    except InputError:
+        raise InputError(
+            "is no time",
+            value=str(text),
+            allowed="ISO 8601: 2025-01-01T13:00:00Z",
+            remedy="write all times so",
+        ) from None
 
 
 def _numbered(name: str, x: FloatArray) -> npt.NDArray[np.datetime64]:
@@ -228,6 +237,12 @@ def _conditions(
                 "no such column", field=name, allowed=", ".join(stored), remedy=did_you_mean(name, stored)
             )
     if given is not None:
+        circular = sorted({*given} & {time_name, "frequency_hz", *columns})
+        if circular:
+            raise InputError(
+                "a column that is watched, or the times, cannot be a condition", field="--conditions",
+                value=", ".join(circular), remedy="name what was measured beside the modes",
+            )  # fmt: skip
         return tuple(given)
     taken = {time_name, "label", *_OF_MODES, *(c + s for c in columns for s in ("", *_SUFFIXES))}
     return tuple(
@@ -243,7 +258,7 @@ def _number(stored: Columns, name: str, rows: int) -> FloatArray:
     if x.dtype.kind != "f":
         bad = next((w for w in x if w not in _MISSING and not _is_number(str(w))), x[0])
         raise InputError("is not a number", field=name, value=str(bad), allowed="numbers or empty cells")
-    return np.where(np.isfinite(x), x, np.nan)
+    return np.asarray(x)
 
 
 def _is_number(word: str) -> bool:
@@ -296,6 +311,12 @@ def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tup
                 remedy="for one column a mode, name them: --columns f1,f2",
             )  # fmt: skip
     words = np.array([_label(w) for w in stored["label"]], dtype=np.str_)
+    if (words == "").any() or (words == "nan").any():
+        line = int(np.flatnonzero((words == "") | (words == "nan"))[0]) + 2
+        raise InputError(
+            "a row without a label", field="label", value=f"line {line}", allowed="a name for each mode",
+            remedy="leave the row out, or name its mode",
+        )  # fmt: skip
     labels, mode = np.unique(words, return_inverse=True)
     when, row = np.unique(days, return_inverse=True)
     key = row * len(labels) + mode
@@ -336,12 +357,26 @@ def _label(word: Any) -> str:
 
 
 def _checked(history: History) -> tuple[History, tuple[str, ...]]:
-    """Return the history without columns that hold nothing, and remarks."""
+    """Return the history with what cannot be as missing, and remarks."""
     remarks = []
-    bad = int(np.sum(history.frequency <= 0.0))
-    if bad:
-        remarks.append(f"{bad} frequencies that are not above zero count as missing")
-    if not (np.isfinite(history.frequency) & (history.frequency > 0.0)).any():
+    for what, column in _QUANTITIES.items():
+        x = getattr(history, column)
+        if column.endswith("_std") and (x < 0.0).any():
+            raise InputError(
+                "a standard deviation below zero", field=what, value=float(x[x < 0.0][0]),
+                allowed="> 0, or empty", remedy="leave the column out if it is no such thing",
+            )  # fmt: skip
+        bad = (x <= 0.0) | np.isinf(x)
+        if bad.any():
+            remarks.append(
+                f"{int(bad.sum())} values of {what} that are not above zero or infinite count as missing"
+            )
+            history = replace(history, **{column: np.where(bad, np.nan, x)})
+    endless = np.isinf(history.conditions)
+    if endless.any():
+        remarks.append(f"{int(endless.sum())} infinite values of conditions count as missing")
+        history = replace(history, conditions=np.where(endless, np.nan, history.conditions))
+    if not np.isfinite(history.frequency).any():
         raise InputError("no frequency at all", field="frequency_hz", allowed="> 0 Hz")
     if not np.isfinite(history.frequency_std).any():
         remarks.append("no standard deviations are stated: they are estimated from the scatter of neighbours")
@@ -349,10 +384,7 @@ def _checked(history: History) -> tuple[History, tuple[str, ...]]:
         remarks.append(
             "no conditions are given: what they do is part of the unexplained, which all modes share in part"
         )
-    empty = [
-        name
-        for k, name in enumerate(history.condition_names)
-        if not np.isfinite(history.conditions[:, k]).any()
-    ]
+    seen = np.isfinite(history.conditions).any(axis=0)
+    empty = [name for name, any_ in zip(history.condition_names, seen, strict=True) if not any_]
     remarks += [f"condition {name} is empty" for name in empty]
     return history, tuple(remarks)

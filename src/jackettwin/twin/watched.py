@@ -99,6 +99,9 @@ def watch_table(
     InputError
         If there is too little to learn from.
     """
+    for name, value in (("--baseline-days", baseline_days), ("--arl-years", arl_years)):
+        if not value > 0.0:  # NaN, too
+            raise InputError("not above zero", field=name, value=value, allowed="> 0")
     history = table.history.between(from_day, np.inf)
     if not history.days.size:
         raise InputError("no rows after the time to learn anew from", field="--relearn", value=from_day)
