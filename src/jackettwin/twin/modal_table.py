@@ -359,6 +359,7 @@ def _label(word: Any) -> str:
 def _checked(history: History) -> tuple[History, tuple[str, ...]]:
     """Return the history with what cannot be as missing, and remarks."""
     remarks = []
+    arrays: dict[str, Any] = {}
     for what, column in _QUANTITIES.items():
         x = getattr(history, column)
         if column.endswith("_std") and (x < 0.0).any():
@@ -371,11 +372,12 @@ def _checked(history: History) -> tuple[History, tuple[str, ...]]:
             remarks.append(
                 f"{int(bad.sum())} values of {what} that are not above zero or infinite count as missing"
             )
-            history = replace(history, **{column: np.where(bad, np.nan, x)})
+            arrays[column] = np.where(bad, np.nan, x)
     endless = np.isinf(history.conditions)
     if endless.any():
         remarks.append(f"{int(endless.sum())} infinite values of conditions count as missing")
-        history = replace(history, conditions=np.where(endless, np.nan, history.conditions))
+        arrays["conditions"] = np.where(endless, np.nan, history.conditions)
+    history = replace(history, **arrays)
     if not np.isfinite(history.frequency).any():
         raise InputError("no frequency at all", field="frequency_hz", allowed="> 0 Hz")
     if not np.isfinite(history.frequency_std).any():
@@ -384,7 +386,10 @@ def _checked(history: History) -> tuple[History, tuple[str, ...]]:
         remarks.append(
             "no conditions are given: what they do is part of the unexplained, which all modes share in part"
         )
-    seen = np.isfinite(history.conditions).any(axis=0)
-    empty = [name for name, any_ in zip(history.condition_names, seen, strict=True) if not any_]
+    empty = [
+        name
+        for name, column in zip(history.condition_names, history.conditions.T, strict=True)
+        if not np.isfinite(column).any()
+    ]
     remarks += [f"condition {name} is empty" for name in empty]
     return history, tuple(remarks)
