@@ -276,6 +276,7 @@ CATALOGUE: dict[str, Kind] = {
         "the place is not known (height_m or node in the JSON beside the record): swapped signs and wrong "
         "units are not looked for",
     ),
+    "sensors_absent": Kind("warning", "the record has no such channels; identified without them"),
     "channels_unclear": Kind("info", "left out, neither name and unit nor the JSON say what they measure"),
     "deformation_set_aside": Kind(
         "info", "left out beside accelerations, identify them in a file of their own"

@@ -27,13 +27,12 @@ QUANTITIES: dict[str, Quantity] = {
         "acceleration",
         "a",
         (
+            ("g", G0),
+            ("mg", 1e-3 * G0),
             ("m/s2", 1.0),
-            ("m/s²", 1.0),
             ("m/s/s", 1.0),
             ("m s-2", 1.0),
             ("m s^-2", 1.0),
-            ("g", G0),
-            ("mg", 1e-3 * G0),
             ("mm/s^2", 1e-3),
             ("mm/s2", 1e-3),
             ("cm/s^2", 1e-2),
@@ -125,7 +124,7 @@ def to_si(name: str, unit: str) -> float:
     for other, factor in q.scales:
         if unit == other:
             return factor
-    known = (q.unit, *(other for other, _ in q.scales))
+    known = known_units(name)
     raise InputError(
         f"wrong unit for {name}",
         field="unit",
@@ -135,17 +134,24 @@ def to_si(name: str, unit: str) -> float:
     )
 
 
-def plain_unit(unit: str) -> str:
-    """Return a unit as the table writes it: no brackets around it, one sign for powers.
+def known_units(name: str) -> tuple[str, ...]:
+    """Return the units that a quantity is read in, the SI unit first."""
+    q = quantity(name)
+    return (q.unit, *(other for other, _ in q.scales))
 
-    >>> plain_unit(" (m/s**2) ")
-    'm/s^2'
+
+def plain_unit(unit: str) -> str:
+    """Return a unit as the table writes it: no brackets around it, one sign for powers, seconds as s.
+
+    >>> plain_unit(" (m/s**2) "), plain_unit("mm/sec²")
+    ('m/s^2', 'mm/s^2')
     """
     text = unit.strip()
     while len(text) > 1 and (text[0], text[-1]) in (("(", ")"), ("[", "]")):
         text = text[1:-1].strip()
     # The micro sign and the Greek letter mu look the same.
-    return text.replace("**", "^").replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
+    text = text.replace("**", "^").replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
+    return text.replace("\N{SUPERSCRIPT TWO}", "^2").replace("/sec", "/s")
 
 
 _WORDS = (

@@ -63,10 +63,28 @@ def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_400m_N [g]")
     code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"))
     assert code == 0
-    assert "missing: ACC_400m_N: a place on the structure" in text
+    assert "ACC_400m_N: 400 m, [0, 1, 0]: lacks a place on the structure" in text
     assert "missing: the clock does not say its zone" in text
     assert "conditions of the records" in text
     assert f"next: jackettwin run {tmp_path / 'twin.yaml'}" in text
+
+
+def test_what_lies_in_a_folder_and_is_no_record_is_left_out_and_said(tmp_path: Path) -> None:
+    folder = tmp_path / "data"
+    folder.mkdir()
+    good = written(folder / "b.csv", "ACC_088m_E [g]")
+    (folder / "a.csv").write_text("")
+    (folder / "README.txt").write_text("Measured by Bob on turbine 7. Call 0800.\n")
+    (folder / "._b.csv").write_bytes(b"\0\x05\x16\x07")
+    out = tmp_path / "twin.yaml"
+    code, _, said = run(str(folder), "--out", str(out))
+    assert code == 0
+    assert [p.resolve() for p in read_twin(out).records] == [good]
+    assert "a.csv: is empty" in said
+    assert "README.txt" in said
+    code, _, error = run(str(folder / "a.csv"), str(good), "--out", str(out), "--force")
+    assert code == 2
+    assert "a.csv: is empty; export the record again" in error
 
 
 def test_units_come_by_option_or_are_refused(tmp_path: Path) -> None:

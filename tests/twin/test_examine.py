@@ -135,6 +135,19 @@ def test_a_dead_channel_is_left_out_and_said(tmp_path: Path) -> None:
         seen(nothing, tmp_path / "b.parquet")
 
 
+def test_a_record_that_lacks_a_sensor_is_identified_without_it(tmp_path: Path) -> None:
+    """What is nearly the name of a channel without a sensor is a slip, and refused."""
+    record = turned("pile_U12_s301", np.array(0.0))
+    sensors = tuple(Sensor(c.name, c.direction, None, c.height_m) for c in record.channels)
+    fewer = seen(record.select(record.channel_names[2:]), tmp_path / "a.parquet", sensors)
+    assert fewer.record.channel_names == record.channel_names[2:]
+    (absent,) = [f for f in fewer.findings if f.code == "sensors_absent"]
+    assert set(str(absent.subject).split(", ")) == {*record.channel_names[:2]}
+    slip = (replace(sensors[0], channel=f"{sensors[0].channel}_"), *sensors[1:])
+    with pytest.raises(InputError, match="no such channel.*did you mean"):
+        seen(record, tmp_path / "b.parquet", slip)
+
+
 def test_strains_are_identified_where_nothing_measures_motion() -> None:
     record = turned("pile_U12_s301", np.array(0.0))
     strain = tuple(replace(c, quantity="strain", unit="-") for c in record.channels[:2])

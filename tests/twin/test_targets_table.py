@@ -57,6 +57,16 @@ def test_intervals_of_95_percent_are_two_standard_deviations_wide(tmp_path: Path
     assert read_targets_table(path)[0]["frequency_std_hz"] == pytest.approx(1e-3, rel=1e-4)
 
 
+def test_a_decrement_is_no_ratio_and_a_row_without_numbers_no_mode(tmp_path: Path) -> None:
+    """ζ = δ/2π of small damping; as spreadsheets write it, in UTF-16."""
+    path = tmp_path / "m.csv"
+    text = "Mode\tf [Hz]\tDamping [log. dec.]\n1st FA\t0.25\t0.0628 ± 0.00628\n2nd FA\t-\tn.a.\n"
+    path.write_bytes(text.encode("utf-16"))
+    (only,) = read_targets_table(path)
+    assert only["damping_ratio"] == pytest.approx(0.01, rel=1e-3)
+    assert only["damping_ratio_std"] == pytest.approx(0.001, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("lines", "message"),
     [

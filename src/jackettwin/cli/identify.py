@@ -298,7 +298,8 @@ def _print_many(document: Mapping[str, Any]) -> None:
         _print_fused(group_name(group), group["modes"], len(group["records"]))
     failed = document["failed"]
     for one in failed[:_SHOWN]:
-        output.print(f"failed: {one['record']}: {one['problem']}", soft_wrap=True)
+        where = "" if one["problem"].startswith(one["record"]) else f"{one['record']}: "
+        output.print(f"failed: {where}{one['problem']}", soft_wrap=True)
     if len(failed) > _SHOWN:
         output.print(f"failed: {len(failed) - _SHOWN} more (--json lists them)")
     _print_rejected(document["rejected"])

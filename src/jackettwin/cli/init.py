@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from jackettwin.cli.console import messages, output, print_json, progress
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_path, check_room
 from jackettwin.records import Record, read_record
 from jackettwin.records.readers.channels import Unsaid
@@ -19,6 +19,7 @@ from jackettwin.records.readers.zones import UNSAID, read_zone
 from jackettwin.structure import assemble, read_structure
 from jackettwin.twin import read_twin
 from jackettwin.twin.draft import Draft, draft_twin
+from jackettwin.twin.examine import moving_channels
 from jackettwin.twin.observe_files import record_files
 
 _MOST_READ = 20
@@ -75,11 +76,20 @@ def init_command(
     with progress(2 + min(len(files), _MOST_READ), "init") as step:
         step(f"assemble {structure}")
         assembly = assemble(built, gravity=True)
-        read, unsaid = [], Unsaid(sample_rate, unit, gain, zone)
+        read, left_out, unsaid = [], [], Unsaid(sample_rate, unit, gain, zone)
         for file in files[:_MOST_READ]:
             step(f"read {file.name}")
-            record, unsaid = _read(file, unsaid)
+            try:
+                record, unsaid = _read(file, unsaid)
+            except InputError as error:
+                if str(file) in records:
+                    raise
+                left_out.append(error)  # whatever else lies in a folder of records
+                messages.print(f"left out: {error}", soft_wrap=True, markup=False)
+                continue
             read.append((_beside(file, out), record))
+        if not read:
+            raise left_out[0]
         step("write and check")
         further = [_beside(file, out) for file in files[_MOST_READ:]]
         draft = draft_twin(_structure_name(structure, out), assembly, read, unsaid, further)
@@ -98,6 +108,8 @@ def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
     while True:
         try:
             record = read_record(file, unsaid)
+            with located(file=file):
+                moving_channels(record)
         except InputError as error:
             lacking = (error.field or "").rsplit(".", 1)[-1]
             if lacking not in _QUESTIONS or "missing" not in error.problem and lacking != "gain":
@@ -130,7 +142,7 @@ def _print(draft: Draft, out: Path) -> None:
         direction = ", ".join(f"{v:g}" for v in s.direction)
         note = f"lacks {place.lacks}" if place.lacks else place.why or "as the record says"
         output.print(f"{s.channel}: {where}, [{direction}]: {note}", markup=False)
-    for sentence in draft.missing:
+    for sentence in draft.missing[sum(bool(place.lacks) for place in draft.places) :]:
         output.print(f"missing: {sentence}", markup=False)
     messages.print(f"wrote {out}")
     if draft.complete:

@@ -170,6 +170,8 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
     broken = {key: context[key] for key in _BOUNDS if key in context}
     allowed = _range(schema, location, broken) if broken else context.get("expected")
     problem, remedy = _PLAIN.get(kind, (error["msg"][0].lower() + error["msg"][1:], None))
+    if error["input"] is None and kind in _OF_ANOTHER_KIND:
+        problem, remedy = "has no value", f"give it one below it or beside it, or take {location[-1]!r} out"
     if broken and remedy is None:
         remedy = _out_of_bounds(field, error["input"])
     if kind == "literal_error":

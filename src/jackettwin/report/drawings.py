@@ -10,7 +10,7 @@ from markupsafe import Markup
 from jackettwin.answers.result import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.report import style
 from jackettwin.report.numbers import digits_of, parameter_words, quantity, words
-from jackettwin.report.sentences import MARGIN
+from jackettwin.report.sentences import MARGIN, verdict_words
 from jackettwin.report.svg import Canvas, spread
 
 SOURCE_COLOURS = {
@@ -174,10 +174,7 @@ def ground_intervals(ground: Sequence[GroundAnswer], law: str, *, fits: bool = T
             return left + (right - left) * log(value / low) / log(high / low)
 
         c.text(4, top + 14, parameter_words(g.name).capitalize(), bold=True)
-        verdict = {"identified": "known", "weak": "known roughly", "unidentified": "not known"}.get(
-            g.verdict, ""
-        )
-        c.text(_WIDTH - 4, top + 14, verdict if fits else "does not fit", anchor="end")
+        c.text(_WIDTH - 4, top + 14, verdict_words(g) if fits else "does not fit", anchor="end")
         y = top + 28.0
         if g.before is not None:
             a, b = g.before.low or g.before.value, g.before.high or g.before.value

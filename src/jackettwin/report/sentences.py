@@ -21,11 +21,14 @@ from jackettwin.soil.families import FAMILIES
 MARGIN = 0.10
 """Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
 excitation range with a margin; ten per cent is its usual size)."""
+WIDE = 10.0
+"""Upper over lower end of an interval from which it is no rough knowledge: not even the order is known."""
 SMALL = 0.10
 """A source that gives less of a mode's damping is not named first."""
 _MOST = 4
 """Parameters of the ground on the first page; what there is of single legs follows."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
+_ROUGHLY = "known roughly"
 _STEPS = {
     "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
     "amplitude (to 10 %) gives the stiffness, its lag (to 0.6°) the damping",
@@ -191,8 +194,19 @@ def _ground_headline(a: Answers) -> list[str]:
             said.append(f"The ground's {kind} is not known from {data_words(a)}.")
         elif of_kind:
             some = [g for g in of_kind if g.verdict == "weak"]
-            said.append(f"The ground's {kind} is known roughly: {listed([_range(g) for g in some])}.")
+            best = [g for g in some if verdict_words(g) == _ROUGHLY] or some
+            ranges = listed([_range(g) for g in best])
+            said.append(f"The ground's {kind} is {verdict_words(best[0])}: {ranges}.")
     return said
+
+
+def verdict_words(g: GroundAnswer, *, fits: bool = True) -> str:
+    """Return how well a parameter of the ground is known, in words; nothing without a verdict."""
+    if g.verdict != "weak":
+        return {"identified": "known", "unidentified": "not known"}.get(g.verdict, "")
+    if not fits:
+        return "the interval of a model that does not fit"
+    return _ROUGHLY if g.factor is None or g.factor <= WIDE else "not known to a factor of ten"
 
 
 def _value(g: GroundAnswer) -> str:
@@ -229,6 +243,8 @@ def _next_headline(a: Answers) -> str:
         return ""
     best = a.next_steps[0]
     kinds = dict.fromkeys(g.kind for g in a.ground if g.name in best.factors)
+    if best.what == "records" and not _enough(a, best):
+        return f"No single measurement makes the ground's {listed(list(kinds))} known: see what to do next."
     what = _STEPS.get(best.what, _records(a, best)).split(":")[0]
     return f"What would make the ground's {listed(list(kinds))} known: {_GERUNDS.get(best.what, what)}."
 
@@ -246,10 +262,10 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
             "the model's own error."
         )
     elif a.modes:
-        first = listed([f"{words(m.label)} {_hertz(m.measured_hz)}, {m.rigid_hz:.4g} Hz" for m in _firsts(a)])
-        short.append(
-            f"The twin states no design foundation (update.priors). Measured, and on rigid feet: {first}."
-        )
+        beside = [
+            f"{words(m.label)} {_hertz(m.measured_hz)}, on rigid feet {m.rigid_hz:.4f}" for m in _firsts(a)
+        ]
+        short.append(f"The twin states no design foundation (update.priors). Measured: {listed(beside)}.")
     short += [] if a.fit is None else [fit_sentence(a.fit)]
     short += _margins(a)
     misses = [
@@ -307,12 +323,7 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _parameter(g: GroundAnswer, fits: bool) -> str:
     name = parameter_words(g.name).capitalize()
     before = "" if g.before is None else f"; before the data {span_words(g.before, g.unit)}"
-    verdict = {
-        "identified": "known",
-        "weak": "known roughly" if fits else "the interval of a model that does not fit",
-        "unidentified": "not known",
-        "": "no interval",
-    }[g.verdict]
+    verdict = verdict_words(g, fits=fits) or "no interval"
     return f"{name} {span_words(g.value, g.unit)}{before}: {verdict}."
 
 
@@ -409,21 +420,20 @@ def _trust(a: Answers) -> list[str]:
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if a.fit is not None and not a.fit.fits:
         return (f"{mend(a.fit)}. Then run again: only a model that fits tells what to measure next.",), ()
-    short = [_step(a, step) for step in a.next_steps[:1]]
+    first = {step.what == "records": step for step in reversed(a.next_steps)}  # the best of either kind
+    short = [_step(a, step) for step in a.next_steps if step in first.values()]
     open_ = [g for g in a.ground if g.verdict != "identified"]
     if a.ground and not open_:
         short = ["The ground is known well enough to use. Watch it: `jackettwin follow`, `jackettwin watch`."]
     elif a.ground and all(g.verdict == "" for g in a.ground):
         short = ["Give every target its standard deviation: then there are intervals, and advice."]
-    if a.next_steps:
-        short += [_step(a, step) for step in a.next_steps[1:] if step.what == "records"]
     if a.records_for:
         needs = [f"{words(label)} {n}" for label, n in a.records_for.items()]
         short.append(
             f"For damping ratios to ±{100 * a.precision:.0f} %, so many records like these: {listed(needs)} "
             f"(now {a.records})."
         )
-    rest = [step for step in a.next_steps[1:] if step.what != "records" and _gains(a, step)]
+    rest = [step for step in a.next_steps if step not in first.values() and _gains(a, step)]
     return tuple(short), tuple(_step(a, step) for step in rest)
 
 
@@ -455,12 +465,15 @@ def _now(a: Answers, name: str) -> float | None:
     return next((g.factor for g in a.ground if g.name == name), None)
 
 
+def _enough(a: Answers, step: NextStep) -> bool:
+    return max(step.factors.values()) <= a.usable
+
+
 def _records(a: Answers, step: NextStep) -> str:
     """Return what more records alone do."""
     days = step.days or 0.0
     times = days * 1440.0 / max(a.minutes, 1e-9)
-    enough = max(step.factors.values()) <= a.usable
     length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
-    if enough:
+    if _enough(a, step):
         return f"record {length} of the same ({round(times * a.records)} records instead of {a.records})"
     return f"more records alone do not make it known, not even {length} of them"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from jackettwin.answers.result import Answers, Span
 from jackettwin.report.numbers import UNKNOWN, between, factor, fixed, parameter_words, words
 from jackettwin.report.page import PageTable
-from jackettwin.report.sentences import span_words, step_words
+from jackettwin.report.sentences import span_words, step_words, verdict_words
 from jackettwin.report.sentences_fit import value_words
 from jackettwin.twin import TwinResult
 from jackettwin.updating.budget import SOURCES
@@ -58,9 +58,8 @@ def _cell(span: Span | None, factor: float, decimals: int) -> str:
 
 def ground_table(a: Answers) -> PageTable:
     """Return what is known of every parameter of the ground, and why."""
-    verdicts = {"identified": "known", "weak": "known roughly", "unidentified": "not known", "": UNKNOWN}
     rows = tuple(
-        (parameter_words(g.name), verdicts[g.verdict], g.reason or UNKNOWN, _ranged(g.before, g.unit),
+        (parameter_words(g.name), verdict_words(g) or UNKNOWN, g.reason or UNKNOWN, _ranged(g.before, g.unit),
          _ranged(g.value, g.unit), UNKNOWN if g.factor is None else f"{g.factor:.3g}")
         for g in a.ground
     )  # fmt: skip

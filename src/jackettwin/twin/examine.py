@@ -13,13 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, IdentificationSettings, identify
 from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.status import ModeStatus
+from jackettwin.quantities import known_units
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import Quality
@@ -120,7 +121,7 @@ def examine(
         If no channel carries a signal, or the record cannot be identified.
     """
     source = with_conditions(record)
-    chosen = _placed(source, sensors) if sensors else moving_channels(source)
+    chosen, absent = _placed(source, sensors) if sensors else (moving_channels(source), ())
     chosen, repeated = each_sample_once(chosen)
     chosen, stepped = zeros_in_line(chosen)
     quality = assess(chosen)
@@ -134,6 +135,7 @@ def examine(
     )
     ready, findings = prepared(chosen, steps)
     findings = (
+        *absent,
         *doubts,
         *(f for f in stepped if f.severity != "alarm"),
         *findings,
@@ -266,21 +268,38 @@ def moving_channels(record: Record) -> Record:
         names = [c.name for c in record.channels if c.quantity in kinds]
         if names:
             return record.select(names)
+    bare = all(c.unit == "-" for c in record.channels)
     raise InputError(
-        "no channel measures motion",
-        field="channels",
-        value=record.channel_names,
-        allowed=", ".join((*MOTION, *DEFORMATION)),
-        remedy="state quantity and unit in the JSON beside the record (identify: or --unit)",
+        "unit is missing, and no channel's name says what it measures"
+        if bare
+        else "no channel measures motion",
+        field="unit" if bare else "channels",
+        value=None if bare else _listed(f"{c.name} [{c.unit}]" for c in record.channels),
+        allowed="; ".join(
+            f"{kind} in {', '.join(known_units(kind)[:3])}" for kind in (*MOTION, *DEFORMATION)
+        ),
+        remedy="--unit (identify, init) or logger.unit (twin) states it"
+        if bare
+        else 'write "unit" (of counts and volts "gain", too) of each channel into the JSON beside the record',
     )
 
 
-def _placed(record: Record, sensors: tuple[Sensor, ...]) -> Record:
-    """Return the channels of the sensors, where and which way these say they point."""
-    chosen = record.select([s.channel for s in sensors])
+def _placed(record: Record, sensors: tuple[Sensor, ...]) -> tuple[Record, Findings]:
+    """Return the channels of the sensors, where and which way these say they point, and those it lacks.
+
+    A name that is nearly that of a channel without a sensor is a slip, which ``select`` refuses.
+    """
+    names = {s.channel for s in sensors}
+    others = [name for name in record.channel_names if name not in names]
+    absent = [name for name in names.difference(record.channel_names) if not did_you_mean(name, others)]
+    if len(absent) == len(names):
+        absent = []
+    here = [s for s in sensors if s.channel not in absent]
+    chosen = record.select([s.channel for s in here])
     channels = []
-    for channel, s in zip(chosen.channels, sensors, strict=True):
+    for channel, s in zip(chosen.channels, here, strict=True):
         length = float(np.linalg.norm(s.direction)) or 1.0
         x, y, z = (float(v) / length for v in s.direction)
         channels.append(replace(channel, node=s.node, height_m=s.height_m, direction=(x, y, z)))
-    return replace(chosen, channels=tuple(channels))
+    findings = (Finding("sensors_absent", _listed(sorted(absent))),) if absent else ()
+    return replace(chosen, channels=tuple(channels)), findings

@@ -182,7 +182,8 @@ def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
         if not source.is_dir():
             files.append(source)
             continue
-        inside = sorted(p for p in source.iterdir() if p.suffix.lower() in known)
+        shown = (p for p in source.iterdir() if p.is_file() and not p.name.startswith("."))
+        inside = sorted(p for p in shown if p.suffix.lower() in known)
         if not inside:
             raise InputError(
                 "folder holds no record",

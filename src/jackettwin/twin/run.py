@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Literal
@@ -21,10 +22,14 @@ from jackettwin.twin.problem import UpdateEvidence, law_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.twin.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
+from jackettwin.twin.state import TwinState
 from jackettwin.updating import Update
 from jackettwin.updating.law_choice import likely
 
 Posteriors = Literal["all", "likely"]
+log = logging.getLogger(__name__)
+_MOST_REASONS = 20
+"""Lines that say why nothing that was identified is a mode of the model."""
 
 
 def run_twin(
@@ -92,7 +97,7 @@ def updated_twin(
     measured = (
         target_modes(config, labels, pinned_hz=numbered.frequency_hz)
         if found is None or state is None
-        else recorded_modes(config, state, labels, found.clearest)
+        else _recorded(config, found, state, labels)
     )
     relaxations = measured_relaxations(config, state)
     wind = mean_wind(config, state)
@@ -138,6 +143,18 @@ def updated_twin(
         blades=blades,
         in_all=None if found is None else found.in_all,
     )
+
+
+def _recorded(
+    config: TwinConfig, found: Measured, state: TwinState, labels: tuple[str, ...]
+) -> tuple[MeasuredMode, ...]:
+    """Return the modes of the records; where none is the model's, the log has what the records show."""
+    try:
+        return recorded_modes(config, state, labels, found.clearest)
+    except InputError:
+        for line in cautions(config, found, (), (), labels)[:_MOST_REASONS]:
+            log.warning(line)
+        raise
 
 
 def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:

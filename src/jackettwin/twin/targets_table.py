@@ -9,11 +9,13 @@ from __future__ import annotations
 import csv
 import logging
 import re
+from math import pi
 from pathlib import Path
 from typing import Any
 
 from jackettwin.errors import InputError, located
 from jackettwin.intervals import NORMAL_95
+from jackettwin.records.readers.delimited import MISSING, decoded
 
 log = logging.getLogger(__name__)
 NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
@@ -22,6 +24,7 @@ FREQUENCY = re.compile(r"^(?:f|fn|fre[qk]\w*|eigenfreq\w*|natural freq\w*)(?:[\s
 DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_\[(]|$)", re.IGNORECASE)
 PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
 OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
+DECREMENT = re.compile(r"\blog|decrement|δ", re.IGNORECASE)
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 _CELL = re.compile(
     r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
@@ -40,13 +43,11 @@ def read_targets_table(path: Path) -> list[dict[str, Any]]:
         Names file, line and cell that is not understood.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = decoded(path.read_bytes())
     except OSError:
         raise InputError(
             "no such table of modes", file=path, field="targets", remedy="check the path"
         ) from None
-    except UnicodeDecodeError:
-        text = path.read_text(encoding="cp1252", errors="replace")
     with located(file=path):
         return _targets(text)
 
@@ -74,7 +75,9 @@ def _targets(text: str) -> list[dict[str, Any]]:
     targets = []
     for number, row in enumerate(rows[1:], start=2):
         with located(field=f"row {number}"):
-            targets.append(_target(row, rows[0], columns, delimiter))
+            target = _target(row, rows[0], columns, delimiter)
+            if target.keys() - {"mode"}:  # a row without numbers is a mode that was not found
+                targets.append(target)
     return targets
 
 
@@ -93,7 +96,7 @@ def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter
     target: dict[str, Any] = {}
     for i, key in columns.items():
         cell = row[i] if i < len(row) else ""
-        if not cell or cell in ("-", "–"):
+        if cell.lower() in MISSING:
             continue
         if key == "mode":
             # a number of its own beside a name says less than the name
@@ -118,7 +121,9 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
     damps = key.startswith("damping")
     percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
     scale = 0.01 if percent else 1.0
-    if damps and not percent and float(match["value"]) > MOST_RATIO:
+    if damps and DECREMENT.search(column):
+        scale /= 2.0 * pi
+    if damps and not percent and scale * float(match["value"]) > MOST_RATIO:
         raise InputError(
             "looks like a percentage, and nothing says so",
             field=column,

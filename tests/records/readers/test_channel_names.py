@@ -23,6 +23,8 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("tower_bottom_side_side", Y, None, "tower bottom"),
         ("acc-12.5m-y", Y, 12.5, ""),
         ("az", Z, None, ""),
+        ("Beschl_87m_O", X, 87.0, ""),
+        ("Turm Süd 21m", (0.0, -1.0, 0.0), 21.0, ""),
         ("Sensor 3 West", (-1.0, 0.0, 0.0), None, ""),
     ],
 )

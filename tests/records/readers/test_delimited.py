@@ -54,6 +54,24 @@ def test_rate_in_a_comment_and_other_comments_as_metadata(tmp_path: Path) -> Non
     assert record.metadata == {"logger": "7"}
 
 
+def test_what_a_logger_writes_above_its_table_is_no_table(tmp_path: Path) -> None:
+    """Lines of another length than the rows of numbers; a rate among them counts, pairs do not mislead."""
+    top = 'Logger: XYZ 4000\nSerial;0815\nSite: "North; 7"\nSample rate: 25,0 Hz\n\n'
+    table = "acc_x;acc_y;acc_z\ng;g;g\n" + "".join(f"{k},5;{-k};0\n" for k in range(4))
+    record = read_text(top + table, tmp_path)
+    assert record.channel_names == ("acc_x", "acc_y", "acc_z")
+    assert record.sample_rate_hz == 25.0
+    assert record.metadata["Logger"] == "XYZ 4000"
+    np.testing.assert_allclose(record.data[0] / 9.80665, [0.5, 1.5, 2.5, 3.5])
+
+
+def test_words_with_numbers_among_them_are_no_record(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no"):
+        read_text("Measured by Bob on turbine 7. Call 0800.\nLogger 3, all fine.\n", tmp_path)
+    with pytest.raises(InputError, match="holds no samples"):
+        read_text("time [s],acc_x [g]\n", tmp_path)
+
+
 def test_missing_cells_are_missing_samples(tmp_path: Path) -> None:
     text = "# fs: 5\nacc_x,acc_y\ng,g\n1,\n,NaN\nnull,2\n#N/A,3\n1e999,4\n5\n"
     data = read_text(text, tmp_path).data / 9.80665

@@ -26,10 +26,10 @@ DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
     (_LETTERS.format(r"fa|fore[\s_\-]?aft"), (1.0, 0.0, 0.0), "fore-aft"),
     (_LETTERS.format(r"ss|sts|s2s|side[\s_\-]?(?:to[\s_\-]?)?side"), (0.0, 1.0, 0.0), "side-side"),
     (_LETTERS.format("vert|vertical|heave"), (0.0, 0.0, 1.0), "vertical"),
-    (r"(?<![a-z])(?:east(?![a-z])|e$)", (1.0, 0.0, 0.0), "east"),
-    (r"(?<![a-z])(?:north(?![a-z])|n$)", (0.0, 1.0, 0.0), "north"),
+    (r"(?<![a-z])(?:(?:east|ost)(?![a-z])|[eo]$)", (1.0, 0.0, 0.0), "east"),
+    (r"(?<![a-z])(?:(?:north|nord)(?![a-z])|n$)", (0.0, 1.0, 0.0), "north"),
     (_LETTERS.format("west"), (-1.0, 0.0, 0.0), "west"),
-    (_LETTERS.format("south"), (0.0, -1.0, 0.0), "south"),
+    (_LETTERS.format("south|s[uü]e?d"), (0.0, -1.0, 0.0), "south"),
 )
 """Pattern, unit vector in global axes (x east where a name speaks of compass points), what it is called."""
 

@@ -109,7 +109,7 @@ def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str,
             value=entry["unit"],
             allowed=f"a number: {STANDING_FOR_RAW} for one of {entry['unit']}",
             remedy='write "gain" (and the "unit" it leads to) into the JSON beside the file '
-            "(identify: or --gain, with --unit)",
+            "(identify, init: or --gain, with --unit)",
         )
     if could_vibrate and (not unit or raw) and (unsaid.unit is not None or gain is not None):
         if unsaid.unit is not None or raw:
@@ -143,7 +143,7 @@ def _factor(kind: str, unit: str) -> tuple[float, str]:
             "unit is missing",
             field="unit",
             allowed=f"{si_unit} or another unit of {kind}",
-            remedy="state the unit of the stored numbers in the JSON beside the file (identify: or --unit)",
+            remedy="state the unit of the stored numbers in the JSON beside it (identify, init: or --unit)",
         )
     return to_si(kind, unit or si_unit), si_unit
 

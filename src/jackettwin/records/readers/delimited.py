@@ -1,10 +1,10 @@
 """Delimited text (CSV): header row, optional units row, numbers; the dialect is found, not asked.
 
-``#`` lines before the header may hold ``key: value``. Comma, semicolon, tab, bar or blanks
-separate; a decimal comma is understood wherever the comma does not separate. Units may stand in
-a row of their own or in brackets behind the names. Empty cells, ``nan``, ``NA``, ``null`` and the
-like are missing samples. Columns without names are numbered; the four lines on top of a TOA5 table
-(Campbell) are understood.
+``#`` lines before the header, and whatever a logger writes above its table, may hold ``key: value``.
+Comma, semicolon, tab, bar or blanks separate; a decimal comma is understood wherever the comma does not
+separate. Units may stand in a row of their own or in brackets behind the names. Empty cells, ``nan``,
+``NA``, ``null`` and the like are missing samples. Columns without names are numbered; the four lines on
+top of a TOA5 table (Campbell) are understood.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import io
 import re
 from contextlib import suppress
 from itertools import islice
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +30,23 @@ if TYPE_CHECKING:
 
     from jackettwin.records.record import Record
 
-MISSING = {"", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "inf", "-inf", "+inf"}
+MISSING = {
+    "",
+    "nan",
+    "na",
+    "n/a",
+    "null",
+    "none",
+    "-",
+    "--",
+    "–",
+    "#n/a",
+    "n.a.",
+    "k.a.",
+    "inf",
+    "-inf",
+    "+inf",
+}
 RATE_KEYS = (
     "sample_rate_hz",
     "sample_rate",
@@ -40,11 +57,14 @@ RATE_KEYS = (
     "samplingfrequency",
     "fs",
     "fsamp",
+    "abtastrate",
 )
 ROWS = 15_000
 """Lines of a table when a file is read in pieces: as texts some ten megabytes."""
 MOST_LINES_ON_TOP = 200
 """Lines looked at for comments, names and units."""
+ROWS_OF_A_TABLE = 3
+"""Rows of numbers, equally long and one below the other, by which a table is known below other text."""
 SNIFFED_BYTES = 1 << 16
 """Of a text file, read to tell its encoding."""
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
@@ -64,7 +84,7 @@ def read(path: Path) -> ReadTable:
     InputError
         Names the line and the cell that is not understood.
     """
-    return _table(_decode(path.read_bytes()).splitlines())
+    return _table(decoded(path.read_bytes()).splitlines())
 
 
 def pieces(path: Path) -> Iterator[ReadTable]:
@@ -91,8 +111,7 @@ def _lines_on_top(lines: list[str]) -> int:
     """Return how many lines stand above the numbers: comments, names, units."""
     further = len(lines) - len(_without_toa5(lines))
     lines = _without_toa5(lines)
-    _, start = _preamble(lines)
-    delimiter = _delimiter(lines[start : start + 50])
+    _, start, delimiter = _preamble(lines)
     for count, line in enumerate(lines[start:]):
         cells = _cells(line, delimiter)
         if cells and _is_data(cells[0], delimiter):
@@ -116,8 +135,7 @@ def _encoding(path: Path) -> str:
 def _table(lines: list[str], above: int = 0) -> ReadTable:
     """Return what lines hold; ``above`` lines of numbers were left out between the top and the others."""
     lines = _without_toa5(lines)
-    comments, start = _preamble(lines)
-    delimiter = _delimiter(lines[start : start + 50])
+    comments, start, delimiter = _preamble(lines)
     rows = [row for row in _cells("\n".join(lines[start:]), delimiter) if any(cell.strip() for cell in row)]
     if not rows:
         raise InputError(
@@ -151,7 +169,8 @@ def write(record: Record, path: Path) -> None:
         writer.writerows(["" if x != x else repr(x) for x in row] for row in record.data.T.tolist())
 
 
-def _decode(raw: bytes) -> str:
+def decoded(raw: bytes) -> str:
+    """Return the text of a file: in the encoding its mark tells, else UTF-8, else that of spreadsheets."""
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         return raw.decode("utf-16")
     try:
@@ -160,16 +179,39 @@ def _decode(raw: bytes) -> str:
         return raw.decode("cp1252", errors="replace")  # what spreadsheets write for ² and µ
 
 
-def _preamble(lines: list[str]) -> tuple[dict[str, str], int]:
-    """Return the ``# key: value`` lines on top and the number of the first other line."""
+def _preamble(lines: list[str]) -> tuple[dict[str, str], int, str]:
+    """Return what the lines above a table say by their keys, how many they are, and the table's separator."""
+    start = next((i for i, line in enumerate(lines) if not line.lstrip().startswith("#")), len(lines))
+    delimiter = _delimiter(lines[start : start + MOST_LINES_ON_TOP])
+    start += _text_above(lines[start : start + MOST_LINES_ON_TOP], delimiter)
     comments: dict[str, str] = {}
-    for number, line in enumerate(lines):
-        if not line.lstrip().startswith("#"):
-            return comments, number
-        key, found, value = line.lstrip("# \t").replace("=", ":", 1).partition(":")
-        if found:
-            comments[key.strip()] = value.strip()
-    return comments, len(lines)
+    for line in lines[:start]:
+        key, value, *_ = [
+            *re.split(f"[:={re.escape(delimiter.strip())}]", line.lstrip("# \t"), maxsplit=1),
+            "",
+        ]
+        if value.strip():
+            comments[key.strip()] = value.strip().strip('"')
+    return comments, start, delimiter
+
+
+def _text_above(lines: list[str], delimiter: str) -> int:
+    """Return how many lines of other text stand above the names of a table.
+
+    Where the first line is as long as the rows of numbers, or no line above these is, there are none.
+    """
+    rows = [_cells(line, delimiter) for line in lines]
+    lengths = [len(row[0]) if row else 0 for row in rows]
+    for i in range(1, len(rows) - ROWS_OF_A_TABLE + 1):
+        block = range(i, i + ROWS_OF_A_TABLE)
+        if lengths[i] > 1 and all(
+            lengths[k] == lengths[i] and _is_data(rows[k][0], delimiter) for k in block
+        ):
+            top = i
+            while top > 0 and lengths[top - 1] == lengths[i] and not _is_data(rows[top - 1][0], delimiter):
+                top -= 1
+            return top if top < i and lengths[0] != lengths[i] else 0
+    return 0
 
 
 def _without_toa5(lines: list[str]) -> list[str]:
@@ -193,7 +235,7 @@ def _numbered(row: list[str]) -> tuple[list[str], dict[str, str]]:
 
 def _known(comments: dict[str, str]) -> dict[str, Any]:
     known: dict[str, Any] = {}
-    rate = next((key for key in comments if key.lower() in RATE_KEYS), None)
+    rate = next((key for key in comments if re.sub(r"[ _]+", "_", key.lower()) in RATE_KEYS), None)
     if rate is not None:
         known["sample_rate_hz"] = _rate(rate, comments.pop(rate))
     if "start_utc" in comments:
@@ -203,7 +245,7 @@ def _known(comments: dict[str, str]) -> dict[str, Any]:
 
 def _rate(key: str, text: str) -> float:
     try:
-        rate = float(text.lower().removesuffix("hz"))
+        rate = float(text.lower().removesuffix("hz").replace(",", "."))
     except ValueError:
         rate = float("nan")
     if not 0.0 < rate < float("inf"):
@@ -244,14 +286,14 @@ def _cells(text: str, delimiter: str) -> list[list[str]]:
 
 
 def _is_data(row: list[str], delimiter: str) -> bool:
-    """Tell whether any cell is a number or a time: names and units are neither."""
-    return any(_is_value(cell.strip(), delimiter) for cell in row)
+    """Tell whether half of the cells are numbers or times: names and units are neither."""
+    known = [text for cell in row if (text := cell.strip()).lower() not in MISSING]
+    return 0 < len(known) <= 2 * sum(_is_value(text, delimiter) for text in known)
 
 
 def _is_value(cell: str, delimiter: str) -> bool:
     try:
-        number = float(_with_point(cell, delimiter))
-        return number == number and cell.lower() not in MISSING
+        return not isnan(float(_with_point(cell, delimiter)))
     except ValueError:
         return bool(_DATE.match(cell))
 

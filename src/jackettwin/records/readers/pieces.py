@@ -141,7 +141,7 @@ def _rate(rate: float | None) -> float:
             "sample rate is missing",
             field="sample_rate_hz",
             allowed="> 0 Hz",
-            remedy='write "sample_rate_hz" into the JSON beside the file (identify: or --sample-rate)',
+            remedy='write "sample_rate_hz" into the JSON beside the file (identify, init: or --sample-rate)',
         )
     return rate
 

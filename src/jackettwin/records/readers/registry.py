@@ -191,6 +191,8 @@ def _refuse_unreadable(path: Path) -> None:
             problem = "is empty"
     except (OSError, ValueError) as error:
         problem = f"cannot be opened ({error})"
+    if problem == "is empty":
+        raise InputError(problem, file=path, remedy="export the record again, or leave the file out")
     if problem:
         beside = path.parent.glob(f"*{path.suffix}") if path.parent.is_dir() else ()
         near = [p.name for p in beside if p.name != path.name]

@@ -184,6 +184,14 @@ def to_record(
     metadata = {**table.metadata, **said.metadata}
     if table.remarks or missing:
         metadata["remarks"] = [*table.remarks, *missing]
+    if data.shape[1] < 2:
+        raise InputError(
+            "holds no samples",
+            field="data",
+            value=data.shape[1],
+            allowed="at least 2 samples",
+            remedy="export the record again",
+        )
     if table.times_s is not None:
         data, clock = regularise(table.times_s, data, sample_rate_hz=stated)
         stated = clock.sample_rate_hz
@@ -195,18 +203,10 @@ def to_record(
             field="sample_rate_hz",
             allowed="> 0 Hz",
             remedy=f'write "sample_rate_hz" into {path.with_suffix(".json").name} beside the file '
-            "(identify: or --sample-rate)",
+            "(identify, init: or --sample-rate)",
         )
     start_utc, unzoned = _start(table, said, unsaid)
     metadata["remarks"] = [*metadata.get("remarks", ()), *unzoned]
-    if data.shape[1] < 2:
-        raise InputError(
-            "holds no samples",
-            field="data",
-            value=data.shape[1],
-            allowed="at least 2 samples",
-            remedy="export the record again",
-        )
     described = _described(names, table, said, unsaid)
     metadata["remarks"] += told({one.channel.name: one.from_name for one in described})
     if not metadata["remarks"]:
