@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import log
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import exp, log
 
 import numpy as np
 from scipy.optimize import brentq
 
 from jackettwin.answers.result import FitAnswer, ModeAnswer
 from jackettwin.twin.result import MeasuredMode
-from jackettwin.updating import Update
+from jackettwin.updating import Residuals, Update
 from jackettwin.updating.misfit import misfit
+from jackettwin.updating.targets import Target
 
 _LARGEST = 1.0
 """Relative error up to which one that covers the misfit is sought: beyond it the model says nothing."""
+OFF = 0.01
+"""Relative error of all frequencies of a model whose effect on the ground is told."""
 
 
 def fit_answer(u: Update, measured: Sequence[MeasuredMode], modes: Sequence[ModeAnswer]) -> FitAnswer | None:
@@ -30,7 +34,8 @@ def fit_answer(u: Update, measured: Sequence[MeasuredMode], modes: Sequence[Mode
             stds[m.label] = float(np.hypot(m.frequency_std_hz / m.frequency_hz, mode.model_error))
     ranked = dict(sorted(off.items(), key=lambda item: -abs(item[1]) / stds[item[0]]))
     cover = None if found.fits else _cover([*off.values()], [*stds.values()])
-    return FitAnswer(found.chi2, found.freedom, found.probability, found.fits, ranked, cover)
+    moved = moved_by(u, OFF)
+    return FitAnswer(found.chi2, found.freedom, found.probability, found.fits, ranked, cover, moved)
 
 
 def _cover(off: Sequence[float], stds: Sequence[float]) -> float | None:
@@ -48,3 +53,31 @@ def _cover(off: Sequence[float], stds: Sequence[float]) -> float | None:
     if not len(off) or excess(0.0) <= 0.0 or excess(_LARGEST) >= 0.0:
         return None
     return float(brentq(excess, 0.0, _LARGEST))
+
+
+def moved_by(u: Update, error: float) -> Mapping[str, float]:
+    """Return by how much, in ln θ, each parameter comes out wrong if all frequencies of the model are too high.
+
+    To first order at the best fit: Δ ln θ = −(JᵀJ)⁻¹Jᵀ Δr, Δr the change of the residuals. No interval
+    holds it unless the twin states an error of the model as large. Nothing where the fit cannot be evaluated
+    again.
+    """
+    z, problem = np.log(u.best.theta), u.problem
+    states = tuple(
+        replace(state, residuals=replace(state.residuals, targets=_lower(state.residuals, error)))
+        for state in problem.states
+    )
+    r, J, near = problem.evaluate(z, None)
+    moved, _, found = replace(problem, states=states).evaluate(z, near)
+    if near is None or found is None:
+        return {}
+    step = -np.linalg.lstsq(J, moved - r, rcond=None)[0]
+    return {p.name: float(d) for p, d in zip(problem.parameters, step, strict=True)}
+
+
+def _lower(residuals: Residuals, error: float) -> tuple[Target, ...]:
+    """Return targets as a model without the error would need to meet them."""
+    return tuple(
+        t if t.frequency_hz is None else replace(t, frequency_hz=t.frequency_hz * exp(-error))
+        for t in residuals.targets
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import exp, log
 from typing import Literal
 
@@ -160,6 +160,8 @@ class FitAnswer:
         Of the fitted ones, the one that is most standard deviations off first.
     cover : float or None
         Relative error of the model that would cover what its frequencies miss, where it does not fit.
+    moved : {parameter: change of its logarithm}
+        By which it comes out wrong if all frequencies of the model are 1 % too high.
     """
 
     chi2: float
@@ -168,6 +170,7 @@ class FitAnswer:
     fits: bool
     off: Mapping[str, float]
     cover: float | None
+    moved: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def _leg_scatter(u: Update) -> list[str]:
 
 
 def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
-    table = Table("mode", "", "measured f [Hz]", "f [Hz]", "undamped f [Hz]", "measured ζ [%]", "ζ [%]")
+    table = Table("mode", "", "measured f [Hz]", "best fit f [Hz]", "undamped", "measured ζ [%]", "best fit")
     columns = (measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio)
     for m, f, f0, zeta in zip(*columns, strict=True):
         table.add_row(

@@ -96,7 +96,7 @@ def _more(said: Said, title: str) -> list[Block]:
 def _modes(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:
     blocks: list[Block] = [*_more(said, first.MODEL), tables.modes_table(a, result), *first.shapes(result)]
     known = true_modes(result)
-    return [*blocks, truth_table(result, known)] if known else blocks
+    return [*blocks, truth_table(result, a, known)] if known else blocks
 
 
 def _ground(result: TwinResult, *, a: Answers, said: Said) -> list[Block]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import expm1
 
 from jackettwin.answers.result import Answers, Clearance, GroundAnswer, ModeAnswer, NextStep, Span
 from jackettwin.report.numbers import (
@@ -23,6 +24,8 @@ MARGIN = 0.10
 excitation range with a margin; ten per cent is its usual size)."""
 WIDE = 10.0
 """Upper over lower end of an interval from which it is no rough knowledge: not even the order is known."""
+_NOTHING = 0.005
+"""Change of a logarithm that is not worth saying."""
 SMALL = 0.10
 """A source that gives less of a mode's damping is not named first."""
 _MOST = 4
@@ -255,7 +258,8 @@ def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if judged:
         good = sum(bool(m.as_designed) for m in judged)
         first = listed([_beside_design(m) for m in _firsts(a)])
-        short.append(f"{good} of {count(len(judged), 'measured mode')} lie where the design says: {first}.")
+        lie = "lies" if len(judged) == 1 else "lie"
+        short.append(f"{good} of {count(len(judged), 'measured mode')} {lie} where the design says: {first}.")
         short += [f"{_against_design(m).capitalize()}." for m in judged if not m.as_designed]
         more.append(
             "The design is the model on the foundation that the twin's priors state, within their 90 % and "
@@ -414,7 +418,21 @@ def _trust(a: Answers) -> list[str]:
         if stated
         else "Model error: none is stated (update.model_error); intervals are those of a perfect model."
     )
-    return said
+    return [*said, *_if_off(a)]
+
+
+def _if_off(a: Answers) -> list[str]:
+    """Return what an error of the model would do to the ground's stiffness: the data do not show it."""
+    moved = {} if a.fit is None else a.fit.moved
+    of_kind = [g for g in a.ground if g.kind == "stiffness" and g.verdict in ("identified", "weak")]
+    parts = [
+        f"{parameter_words(g.name)} by {100.0 * expm1(abs(moved[g.name])):.2g} %"
+        for g in of_kind[:_MOST]
+        if abs(moved.get(g.name, 0.0)) > _NOTHING
+    ]
+    return (
+        [f"Each 1 % by which all frequencies of the model are wrong moves {listed(parts)}."] if parts else []
+    )
 
 
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -7,6 +7,7 @@ from math import exp
 
 import numpy as np
 
+from jackettwin.answers import Answers
 from jackettwin.arrays import FloatArray
 from jackettwin.report.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.report.page import PageTable
@@ -14,7 +15,6 @@ from jackettwin.soil.parameter import Parameter
 from jackettwin.twin import TwinResult
 from jackettwin.twin.truth import StatedMode, TrueParameter
 from jackettwin.updating import Update
-from jackettwin.updating.law_choice import recommended
 
 
 def key_table(result: TwinResult) -> PageTable:
@@ -37,20 +37,19 @@ def _mark(text: str, fitted: bool) -> str:
     return text if fitted or text == UNKNOWN else f"({text})"
 
 
-def truth_table(result: TwinResult, stated: tuple[StatedMode, ...]) -> PageTable:
+def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) -> PageTable:
     """Return the true modes that the records state beside the measured and the updated ones."""
-    shown = [u for u in [recommended(result.updates)] if u is not None]
-    columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in shown)]
-    columns += ["true\nζ [%]", "measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in shown)]
+    columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", "updated\nf [Hz]"]
+    columns += ["true\nζ [%]", "measured\nζ [%]", "updated\nζ [%]"]
     place = {m.label: i for i, m in enumerate(result.measured)}
     rows = []
     for true in stated:
         i = place[true.label]
-        m = result.measured[i]
+        m, model = result.measured[i], a.modes[i]
         row = [words(true.label), frequency(true.frequency_hz), frequency(m.frequency_hz, m.frequency_std_hz)]
-        row += [frequency(float(u.modes.frequency_hz[i])) for u in shown]
+        row += [UNKNOWN if model.model_hz is None else frequency(model.model_hz.value)]
         row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
-        row += [percent(float(u.modes.damping_ratio[i])) for u in shown]
+        row += [UNKNOWN if model.model_damping is None else percent(model.model_damping.value)]
         rows.append(tuple(row))
     caption = (
         "Is it true? What these records state of their asset, the mean over them, beside what was found."
