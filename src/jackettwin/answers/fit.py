@@ -56,7 +56,7 @@ def _cover(off: Sequence[float], stds: Sequence[float]) -> float | None:
 
 
 def moved_by(u: Update, error: float) -> Mapping[str, float]:
-    """Return by how much, in ln θ, each parameter comes out wrong if all frequencies of the model are too high.
+    """Return by how much, in ln θ, each parameter errs if the model's frequencies are all too high.
 
     To first order at the best fit: Δ ln θ = −(JᵀJ)⁻¹Jᵀ Δr, Δr the change of the residuals. No interval
     holds it unless the twin states an error of the model as large. Nothing where the fit cannot be evaluated

@@ -23,7 +23,7 @@ STEEL_DAMPING = 0.005
 _UPDATE = (
     "update:",
     "  model_error:                      # by how much drawings and beams miss the modes: CHECK",
-    "    - {modes: [1, 2], frequency: 0.01}",
+    "    - {modes: [1, 2], frequency: 0.02}",
     "    - {modes: [3, 4, 5], frequency: 0.03, damping: 0.2}",
     "  # priors: {k: {median: 1.0e9, log_std: 0.7}}   # what the design says of a foot [N/m]",
     "  # rotor: turbine.yaml             # windIO file: what a parked rotor damps in the wind",
