@@ -112,7 +112,7 @@ def test_the_draft_states_an_error_of_the_model_and_asks_for_the_rotors_speeds(t
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g]")
     out = tmp_path / "twin.yaml"
     text = run(str(record), "--out", str(out))[1]
-    assert read_twin(out).update.model_error(1).frequency == 0.01
+    assert read_twin(out).update.model_error(1).frequency == 0.02
     assert "missing: rotor_speed_rpm: [lowest, highest]" in text
     asked = out.read_text().replace("# rotor_speed_rpm", "rotor_speed_rpm").replace("  # priors", "  priors")
     out.write_text(asked)  # what stands there as a comment reads as it stands
