@@ -37,7 +37,25 @@ def test_one_time_constant_is_found(rng: np.random.Generator) -> None:
     # two hundred independent values know a standard deviation to 5 %, the noise beside it to less
     assert best.std == pytest.approx(1.0, rel=0.25)
     assert best.scale == pytest.approx(0.7 / np.sqrt(0.5), rel=0.1)
-    assert best.correlation[0, 1] == pytest.approx(0.6, abs=0.25)
+    assert best.correlation[:, 0, 1] == pytest.approx(0.6, abs=0.25)
+
+
+def test_hidden_weather_is_shared_by_what_is_slow_alone(rng: np.random.Generator) -> None:
+    """Processes of a quarter day of each one's own, and of twelve days in common."""
+    n = 900
+    t = np.sort(rng.uniform(0.0, 365.0, n))
+    x, y = np.zeros(3), np.empty((n, 2))
+    for i in range(n):
+        keep = np.exp(-np.diff(t[[i - 1, i]])[0] / np.array([0.25, 0.25, 12.0])) if i else np.zeros(3)
+        x = keep * x + np.sqrt(1.0 - keep**2) * rng.standard_normal(3)
+        y[i] = 0.5 * x[:2] + x[2] + 0.1 * rng.standard_normal(2)
+    none = np.zeros((n, 2))
+    hours = Hours(t, np.ones((n, 1)), y, np.full((n, 2), 0.01), none, none)
+    told, untold = (learn(hours, np.full((2, 1), 5.0), hidden=h).memories[0] for h in (False, True))
+    fast, slow = untold.correlation[0, 0, 1], untold.correlation[-1, 0, 1]
+    assert untold.days[0] < 1.0 < untold.days[-1]
+    assert slow > 0.7 > 0.3 > fast  # spectra of the family are not this one, so that none is 1 or 0
+    assert np.ptp(told.correlation[:, 0, 1]) == 0.0
 
 
 def test_memory_of_a_season_is_expected_where_there_is_some(rng: np.random.Generator) -> None:
@@ -56,7 +74,7 @@ def test_few_values_leave_room_for_larger_processes() -> None:
     drawn = np.sqrt(9.0 / np.random.default_rng(0).chisquare(9.0, 400_000))
     edges = [0.0, *np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1])), np.inf]
     expected = np.histogram(drawn, edges)[0] / drawn.size
-    np.testing.assert_allclose(_larger(9.0), expected, atol=2e-3)  # of the draws
+    np.testing.assert_allclose(_larger(9.0, LARGER), expected, atol=2e-3)  # of the draws
 
 
 def test_a_size_that_is_hardly_known_leans_on_the_others() -> None:
@@ -81,7 +99,7 @@ def test_quantities_that_drown_in_noise_are_taken_as_independent(rng: np.random.
     loud = replace(loud, values=loud.values + 15.0 * rng.standard_normal(loud.values.shape),
                    noise=loud.noise + 225.0)  # fmt: skip
     # their data tell nothing of 0.6: the prior's mean is 0, to the grid it is summed on
-    assert abs(learn(loud, np.full((2, 1), 5.0)).memories[0].correlation[0, 1]) < 0.35
+    assert abs(learn(loud, np.full((2, 1), 5.0)).memories[0].correlation[0, 0, 1]) < 0.35
 
 
 def test_one_quantity_may_be_larger_than_it_seemed(rng: np.random.Generator) -> None:

@@ -118,7 +118,7 @@ def begin(
     day = np.floor(baseline.days)
     beside = np.stack([_told(apart[day == d], rest[day == d]) for d in np.unique(day)])
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
-    learnt = learn(hours, np.outer(spread, design.priors))
+    learnt = learn(hours, np.outer(spread, design.priors), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
     block = Block(
         kind=kind,

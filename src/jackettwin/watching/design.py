@@ -64,6 +64,11 @@ class Design:
     sloped: int
 
     @property
+    def hidden(self) -> bool:
+        """Whether no conditions are given: what they do is then part of the unexplained."""
+        return all(column.source < 0 for column in self.columns)
+
+    @property
     def width(self) -> int:
         """Number of regressors p."""
         return len(self.states) + self.sloped * len(self.columns)

@@ -36,18 +36,24 @@ _SCALE_STD, _SLOW_STD = 0.5, 1.5
 """Prior spread in ln of the factor on stated standard deviations, and of the slow processes' size."""
 _LEAST = 1e-3
 """The least standard deviation of a process, in those of the quantity."""
+SLOW_DAYS = 1.0
+"""From this time constant on processes have a correlation of their own where no conditions are given: the
+weather is then among them, which modes share, while what moves within a day is each one's own."""
 AGREEMENT = (1.0, 0.7)
 """Shares of the estimated correlation between quantities that are tried."""
 CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
 """Correlations between two quantities that are tried."""
-_BELIEVED = np.gradient(CORRELATIONS) * (1.0 - CORRELATIONS**2)
-"""What is believed of them before the baseline (Lewandowski, Kurowicka & Joe 2009): quantities whose
-processes drown in noise are taken as nearly independent."""
+SHARED = np.append(CORRELATIONS, 0.995)
+"""The same of slow processes where modes share hidden weather."""
+_LEAST_OWN, _LEAST_OWN_SHARED = 0.02, 0.005
+"""The least eigenvalue of a correlation that is believed, and where modes share hidden weather."""
 MOST_SPECTRA, MOST_TRIED = 3, 10
 _HANDICAP = 1.5
 """In ln of the likelihood: models should differ in what they expect."""
 LARGER = (1.0, 1.3, 1.7)
 """Factors on the slow processes' standard deviations, of all quantities alike, that a baseline may miss."""
+STORMY = (1.0, 1.7, 3.0)
+"""The same where no conditions are given: storms are rare and far larger than what is usual."""
 _LEAST_FREEDOM = 4.0
 ONE_LARGER = (2.0, 0.1)
 """Standard deviations of its ln by which one quantity's slow processes may be larger, and its chance."""
@@ -72,7 +78,7 @@ class Memory:
     scale : (m,) factors on stated standard deviations
     std : (m,) standard deviations of all slow processes together
     days, shares : (k,) time constants of the processes, and their shares of the variance
-    correlation : (m, m) of each process between quantities
+    correlation : (k, m, m) of each process between quantities
     """
 
     scale: FloatArray
@@ -92,7 +98,7 @@ class Memory:
             self,
             scale=self.scale[chosen],
             std=self.std[chosen],
-            correlation=self.correlation[np.ix_(chosen, chosen)],
+            correlation=self.correlation[:, chosen][:, :, chosen],
         )
 
 
@@ -231,7 +237,9 @@ def _power_law(slope: float) -> Spectrum:
     return OCTAVES, tuple(weight / weight.sum())
 
 
-def learn(hours: Hours, coefficient_std: FloatArray, told: tuple[Spectrum, ...] = ()) -> Learnt:
+def learn(
+    hours: Hours, coefficient_std: FloatArray, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
+) -> Learnt:
     """Return the models that a baseline makes likely.
 
     Each quantity alone finds its scale and size under every spectrum; the spectrum is one for all. Then all
@@ -241,6 +249,7 @@ def learn(hours: Hours, coefficient_std: FloatArray, told: tuple[Spectrum, ...] 
     ----------
     coefficient_std : (m, p) prior standard deviations
     told : the spectra that it can be, if that is known
+    hidden : whether no conditions are given, so that what they do is part of the unexplained
     """
     m = coefficient_std.shape[0]
     single = [hours.of([q]) for q in range(m)]
@@ -264,20 +273,21 @@ def learn(hours: Hours, coefficient_std: FloatArray, told: tuple[Spectrum, ...] 
     bases = [
         Memory(
             np.array([one.scale for one in fits[spectrum]]), np.array([one.std for one in fits[spectrum]]),
-            np.array(spectrum[0]), np.array(spectrum[1]), np.eye(m),
+            np.array(spectrum[0]), np.array(spectrum[1]), np.stack([np.eye(m)] * len(spectrum[0])),
         )
         for spectrum in sorted(total, key=lambda one: -total[one])
         if total[spectrum] > max(total.values()) - _LIKELY
     ]  # fmt: skip
-    return _weighed(bases[:MOST_TRIED], hours, coefficient_std)
+    return _weighed(bases[:MOST_TRIED], hours, coefficient_std, hidden)
 
 
-def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray) -> Learnt:
+def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, hidden: bool) -> Learnt:
     """Return models with the quantities' correlation, weighed by all quantities together."""
     m = coefficient_std.shape[0]
-    correlation = _correlation(hours, bases[0], coefficient_std)
+    fast, slow = _correlations(hours, bases[0], coefficient_std, hidden)
     scored: list[tuple[float, Memory]] = []
     for base in bases:
+        correlation = np.where((base.days < SLOW_DAYS)[:, None, None], fast, slow)
         each = [
             replace(base, correlation=share * correlation + (1.0 - share) * np.eye(m))
             for share in (AGREEMENT if m > 1 else (1.0,))
@@ -289,10 +299,12 @@ def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray) -> 
     shift, spread = _pooled(np.log(kept[0][1].std), 0.5 / np.maximum(freedom, _LEAST_FREEDOM))
     memories = [replace(memory, std=memory.std * np.exp(shift)) for _, memory in kept]
     first = memories[0]
-    larger = _larger(max(float(np.median(freedom)) - m + 1.0, _LEAST_FREEDOM))
+    known = _LEAST_FREEDOM if hidden else max(float(np.median(freedom)) - m + 1.0, _LEAST_FREEDOM)
+    factors = STORMY if hidden else LARGER
+    larger = _larger(known, factors)
     apart = np.argsort(-spread)[: _MOST_APART if m > 1 else 0]
     one = ONE_LARGER[1] * (1.0 - ONE_LARGER[1]) ** max(len(apart) - 1, 0)
-    memories += [replace(first, std=g * first.std) for g in LARGER[1:]]
+    memories += [replace(first, std=g * first.std) for g in factors[1:]]
     memories += [_one_larger(first, q, spread[q]) for q in apart]
     weights = np.exp([score - kept[0][0] for score, _ in kept])
     weights = weights / weights.sum() * (1.0 - one * len(apart)) * larger[0]
@@ -337,13 +349,13 @@ def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]
     return sorted(kept, key=lambda one: -one[0])
 
 
-def _larger(freedom: float) -> FloatArray:
-    """Return the probabilities that slow processes are by so much larger than estimated, of ``LARGER``.
+def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
+    """Return the probabilities that slow processes are larger by these factors than estimated.
 
     An excursion of processes whose covariance is known by ν independent values is one of Student's t with ν
     degrees of freedom: the estimated covariance times ν/χ²_ν, one factor for all quantities.
     """
-    between = np.sqrt(np.array(LARGER[1:]) * np.array(LARGER[:-1]))
+    between = np.sqrt(np.array(factors[1:]) * np.array(factors[:-1]))
     above = np.append(chdtr(freedom, freedom / between**2), 0.0)
     share = np.concatenate([[1.0 - above[0]], above[:-1] - above[1:]])
     return np.asarray(np.maximum(share, 1e-12))
@@ -388,7 +400,7 @@ def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _F
 
     def loss(x: FloatArray) -> float:
         y = np.clip(x, [-3.0, low], [3.0, high])
-        memory = Memory(np.exp(y[:1]), np.exp(y[1:]), days, shares, np.eye(1))
+        memory = Memory(np.exp(y[:1]), np.exp(y[1:]), days, shares, np.ones((days.size, 1, 1)))
         penalty = ((y - usual) / [_SCALE_STD, _SLOW_STD]) ** 2
         outside = np.sum((x - y) ** 2)
         return float(0.5 * penalty.sum() + outside - _end(memory, coefficient_std, own).log_likelihood)
@@ -405,26 +417,49 @@ def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _F
     return _Fit(float(scale), float(std), -float(found.fun))
 
 
-def _correlation(hours: Hours, memory: Memory, coefficient_std: FloatArray) -> FloatArray:
-    """Return the correlation of the slow processes between quantities: two by two, the posterior's mean."""
+def _correlations(
+    hours: Hours, memory: Memory, coefficient_std: FloatArray, hidden: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Return the correlation between quantities of fast and of slow processes, alike unless ``hidden``.
+
+    Two by two, the posterior's mean; fast and slow ones in turn, twice, the others as they are known by then.
+    """
     m = len(memory.scale)
-    result = np.eye(m)
+    slow = memory.days >= SLOW_DAYS
+    result = np.stack([np.eye(m)] * 2)
     for i in range(m):
         for j in range(i):
-            own, pair = hours.of([j, i]), memory.of([j, i])
-            likelihood = np.array([
-                _end(replace(pair, correlation=np.array([[1.0, rho], [rho, 1.0]])), coefficient_std[[j, i]],
-                     own).log_likelihood
-                for rho in CORRELATIONS
-            ])  # fmt: skip
-            weight = np.exp(likelihood - likelihood.max()) * _BELIEVED
-            result[i, j] = result[j, i] = float(weight @ CORRELATIONS / weight.sum())
-    return _positive(result)
+            own, pair, std = hours.of([j, i]), memory.of([j, i]), coefficient_std[[j, i]]
+            each = _pair_mean(own, pair, std, np.zeros(slow.size), slow | ~slow, CORRELATIONS)
+            for _ in range(2 if hidden and slow.any() else 0):
+                each = _pair_mean(own, pair, std, each, slow, SHARED)
+                each = _pair_mean(own, pair, std, each, ~slow, CORRELATIONS)
+            result[:, i, j] = result[:, j, i] = [each[np.argmin(memory.days)], each[np.argmax(memory.days)]]
+    return _positive(result[0], _LEAST_OWN), _positive(result[1], _LEAST_OWN_SHARED if hidden else _LEAST_OWN)
 
 
-def _positive(correlation: FloatArray) -> FloatArray:
-    """Return the nearest correlation with no eigenvalue below one in fifty."""
+def _pair_mean(
+    own: Hours, pair: Memory, std: FloatArray, correlation: FloatArray, chosen: BoolArray, tried: FloatArray
+) -> FloatArray:
+    """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
+
+    The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009): quantities whose processes drown in noise
+    are taken as nearly independent.
+    """
+    if not chosen.any():
+        return correlation
+    each = np.where(chosen, tried[:, None], correlation)
+    crossed = each[:, :, None, None] * (1.0 - np.eye(2)) + np.eye(2)
+    likelihood = np.array([
+        _end(replace(pair, correlation=one), std, own).log_likelihood for one in crossed
+    ])  # fmt: skip
+    weight = np.exp(likelihood - likelihood.max()) * np.gradient(tried) * (1.0 - tried**2)
+    return np.where(chosen, weight @ tried / weight.sum(), correlation)
+
+
+def _positive(correlation: FloatArray, least: float) -> FloatArray:
+    """Return the nearest correlation with no eigenvalue below the least."""
     values, vectors = np.linalg.eigh(correlation)
-    mended = (vectors * np.maximum(values, 0.02)) @ vectors.T
+    mended = (vectors * np.maximum(values, least)) @ vectors.T
     size = np.sqrt(np.diag(mended))
     return np.asarray(mended / np.outer(size, size))

@@ -50,6 +50,9 @@ FEWEST_DAYS = 7
 """Days with records that a baseline needs."""
 _LOOSE = 1.0
 """Precision of what other quantities do while some are judged: they may change by anything."""
+PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 70.0, 5.0
+"""Share of the baseline that a change has to last where no conditions are given, and the most of it: what is
+shorter may be a storm. Leaving later begins out can only lower R, so that the promise is kept."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping")
 
 
@@ -85,6 +88,7 @@ class Watch:
     accounted : day up to which begins are staked
     considered : day on which the models' weights were reconsidered
     arl_years : mean time between false alarms that is promised, at least
+    patience_days : for how long a change has to last
     """
 
     labels: tuple[str, ...]
@@ -96,6 +100,7 @@ class Watch:
     accounted: float
     considered: float
     arl_years: float
+    patience_days: float = 0.0
 
     @property
     def log_threshold(self) -> float:
@@ -234,6 +239,7 @@ def start(
         float(np.floor(last)),
         last,
         arl_years,
+        min(PATIENCE * (last - baseline.days[0]), MOST_PATIENCE_DAYS) if design.hidden else 0.0,
     )
 
 
@@ -265,7 +271,10 @@ def step(watch: Watch, day: History) -> tuple[Watch, Look]:
         last_day=float(day.days[-1]), accounted=max(today, watch.accounted),
     )  # fmt: skip
     worth = _worth(after)
-    log_r = float(np.logaddexp.reduce((after.begins.log_stake[:, None] + worth).ravel()))
+    old = after.begins.days <= after.last_day - after.patience_days
+    log_r = float(
+        np.logaddexp.reduce((after.begins.log_stake[:, None] + worth)[old].ravel(), initial=-np.inf)
+    )
     change = None
     if log_r >= after.log_threshold:
         change, begun = _change(after, worth, log_r)
