@@ -111,6 +111,7 @@ JOINT 002P     11.    -8.   -42. 50.000-13.200-50.000 PILEHD
 JOINT 003P      0.     8.   -42.        13.200-50.000 111222
 CURR
 CURR      42.500   0.116
+WGTJT ANOD  1     12.0
 LOAD
 LOADCNNACL
 LOAD   1                      -8100.0                       GLOB JOIN   NACELLE
@@ -152,6 +153,22 @@ def test_joints_kept_in_a_dynamic_analysis_are_not_held(metric: Path) -> None:
     assert held == {"001P": (True,) * 3, "002P": (True,) * 3, "003P": (True,) * 3}
 
 
+def test_a_member_s_ends_lie_beside_its_joints_and_move_with_them(metric: Path) -> None:
+    """56.401 cm in x at one end, −56.40 at the other, in columns 36 to 41 and 54 to 59; rigid between."""
+    structure = read_structure(metric)
+    leg = next(m for m in structure.members if m.name == "001P-601L")
+    links = {link.follower: link.leader for link in structure.rigid_links}
+    assert links == {leg.start: "001P", leg.end: "601L"}
+    for end, joint, shift in ((leg.start, "001P", 0.56401), (leg.end, "601L", -0.5640)):
+        moved = np.subtract(structure.nodes[end], structure.nodes[joint])
+        np.testing.assert_allclose(moved, [shift, 0.0, 0.0], atol=1e-12)
+    assert next(m for m in structure.members if m.name == "002P-601L").end == "601L"
+    in_own_axes = METRIC.replace("MEMBER1001P601L", "MEMBER2001P601L")
+    metric.write_text(in_own_axes)
+    assert read_structure(metric).rigid_links == ()
+    assert any("axes of the member" in remark for remark in sacs_remarks(metric))
+
+
 def test_a_weight_repeated_for_every_direction_counts_once(metric: Path) -> None:
     (mass,) = read_structure(metric).masses
     assert mass.mass_kg == pytest.approx(8200e3 / 9.80665)
@@ -164,11 +181,11 @@ def test_every_reader_of_a_deck_hears_what_is_not_read(
     with caplog.at_level("WARNING"):
         read_structure(metric)
     said = " ".join(caplog.messages)
-    assert all(word in said for word in ("offsets", "releases", "current"))
+    assert all(word in said for word in ("releases", "current", "WGTJT cards, weights, are not read"))
     result = CliRunner().invoke(main, ["modes", str(metric), "--json"])
     assert result.exit_code == 0
-    assert result.stderr.count("member offsets are not read") == 1
-    assert "offsets" not in result.stdout
+    assert result.stderr.count("members' end releases are not read") == 1
+    assert "releases" not in result.stdout
 
 
 def test_what_holds_a_joint_is_read(deck: Path) -> None:

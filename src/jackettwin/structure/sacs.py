@@ -1,9 +1,9 @@
-"""SACS model files: JOINT, MEMBER, GRUP, SECT and joint LOAD cards, in the fixed columns of its manuals.
+"""SACS model files: JOINT, MEMBER with offsets, GRUP, SECT and joint LOAD cards, in fixed columns.
 
-The columns agree with two public programs that read and write them (sacs2abaqus, Golden Beach) and with two
-public decks of wind turbines' jackets (OC4, INNWIND). Units follow the OPTIONS card: EN is feet, inches, ksi,
-kips and lb/ft³; MN and ME are metres, centimetres, kN/cm², kN (ME: kg) and t/m³. What is not understood is
-logged as a warning, never left out silently.
+The columns are those of its manuals and agree with two public programs that read and write them (sacs2abaqus,
+Golden Beach) and with two public decks of wind turbines' jackets (OC4, INNWIND). Units follow the OPTIONS
+card: EN is feet, inches, ksi, kips and lb/ft³; MN and ME are metres, centimetres, kN/cm², kN (ME: kg) and
+t/m³. What is not understood is logged as a warning, never left out silently.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.errors import InputError, located
-from jackettwin.structure.model import Material, Member, PointMass, Reaction, Section, Structure
+from jackettwin.structure.model import Material, Member, PointMass, Reaction, RigidLink, Section, Structure
 
 log = logging.getLogger(__name__)
 _G = 9.80665
@@ -29,6 +29,10 @@ _HELD = {"FIXED": (True, True, True, True, True, True), "PINNED": _PINNED, "PILE
 """Words for what holds a joint; a pile head is held by the supports that are updated."""
 _ENVIRONMENT = {"CDM", "MGROV", "GRPOV", "GRPOVA", "WAVE", "WAVE1", "WIND", "CURR", "DEAD", "TIDE", "CENTER"}
 """Cards of the sea, of growth on members and of the self-weight's direction."""
+_WEIGHTS = ("WGT", "SURFWT")
+"""Beginnings of the cards of weight groups, whose columns nothing public says."""
+_GLOBAL = "1"
+"""In column 7 of a MEMBER card: the offsets on the card behind it are in global axes."""
 _EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
 """Exponents stand without their letter: ``1.64+4`` is 16400."""
 
@@ -62,6 +66,21 @@ class _Part:
     length: float | None
 
 
+_Shift = tuple[float, float, float]
+_HERE = (0.0, 0.0, 0.0)
+
+
+@dataclass
+class _Bar:
+    """A member between two joints; its ends may lie beside them, by ``shifts`` in the axes of ``code``."""
+
+    a: str
+    b: str
+    group: str
+    code: str = ""
+    shifts: tuple[_Shift, _Shift] | None = None
+
+
 @dataclass
 class _Deck:
     """What the cards of a deck say, in SI units."""
@@ -72,7 +91,7 @@ class _Deck:
     groups: dict[str, list[_Part]] = field(default_factory=dict)
     tubes: dict[str, tuple[Section, Section]] = field(default_factory=dict)
     shapes: set[str] = field(default_factory=set)
-    members: list[tuple[str, str, str]] = field(default_factory=list)
+    members: list[_Bar] = field(default_factory=list)
     loads: dict[str, dict[str, float]] = field(default_factory=dict)
     condition: str = ""
     remarks: Counter[str] = field(default_factory=Counter)
@@ -129,6 +148,8 @@ def _cards(path: Path) -> _Deck:
                 readers[word](deck, line)
         elif word.split(".")[0] in _ENVIRONMENT:
             deck.remarks["cards of waves, wind, current and marine growth are not read"] += 1
+        elif word.startswith(_WEIGHTS):
+            deck.remarks[f"{word} cards, weights, are not read: add their mass"] += 1
         else:
             deck.remarks[f"{word} cards are not read"] += 1
     return deck
@@ -172,13 +193,22 @@ def _joint(deck: _Deck, line: str) -> None:
 
 def _member(deck: _Deck, line: str) -> None:
     if "OFFSETS" in line[:16]:
-        deck.remarks["member offsets are not read: members run from joint to joint"] += 1
+        _offsets(deck, line)
         return
     a, b, group = line[7:11].strip(), line[11:15].strip(), line[16:19].strip()
     if "1" in line[22:34]:
         deck.remarks["members' end releases are not read: ends are rigid"] += 1
     if a and b and group:
-        deck.members.append((a, b, group))
+        deck.members.append(_Bar(a, b, group, line[6:7]))
+
+
+def _offsets(deck: _Deck, line: str) -> None:
+    """Keep where the ends of the member before lie beside its joints, in global axes."""
+    if not deck.members or deck.members[-1].code != _GLOBAL:
+        deck.remarks["member offsets in axes of the member are not read: it runs from joint to joint"] += 1
+        return
+    xyz = [deck.units.short * _number(line, 36 + 6 * i, 41 + 6 * i, "an offset", 0.0) for i in range(6)]
+    deck.members[-1].shifts = (xyz[0], xyz[1], xyz[2]), (xyz[3], xyz[4], xyz[5])
 
 
 def _group(deck: _Deck, line: str) -> None:
@@ -248,43 +278,67 @@ def _masses(deck: _Deck, used: set[str]) -> tuple[PointMass, ...]:
 def _structure(deck: _Deck, name: str) -> Structure:
     nodes = dict(deck.nodes)
     members: list[Member] = []
-    for a, b, group in deck.members:
-        if group in deck.shapes:
+    links: list[RigidLink] = []
+    for bar in deck.members:
+        if bar.group in deck.shapes:
             continue
-        if group not in deck.groups:
+        if bar.group not in deck.groups:
             raise InputError(
-                "a member of no group", field=f"member {a}-{b}", value=group, allowed="a GRUP card's"
+                "a member of no group",
+                field=f"member {bar.a}-{bar.b}",
+                value=bar.group,
+                allowed="a GRUP card's",
             )
-        members += _segments(nodes, a, b, group, deck.groups[group])
+        ends = _ends(nodes, bar)
+        links += [
+            RigidLink(joint, end) for joint, end in zip((bar.a, bar.b), ends, strict=True) if joint != end
+        ]
+        members += _segments(nodes, f"{bar.a}-{bar.b}", ends, bar.group, deck.groups[bar.group])
     if not members:
         raise InputError("no member of the deck is a tube", field="MEMBER", value=len(deck.members))
-    used = {node for m in members for node in (m.start, m.end)}
+    used = {node for m in members for node in (m.start, m.end)} | {link.leader for link in links}
     return Structure(
         name=name,
         nodes={node: at for node, at in nodes.items() if node in used},
         members=tuple(members),
         masses=_masses(deck, used),
+        rigid_links=tuple(links),
         reactions=tuple(_reactions(deck.held, used)),
     )
 
 
+def _ends(nodes: dict[str, tuple[float, float, float]], bar: _Bar) -> tuple[str, str]:
+    """Return the nodes between which a member runs: its joints, or new ones beside them."""
+    names = []
+    for joint, letter, shift in zip((bar.a, bar.b), "AB", bar.shifts or (_HERE, _HERE), strict=True):
+        x, y, z = _place(nodes, joint, bar.a, bar.b)
+        names.append(joint if shift == _HERE else f"{bar.a}-{bar.b}:{letter}")
+        nodes[names[-1]] = (x + shift[0], y + shift[1], z + shift[2])
+    return names[0], names[1]
+
+
 def _segments(
-    nodes: dict[str, tuple[float, float, float]], a: str, b: str, group: str, parts: Sequence[_Part]
+    nodes: dict[str, tuple[float, float, float]],
+    name: str,
+    ends: tuple[str, str],
+    group: str,
+    parts: Sequence[_Part],
 ) -> Iterable[Member]:
     """Return a member, cut where its group changes; the segment without a length takes what is left."""
-    start, end = (np.asarray(_place(nodes, node, a, b)) for node in (a, b))
+    a, b = ends
+    start, end = (np.asarray(nodes[node]) for node in ends)
     whole = float(np.linalg.norm(end - start))
     left = whole - sum(part.length or 0.0 for part in parts)
     open_ = sum(part.length is None for part in parts)
     at, previous = 0.0, a
     for i, part in enumerate(parts, start=1):
         at += part.length if part.length is not None else left / open_
-        node = b if i == len(parts) else f"{a}-{b}.{i}"
+        node = b if i == len(parts) else f"{name}.{i}"
         if node != b:
             x, y, z = map(float, start + (end - start) * min(at / whole, 1.0))
             nodes[node] = (x, y, z)
         suffix = f".{i}" if len(parts) > 1 else ""
-        yield Member(f"{a}-{b}{suffix}", previous, node, part.start, part.end, part.material, group)
+        yield Member(f"{name}{suffix}", previous, node, part.start, part.end, part.material, group)
         previous = node
 
 
