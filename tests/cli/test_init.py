@@ -10,6 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.errors import InputError
 from jackettwin.twin import read_twin
 
 
@@ -135,3 +136,25 @@ def test_names_that_yaml_would_misread_are_quoted(tmp_path: Path, name: str) -> 
     out = tmp_path / "twin.yaml"
     assert run(str(record), "--out", str(out))[0] == 0
     assert read_twin(out).sensors[0].channel == f"{name} 88m_x"
+
+
+def test_heights_from_the_bed_and_a_forgotten_sea_level_are_asked_after(tmp_path: Path) -> None:
+    """jacket15 stands in 72 m of water: 190 m above the bed are on its tower, above the sea they are not."""
+    record = written(tmp_path / "A1.csv", "ACC_190m_E [g],ACC_120m_E [g]")
+    code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"))
+    assert code == 0
+    assert "up to 190 m, may count from the sea bed: 72 m less" in text
+    source = Path(__file__).parents[2] / "examples" / "three_leg_jacket.yaml"
+    dry = tmp_path / "dry.yaml"
+    dry.write_text(source.read_text().replace("sea_level_z_m: 45.0", "sea_level_z_m: 0.0"))
+    result = CliRunner().invoke(main, ["init", str(dry), str(record), "--out", str(tmp_path / "b.yaml")])
+    assert "sea_level_z_m of the structure: its feet stand at z = 0 m" in result.stdout
+
+
+def test_a_structure_or_a_record_in_place_of_a_twin_is_told_how_one_is_made(tmp_path: Path) -> None:
+    record = written(tmp_path / "A1.csv", "ACC_088m_E [g]")
+    structure = Path(__file__).parents[2] / "examples" / "three_leg_jacket.yaml"
+    for given, said in ((record, "init STRUCTURE"), (structure, f"init {structure} RECORD…")):
+        with pytest.raises(InputError, match="not a twin") as refused:
+            read_twin(given)
+        assert said in str(refused.value)

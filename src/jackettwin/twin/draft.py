@@ -202,6 +202,7 @@ def _missing(
     """Return what nobody has said, most needed first."""
     missing = [f"{place.sensor.channel}: {place.lacks}" for place in places if place.lacks]
     remarks = {text for record in records for text in record.metadata.get("remarks", ())}
+    missing += _levels_missing(places, structure)
     missing += sorted(text for text in remarks if "zone" in text)
     names = set(records[0].channel_names)
     for record in records:
@@ -219,6 +220,27 @@ def _missing(
     if not structure.masses:
         missing.append("the rotor–nacelle assembly: rna: {mass_kg, cg_offset_m, inertia_about_cg_kg_m2}")
     return tuple(missing)
+
+
+def _levels_missing(places: Sequence[SensorPlace], structure: Structure) -> list[str]:
+    """Return what feet and sensors say against the sea level: z or heights count from elsewhere."""
+    feet = min((structure.nodes[node][2] for node in structure.reaction_nodes), default=None)
+    if feet is None:
+        return []
+    depth = structure.sea_level_z_m - feet
+    if depth <= 0.0:
+        return [
+            f"sea_level_z_m of the structure: its feet stand at z = {feet:g} m and still water at "
+            f"{structure.sea_level_z_m:g} m; heights of sensors count from still water"
+        ]
+    heights = [place.sensor.height_m for place in places if place.sensor.height_m is not None]
+    top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+    if heights and top < max(heights) <= top + depth:
+        return [
+            f"the heights, up to {max(heights):g} m, may count from the sea bed: {depth:g} m less would "
+            "be above still water"
+        ]
+    return []
 
 
 def _described(record: Record) -> str:

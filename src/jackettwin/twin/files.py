@@ -15,6 +15,7 @@ from jackettwin.files import find_file, read_mapping, read_yaml, shipped, valida
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads.conditions import SeaState
+from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.mode_words import read_mode_label
@@ -37,6 +38,9 @@ from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family, numbere
 from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters
 from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
 
+_STRUCTURE_KEYS = {"jacket", "members"}
+"""Either is in every structure file and in no twin."""
+
 
 def shipped_twins() -> tuple[str, ...]:
     """Return the names of the twins that come with the package."""
@@ -57,7 +61,7 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
         If the file is missing or anything in it is wrong; the message names file, field and value.
     """
     path = find_file(source, "twins")
-    given_keys = read_yaml(path, what="twin file")
+    given_keys = _keys(path)
     if isinstance(given_keys, dict) and isinstance(given_keys.get("targets"), str):
         given_keys = {**given_keys, "targets": read_targets_table(path.parent / given_keys["targets"])}
     schema = validate(TwinSchema, given_keys, file=path)
@@ -73,6 +77,18 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
         pairs = zip(schema.targets, numbered.targets, strict=True)
         assigned = tuple(after.number or 0 for before, after in pairs if before.is_unnamed)
         return replace(_build(numbered, path), assigned=assigned)
+
+
+def _keys(path: Path) -> dict[str, Any]:
+    """Return the keys of a twin file; of a structure or a record in its place say how one is made of it."""
+    if any(path.suffix.lower() in form.extensions for form in formats()):
+        remedy = f"jackettwin init STRUCTURE {path} writes a twin"
+        raise InputError("is a record, not a twin", file=path, remedy=remedy)
+    found = read_yaml(path, what="twin file")
+    if "structure" not in found and not _STRUCTURE_KEYS.isdisjoint(found):
+        remedy = f"jackettwin init {path} RECORD… writes a twin"
+        raise InputError("is a structure, not a twin", file=path, remedy=remedy)
+    return found
 
 
 def _with_numbers(schema: TwinSchema, path: Path) -> TwinSchema:
