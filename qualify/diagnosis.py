@@ -25,7 +25,7 @@ from jackettwin.structure import Structure, assemble, read_structure
 from jackettwin.twin.causes import (
     _ONE_SIZE,
     MODES,
-    _Modes,
+    Modes,
     effect,
     model_causes,
     repeated,
@@ -88,11 +88,12 @@ def name_of(event: str, causes: Sequence[Cause]) -> str:
     return next((c.name for c in causes if c.name.split(" (or ")[0] == event), event)
 
 
-def moved(event: Happening, standing: Standing, times: int, base: _Modes, zeta: np.ndarray) -> np.ndarray:
+def moved(event: Happening, standing: Standing, times: int, base: Modes, zeta: np.ndarray) -> np.ndarray:
     """Return the change of all ln f and ln ζ by an event, so many times over."""
     often = repeated(event, times if event.spread > _ONE_SIZE else 1)  # what is gone is gone
-    after = assemble(often.apply(standing).structure, gravity=True)
-    return effect(replace(often, per=1.0), standing, after, base, 0.1, zeta)
+    stands = often.apply(standing)
+    after = Modes.of(stands, assemble(stands.structure, gravity=True), like=base)
+    return effect(replace(often, per=1.0), base, after, 0.1, zeta)
 
 
 def seen_change(delta: np.ndarray, kinds: list[str], rng: np.random.Generator, louder: bool) -> Change:
@@ -136,7 +137,7 @@ def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
     out: list[Case] = []
     for draw in range(draws):
         standing = truth(structure, rng)
-        base = _Modes.of(standing, assemble(structure, gravity=True))
+        base = Modes.of(standing, assemble(structure, gravity=True))
         chosen = [i for i, label in enumerate(base.labels) if not label.startswith(LOCAL)][:WATCHED]
         labels = tuple(base.labels[i] for i in chosen)
         quantities = [(kind, i) for kind in STD for i in range(len(chosen))]

@@ -23,9 +23,9 @@ from common.page import write_page
 from diagnosis import SENSORS, TIMES, Case, case, jackets, name_of, page, planted, truth
 
 from jackettwin.records import Record
-from jackettwin.structure import Structure
-from jackettwin.twin.causes import _ONE_SIZE, ModelCauses, model_causes, seen_causes
-from jackettwin.twin.changed_structures import Standing
+from jackettwin.structure import Structure, assemble
+from jackettwin.twin.causes import _ONE_SIZE, ModelCauses, Modes, model_causes, repeated, seen_causes
+from jackettwin.twin.changed_structures import Happening, Standing
 from jackettwin.watching import Change, History, Watch, diagnose, start, step
 
 RECORDS, BLOCK, SEASONS = 24, 6, 3
@@ -50,12 +50,16 @@ CHAINED = (
 
 @dataclass(frozen=True)
 class State:
-    """A jacket as it stands before or after a change: ``key`` names its pieces."""
+    """A jacket as it stands before or after a change: ``key`` names its pieces.
+
+    ``friction`` of a loose joint is damping in proportion to mass, which higher modes feel less.
+    """
 
     key: str
     cause: str
     times: int
     standing: Standing
+    friction: float = 0.0
     spoil: Callable[[Record], Record] = lambda found: found
 
 
@@ -66,19 +70,31 @@ def states(jacket: str, structure: Structure) -> Iterator[State]:
     for times in TIMES:
         for event in planted(structure):
             if times == 1 or event.spread > _ONE_SIZE:  # what is gone is gone
-                after = standing
-                for _ in range(times):
-                    after = event.apply(after)
-                yield State(f"{jacket}/{event.name}/{times}", event.name, times, after)
+                after = repeated(event, times).apply(standing)
+                yield State(
+                    f"{jacket}/{event.name}/{times}",
+                    event.name,
+                    times,
+                    after,
+                    friction(event, standing, after),
+                )
         clock = times * SENSORS["sensor: clock"]
         yield State(
-            f"{jacket}/clock/{times}", "sensor: clock", times, standing, lambda r, by=clock: late(r, by)
+            f"{jacket}/clock/{times}", "sensor: clock", times, standing, 0.0, lambda r, by=clock: late(r, by)
         )
         noise = times * NOISE
         yield State(
-            f"{jacket}/noise/{times}", "sensor: more scatter", times, standing,
+            f"{jacket}/noise/{times}", "sensor: more scatter", times, standing, 0.0,
             lambda r, by=noise: louder(r, by),
         )  # fmt: skip
+
+
+def friction(event: Happening, before: Standing, after: Standing) -> float:
+    """Return Rayleigh's α that damps the first modes as the friction of an event does."""
+    if event.damps == 0.0:
+        return 0.0
+    omega = [Modes.of(s, assemble(s.structure, gravity=True)).modes.omega[0] for s in (before, after)]
+    return float(2.0 * omega[1] * event.damps * np.log(omega[0] / omega[1]))
 
 
 class Pieces:
@@ -94,7 +110,7 @@ class Pieces:
         """Make what is missing of some records of a state."""
         for key, seed in ((f"{at.key}/{seed}", seed) for seed in seeds):
             if key not in self.known:
-                found = at.spoil(record(bench.scenario, at.standing, seed))
+                found = at.spoil(record(bench.scenario, at.standing, seed, at.friction))
                 self.known[key] = identified(found, bench.model)
                 with self.path.open("a") as file:
                     file.write(json.dumps([key, self.known[key]]) + "\n")

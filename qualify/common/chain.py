@@ -76,13 +76,16 @@ def bench(structure: Structure, source: str, where: Path) -> Bench:
     return Bench(scenario, twin_model(read_twin(twin, records_follow=True)))
 
 
-def record(scene: Scenario, standing: Standing, seed: int) -> Record:
-    """Return ten minutes of a jacket as it stands."""
-    structure = standing.structure
+def record(scene: Scenario, standing: Standing, seed: int, friction: float = 0.0) -> Record:
+    """Return ten minutes of a jacket as it stands; ``friction`` is added to Rayleigh's α [1/s]."""
+    structure, steel = standing.structure, scene.asset.rayleigh
     law = read_support(_LOSS, structure).springs[0].law
     feet = zip(structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
     springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0]), law) for node, h, v in feet)
-    asset = replace(scene.asset, structure=structure, support=Support(springs), support_text=None)
+    asset = replace(
+        scene.asset, structure=structure, support=Support(springs), support_text=None,
+        rayleigh=replace(steel, alpha=steel.alpha + friction),
+    )  # fmt: skip
     if scene.sea is None or scene.air is None:
         raise ValueError("a scenario without sea or wind")
     return simulate(

@@ -1,12 +1,24 @@
 """Directions of causes on the reference jacket: closed forms, signs, and what cannot be told apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.response.modal import UndampedModes
 from jackettwin.structure import read_structure
 from jackettwin.twin import causes
-from jackettwin.twin.causes import MODES, ModelCauses, _looks, model_causes, next_measurements, seen_causes
+from jackettwin.twin.causes import (
+    MODES,
+    ModelCauses,
+    Modes,
+    _kept,
+    _looks,
+    model_causes,
+    next_measurements,
+    seen_causes,
+)
 from jackettwin.twin.changed_structures import braces
 from jackettwin.watching import CauseVerdict, Diagnosis
 
@@ -61,6 +73,22 @@ def test_watched_quantities_are_found_by_label(model: ModelCauses) -> None:
     place = model.labels.index("side_side_1"), MODES + model.labels.index("fore_aft_1")
     np.testing.assert_array_equal(seen.causes[0].draws, model.causes[0].draws[:, place])
     assert not any(what.endswith("side_side_1") and what.startswith("frequency") for what, _ in seen.further)
+
+
+def test_a_mode_among_members_own_ones_tells_nothing(model: ModelCauses) -> None:
+    """Which of the modes beside them is which after a change nobody knows: it is no quantity of a cause."""
+    assert all(model.tells(label) for label in LABELS) and not model.tells("local_1")
+    mixed = replace(model, mixed=("side_side_1",))
+    seen = seen_causes(mixed, (("frequency", 0), ("frequency", 1)), LABELS)
+    assert seen.known.tolist() == [False, True]
+    assert all(pattern.change[0] == 0.0 for pattern in mixed.patterns(LABELS))
+
+
+def test_shapes_are_kept_by_their_part_in_those_of_the_whole() -> None:
+    modes = UndampedModes(np.ones(2), np.eye(3)[:, :2])
+    like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2))
+    shapes = np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]])
+    np.testing.assert_allclose(_kept(like, shapes), [1.0, 0.36, 0.0])
 
 
 def test_labels_that_no_mode_has_are_refused() -> None:

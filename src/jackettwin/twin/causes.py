@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -72,6 +72,8 @@ _ONE_SIZE = 0.1
 """Spread of ln size below which a cause is there or not."""
 _SHOWS = 3e-4
 """A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
+_KEPT = 0.7
+"""A mode's shape has to stay by this share, in kinetic energy, among those of the whole structure."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -86,19 +88,25 @@ class ModelCauses:
     frequency_hz : (n_modes,) of the fitted model
     causes : their draws are over ln f of all modes, then ln ζ of all modes
     traceless : names of what leaves no trace in frequencies and damping
+    mixed : labels of modes that a cause may turn into members' own: which is which afterwards, nobody knows
     """
 
     labels: tuple[str, ...]
     frequency_hz: FloatArray
     causes: tuple[Cause, ...]
     traceless: tuple[str, ...]
+    mixed: tuple[str, ...] = ()
+
+    def tells(self, label: str) -> bool:
+        """Return whether a mode of this label tells of causes."""
+        return label in self.labels and label not in self.mixed
 
     def patterns(self, labels: Sequence[str]) -> tuple[Pattern, ...]:
         """Return what the causes do to frequencies, of those that would show, over modes by label."""
         found = []
         for cause in self.causes:
             once = cause.draws.mean(axis=0)
-            change = np.array([once[self.labels.index(n)] if n in self.labels else 0.0 for n in labels])
+            change = np.array([once[self.labels.index(n)] if self.tells(n) else 0.0 for n in labels])
             if np.abs(change).max() * np.median(np.abs(cause.sizes)) > _SHOWS:
                 found.append(Pattern(cause.name, change, cause.prior))
         return tuple(found)
@@ -126,7 +134,7 @@ def model_causes(
     """
     typical = Standing(structure, *(np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS) for _ in "hv"))
     assembly = assemble(structure, gravity=gravity)
-    named = _Modes.of(typical, assembly)
+    named = Modes.of(typical, assembly)
     places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
     if max(places, default=-1) < 0:
         raise InputError(
@@ -140,15 +148,18 @@ def model_causes(
         if place >= 0 and np.isfinite(value):
             zeta[place] = value
     loss = _LOSS[0] * np.exp(_LOSS[1] * rng.standard_normal(_DRAWS))
-    bases = [_Modes.of(standing, assembly, like=named) for standing in stands]
+    bases = [Modes.of(standing, assembly, like=named) for standing in stands]
     found: list[tuple[str, Cause]] = []
     traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
+    kept = np.ones(MODES)
     for event in happenings(typical):
         after = assemble(event.apply(typical).structure, gravity=gravity)  # whatever the feet
+        changed = [Modes.of(event.apply(s), after, like=b) for s, b in zip(stands, bases, strict=True)]
         draws = np.array([
-            effect(event, standing, after, base, eta, zeta)
-            for standing, base, eta in zip(stands, bases, loss, strict=True)
+            effect(event, base, then, eta, zeta)
+            for base, then, eta in zip(bases, changed, loss, strict=True)
         ])  # fmt: skip
+        kept = np.minimum(kept, np.min([one.kept for one in changed], axis=0))
         if np.abs(draws * event.median).max() < _TRACE:
             traceless.append(event.name)
         else:
@@ -156,55 +167,63 @@ def model_causes(
             bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
             found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit, bend=bend)))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
-    return ModelCauses(named.labels, fitted, causes, tuple(traceless))
+    mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
+    return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed)
 
 
 @dataclass(frozen=True)
-class _Modes:
+class Modes:
     """Modes of a standing structure, in the order of another's.
 
-    ``soil_share`` is the share of the strain energy in the ground.
+    ``soil_share`` is the share of the strain energy in the ground, ``kept`` that of the kinetic energy in the
+    other's modes of the whole structure; modes with members of their own begin with ``local``.
     """
 
     labels: tuple[str, ...]
     modes: UndampedModes
-    mass: object
+    mass: Any
     soil_share: FloatArray
+    kept: FloatArray
 
     @classmethod
-    def of(cls, standing: Standing, assembly: Assembly, like: _Modes | None = None) -> _Modes:
+    def of(cls, standing: Standing, assembly: Assembly, like: Modes | None = None) -> Modes:
+        """Return the modes of an assembled structure on its feet, named by kind, or in another's order."""
         feet = zip(standing.structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
         springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node, h, v in feet)
-        modes = undamped_modes(build_system(assembly, Support(springs)), MODES if like is None else MODES + 6)
-        if like is not None:
-            order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
-            order = np.where(order < 0, np.arange(MODES), order)
-            modes = UndampedModes(modes.omega[order], modes.shapes[:, order])
-        labels = (
-            mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
-            if like is None
-            else like.labels
-        )
+        system = build_system(assembly, Support(springs))
+        if like is None:
+            modes, kept = undamped_modes(system, MODES), np.ones(MODES)
+            labels = mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
+        else:
+            modes, labels = _followed(like, undamped_modes(system, MODES + 6)), like.labels
+            kept = _kept(like, modes.shapes)
         moved = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
         energy = np.zeros(len(modes.omega))
         for spring in springs:
             u = moved[assembly.mesh.node_names.index(spring.node)]
             energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
-        return cls(labels, modes, assembly.mass, energy / modes.omega**2)
+        return cls(labels, modes, assembly.mass, energy / modes.omega**2, kept)
 
 
-def effect(
-    event: Happening, standing: Standing, assembly: Assembly, base: _Modes, eta: float, zeta: FloatArray
-) -> FloatArray:
+def _followed(like: Modes, modes: UndampedModes) -> UndampedModes:
+    """Return modes in the order of another's, by shape."""
+    order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
+    order = np.where(order < 0, np.arange(MODES), order)
+    return UndampedModes(modes.omega[order], modes.shapes[:, order])
+
+
+def _kept(like: Modes, shapes: FloatArray) -> FloatArray:
+    """Return the share of each shape's kinetic energy in another's modes of the whole structure, (n,)."""
+    whole = like.modes.shapes[:, [not name.startswith(LOCAL) for name in like.labels]]
+    moving = like.mass @ shapes
+    return np.asarray(np.sum((whole.T @ moving) ** 2, axis=0) / np.einsum("im,im->m", shapes, moving))
+
+
+def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
     """Return the change of ln f and ln ζ by one unit of an event, (2·MODES,).
 
     The ground's part of ζ is ½η times its share of the strain energy.
-
-    Parameters
-    ----------
-    assembly : of the structure after the event
     """
-    after = _Modes.of(event.apply(standing), assembly, like=base)
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
     return np.concatenate([ln_f, more / zeta]) / event.per
@@ -225,7 +244,7 @@ def _bend(
     event: Happening,
     standing: Standing,
     gravity: bool,
-    base: _Modes,
+    base: Modes,
     eta: float,
     zeta: FloatArray,
     once: FloatArray,
@@ -234,14 +253,15 @@ def _bend(
     if event.spread < _ONE_SIZE:
         return np.zeros(0)
     thrice = repeated(event, 3)
-    after = assemble(thrice.apply(standing).structure, gravity=gravity)
-    often = effect(thrice, standing, after, base, eta, zeta)
+    stands = thrice.apply(standing)
+    after = Modes.of(stands, assemble(stands.structure, gravity=gravity), like=base)
+    often = effect(thrice, base, after, eta, zeta)
     return np.asarray(0.5 * (often - once) * event.median / event.per)
 
 
 def _standings(
     typical: Standing,
-    named: _Modes,
+    named: Modes,
     places: Sequence[int],
     frequency_hz: FloatArray,
     assembly: Assembly,
@@ -256,7 +276,7 @@ def _standings(
         )
 
     def residual(x: FloatArray) -> FloatArray:
-        omega = _Modes.of(at(x), assembly, like=named).modes.omega
+        omega = Modes.of(at(x), assembly, like=named).modes.omega
         off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
         return np.array([*off, *x])
 
@@ -264,7 +284,7 @@ def _standings(
     slope: FloatArray = np.asarray(fit.jac)
     covariance = np.linalg.inv(slope.T @ slope)
     points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
-    best = _Modes.of(at(fit.x), assembly, like=named)
+    best = Modes.of(at(fit.x), assembly, like=named)
     drawn = [at(x) for x in points]
     apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
     drawn = [
@@ -355,7 +375,7 @@ def seen_causes(
     quantities : (m,) kind and mode of each watched quantity
     labels : of the modes
     """
-    known = np.array([labels[mode] in model.labels for _, mode in quantities], dtype=np.bool_)
+    known = np.array([model.tells(labels[mode]) for _, mode in quantities], dtype=np.bool_)
     columns = [
         model.labels.index(labels[mode]) + (0 if kind == "frequency" else MODES)
         for (kind, mode), good in zip(quantities, known, strict=True)
@@ -370,7 +390,7 @@ def seen_causes(
         (f"{what} of {label}", i + shift)
         for what, shift in (("frequency", 0), ("damping", MODES))
         for i, label in enumerate(model.labels)
-        if i + shift not in columns and not label.startswith(LOCAL)
+        if i + shift not in columns and model.tells(label) and not label.startswith(LOCAL)
     )
     return SeenCauses((*causes, sensor_noise(kept)), known, further, model)
 

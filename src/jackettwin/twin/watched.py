@@ -123,11 +123,7 @@ def watch_table(
     limits += _limits(watch, baseline, rest)
     explained, unexplained = _explained(watch, baseline)
     seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
-    if seen is not None:
-        limits.append(f"leaves no trace in these quantities: {', '.join(seen.model.traceless)}")
-        strange = [label for label in watch.labels if label not in seen.model.labels]
-        if strange:
-            limits.append(f"no mode of the structure, left out of the causes: {', '.join(strange)}")
+    limits += [] if causes is None else _unseen(causes, watch.labels)
     looks, alarms = [], []
     for day in rest.by_day():
         progress(f"{table.time(float(day.days[0])):%Y-%m}")
@@ -199,6 +195,18 @@ def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
             f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
             "counts as a change"
         )
+    return said
+
+
+def _unseen(causes: ModelCauses, labels: Sequence[str]) -> list[str]:
+    """Return what of a structure's causes these modes do not show."""
+    said = [f"leaves no trace in these quantities: {', '.join(causes.traceless)}"]
+    strange = [label for label in labels if label not in causes.labels]
+    if strange:
+        said.append(f"no mode of the structure, left out of the causes: {', '.join(strange)}")
+    mixed = [label for label in labels if label in causes.mixed]
+    if mixed:
+        said.append(f"may mix with members' own modes, left out of the causes: {', '.join(mixed)}")
     return said
 
 
