@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 from jackettwin.errors import InputError
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
-from jackettwin.identification.methods import poles_of, relaxations, uncertain
+from jackettwin.identification.methods import relaxations, uncertain
 from jackettwin.identification.picks import Pick, of_record
 from jackettwin.identification.preparation.components import at_all_channels, components
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
-from jackettwin.identification.selection.candidates import candidates, find_tones
 from jackettwin.identification.selection.choice import chosen_modes, cleared, screened_choice
-from jackettwin.identification.selection.clustering import clusters
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
+from jackettwin.identification.selection.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 
@@ -96,28 +94,20 @@ def identify(
     ready, basis = components(whole, settings)
     y, scale, resolved = ready.y, ready.scale, ready.settings
     say("poles")
-    poles = poles_of(ready, settings)
+    search = searched(ready, settings)
+    if uncertain(settings):
+        search = with_quiet_bands(search, ready, settings)
+    poles, judged, tones = search.poles, search.judged, search.tones
     say("selection")
-    found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=scale)
-    tones = find_tones(poles, found, y, scale, resolved.sample_rate_hz, settings, ready.drifting)
-    judge = partial(
-        candidates,
-        poles,
-        tones=tones.representatives,
-        settings=settings,
-        duration_s=record.duration_s,
-        n_orders=len(resolved.orders),
-    )
-    judged = judge(found)
     missing: tuple[str, ...] = ()
     if wanted:
-        picked = picked_clusters(poles, found, wanted)
+        picked = picked_clusters(poles, [c.cluster for c in judged], wanted)
         missing = left_out(judged, picked)
-        judged = with_verdicts(wanted, judge(picked))
+        judged = with_verdicts(wanted, candidates_of(poles, picked, tones, ready, settings))
     say("refinement")
     known = None
     if uncertain(settings):
-        known = evidence(tones.clean, ready, record.conditions, sensors=basis is None)
+        known = evidence(tones.clean, ready, record.conditions, bands=search.bands, sensors=basis is None)
     if known is not None and not wanted:
         judged = cleared(judged, known)
     chosen = chosen_modes(judged, tones, ready, settings)

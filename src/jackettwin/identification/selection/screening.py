@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from jackettwin.identification.estimate import ModalEstimate
     from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.selection.quiet_bands import QuietBand
 
 Verdict = tuple[ModeStatus, Finding]
 
@@ -121,7 +122,8 @@ class Evidence:
 
     Attributes
     ----------
-    look : Look
+    looks : tuple of SecondLook
+        At all frequencies, and at those of each further band.
     lines : (n_channels, n_lines)
     scale : (n_channels,)
         By which the channels were divided.
@@ -136,7 +138,7 @@ class Evidence:
         Whether channels are sensors: a mode may well move one component of many alone.
     """
 
-    look: SecondLook
+    looks: tuple[SecondLook, ...]
     lines: ComplexArray
     scale: FloatArray
     duration_s: float
@@ -151,7 +153,12 @@ class Evidence:
 
 
 def evidence(
-    y: FloatArray, ready: Prepared, conditions: Mapping[str, Any], *, sensors: bool = True
+    y: FloatArray,
+    ready: Prepared,
+    conditions: Mapping[str, Any],
+    *,
+    bands: Sequence[QuietBand] = (),
+    sensors: bool = True,
 ) -> Evidence:
     """Gather what modes are judged by.
 
@@ -161,12 +168,17 @@ def evidence(
         Without tones, divided by the channels' scale; NaN marks a missing sample.
     conditions : mapping
         Of the record; ``wave_tp_s``, ``tp_s`` or ``peak_period_s`` is the peak period of the sea [s].
+    bands : sequence of QuietBand
+        Where modes were sought once more.
     sensors : bool
         Whether the channels are sensors, not what dozens of them say together.
     """
     periods = [conditions[key] for key in PERIODS if isinstance(conditions.get(key), int | float)]
     return Evidence(
-        look=second_look(y, ready),
+        looks=(
+            second_look(y, ready),
+            *(second_look(band.ready.y, band.ready, band.taken_hz) for band in bands),
+        ),
         lines=np.asarray(np.fft.rfft(np.nan_to_num(y), axis=1)),
         scale=ready.scale,
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
@@ -198,7 +210,7 @@ def worth_keeping(mode: ModalEstimate, others: Sequence[ModalEstimate], known: E
     if mode.mpc < LEAST_MPC or any(_same(mode, other, known.scale) for other in others):
         return False
     ratio, excess = contrast(known.lines, known.duration_s, mode, mode.mode_shape / known.scale)
-    again = seen_again(known.look, mode, known.scale, ())
+    again = seen_again(known.looks, mode, ())
     return ratio > KEPT_CONTRAST and excess > KEPT_CONTRAST_STD and again >= STEADY
 
 
@@ -251,7 +263,7 @@ def _shape(mode: ModalEstimate, close: Sequence[ModalEstimate], scale: FloatArra
 
 
 def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
-    again = seen_again(known.look, mode, known.scale, close)
+    again = seen_again(known.looks, mode, close)
     if again < SEEN_AGAIN:
         yield ModeStatus.DOUBTFUL, Finding("one_method", params={"share": again})
     shape = mode.mode_shape / known.scale

@@ -39,15 +39,21 @@ class SecondLook:
         In the scaling of the samples.
     orders : tuple of int
         All of them.
+    scale : (n_channels,)
+        By which the channels were divided.
+    band_hz : (low, high)
+        Where it counts.
     """
 
     order: Int64Array
     frequency_hz: FloatArray
     shape: ComplexArray
     orders: tuple[int, ...]
+    scale: FloatArray
+    band_hz: tuple[float, float]
 
 
-def second_look(y: FloatArray, ready: Prepared) -> SecondLook:
+def second_look(y: FloatArray, ready: Prepared, band_hz: tuple[float, float] = (0.0, np.inf)) -> SecondLook:
     """Return the poles of a shorter lag window, without their uncertainty."""
     rate = ready.settings.sample_rate_hz
     rows = max(int(SHORTER * ready.settings.block_rows), 3)
@@ -62,17 +68,23 @@ def second_look(y: FloatArray, ready: Prepared) -> SecondLook:
         number.append(np.full(len(pole), poles.order))
         f.append(np.abs(pole) / (2.0 * np.pi))
         shapes.append(poles.shapes)
-    return SecondLook(np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders)
+    return SecondLook(
+        np.concatenate(number), np.concatenate(f), np.concatenate(shapes), orders, ready.scale, band_hz
+    )
 
 
-def seen_again(
-    look: SecondLook, mode: ModalEstimate, scale: FloatArray, others: Sequence[ModalEstimate]
-) -> float:
-    """Return the share of the second look's orders that hold the mode, from the first that does on.
+def seen_again(looks: Sequence[SecondLook], mode: ModalEstimate, others: Sequence[ModalEstimate]) -> float:
+    """Return the share of a second look's orders that hold the mode, from the first that does on.
 
-    Of a close pair a shape counts that lies in the plane of the two.
+    Of a close pair a shape counts that lies in the plane of the two; of several looks at its frequency the
+    one that holds it best.
     """
-    shapes = np.array([mode.mode_shape, *(m.mode_shape for m in others)]) / scale
+    there = (look for look in looks if look.band_hz[0] < mode.frequency_hz < look.band_hz[1])
+    return max((_held(look, mode, others) for look in there), default=0.0)
+
+
+def _held(look: SecondLook, mode: ModalEstimate, others: Sequence[ModalEstimate]) -> float:
+    shapes = np.array([mode.mode_shape, *(m.mode_shape for m in others)]) / look.scale
     reach = SAME_FREQUENCY * max(mode.damping_ratio, (mode.frequency_std_hz or 0.0) / mode.frequency_hz)
     near = np.abs(look.frequency_hz / mode.frequency_hz - 1.0) < reach
     q, _ = np.linalg.qr(shapes.T)

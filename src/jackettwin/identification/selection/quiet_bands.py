@@ -1,0 +1,220 @@
+"""Modes that the loudest ones hide: poles once more above them, wherever a peak is left without a mode.
+
+The first modes of a tower move it a thousand times as strongly as its fifth. The errors of their covariances
+then exceed what the fifth leaves in them, while its peak stands clear in the spectrum of a channel. So for
+each clear peak that no candidate explains the samples are freed of all that is slower, and poles are sought
+in the octave that begins there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy  # scipy.signal is loaded where it is used: half a second
+
+from jackettwin.arrays import FloatArray
+from jackettwin.identification.estimate import Stabilisation
+from jackettwin.identification.mac import mac
+from jackettwin.identification.methods import poles_of
+from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK
+from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
+from jackettwin.identification.selection.clustering import clusters
+from jackettwin.identification.tones.steady_tones import without_tones
+from jackettwin.records.filters import lowpass_taps, resample
+from jackettwin.records.tones import less_phase
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.selection.candidates import Candidate
+    from jackettwin.identification.selection.clustering import Cluster
+    from jackettwin.identification.settings import IdentificationSettings
+
+CLEAR = 3.0
+"""Power of a peak, in one channel, over the median around it and over the valleys beside it: of noise,
+averaged over fifteen half-overlapping segments, one line in ten million stands out so far."""
+AROUND, FEWEST_AROUND = 0.3, 21
+"""Width over which the median is taken, as a share of the frequency, and its fewest lines."""
+EXPLAINS = 3.0
+"""Half bandwidths of a mode, or lines of the spectrum, within which a peak is its own."""
+TRANSITION = 0.8
+"""Stop edge of the filter as a share of its pass edge, the lower edge of the band."""
+WINDOW_CYCLES = 2.5
+"""Block rows in cycles of the lower edge: what is sought is quiet, and needs its full decay."""
+OCTAVE = 2.0
+"""Modes are taken from a band up to so many times the peak it was made for."""
+MOST_BANDS = 2
+SAME_SHAPE = 0.8
+"""MAC from which two candidates of one frequency are one."""
+
+
+@dataclass(frozen=True)
+class QuietBand:
+    """The samples of a further band, and between which frequencies modes are taken from it [Hz]."""
+
+    ready: Prepared
+    taken_hz: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Search:
+    """Poles of one or several bands, the candidates among them, and the tones."""
+
+    poles: Stabilisation
+    judged: list[Candidate]
+    tones: Tones
+    bands: tuple[QuietBand, ...] = ()
+
+
+def searched(ready: Prepared, settings: IdentificationSettings) -> Search:
+    """Return poles and judged candidates of the prepared samples."""
+    poles = poles_of(ready, settings)
+    resolved = ready.settings
+    found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
+    rate = resolved.sample_rate_hz
+    tones = find_tones(poles, found, ready.y, ready.scale, rate, settings, ready.drifting)
+    return Search(poles, candidates_of(poles, found, tones, ready, settings), tones)
+
+
+def candidates_of(
+    poles: Stabilisation,
+    found: Sequence[Cluster],
+    tones: Tones,
+    ready: Prepared,
+    settings: IdentificationSettings,
+) -> list[Candidate]:
+    """Judge clusters of poles of the prepared samples by the hard criteria."""
+    return candidates(
+        poles,
+        list(found),
+        tones.representatives,
+        settings,
+        duration_s=ready.duration_s,
+        n_orders=len(ready.settings.orders),
+    )
+
+
+def with_quiet_bands(first: Search, ready: Prepared, settings: IdentificationSettings) -> Search:
+    """Return the search with what further bands add to it."""
+    spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
+    out, above = first, 0.0
+    for _ in range(MOST_BANDS):
+        peaks = [f for f in clear_peaks_hz(spectrum.frequencies_hz, spectrum.density) if f > above]
+        left = [f for f in peaks if not _explained(f, float(spectrum.frequencies_hz[1]), out, ready)]
+        if not left:
+            break
+        above = OCTAVE * left[0]
+        loud = replace(ready, y=out.tones.clean, drifting=out.tones.drifting)
+        out = _joined(out, _above(loud, EDGE_BELOW_PEAK * left[0]), above, settings)
+    return out
+
+
+def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]:
+    """Return where any channel has a peak that stands clear of the level around it, ascending."""
+    found: set[int] = set()
+    for row in np.maximum(density, np.finfo(float).tiny):
+        at, _ = scipy.signal.find_peaks(np.log(row), prominence=np.log(CLEAR))
+        for k in at:
+            half = max(int(0.5 * AROUND * k), FEWEST_AROUND // 2)
+            if row[k] > CLEAR * np.median(row[max(k - half, 1) : k + half + 1]):
+                found.add(int(k))
+    return [float(frequency_hz[k]) for k in sorted(found)]
+
+
+def _explained(peak_hz: float, line_hz: float, search: Search, ready: Prepared) -> bool:
+    """Tell whether a peak lies outside the band, or is that of a mode or of a tone."""
+    resolved, tones = ready.settings, search.tones
+    if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
+        return True
+    modes = [c.mode for c in search.judged if c.objection is None and c.doubt is None]
+    own = [(m.frequency_hz, max(m.damping_ratio * m.frequency_hz, line_hz)) for m in modes]
+    own += [(f, line_hz) for f in (*tones.steady_hz, *ready.tones_hz)]
+    return any(abs(f - peak_hz) < EXPLAINS * half for f, half in own) or any(
+        tone.passes(peak_hz) for tone in tones.drifting
+    )
+
+
+def _above(ready: Prepared, low_hz: float) -> Prepared:
+    """Return the samples freed of all that is slower than a band's lower edge, of unit variance again."""
+    rate = ready.settings.sample_rate_hz
+    fast = ready.y - resample(ready.y, lowpass_taps(TRANSITION * low_hz / rate, low_hz / rate))
+    scale = np.sqrt(np.nanmean(fast**2, axis=1))
+    rows = min(int(np.ceil(WINDOW_CYCLES * rate / low_hz)), ready.settings.block_rows)
+    orders = tuple(n for n in ready.settings.orders if n <= (rows - 1) * len(fast))
+    settings = replace(
+        ready.settings,
+        lowest_frequency_hz=low_hz,
+        block_rows=rows,
+        orders=orders,
+        lag_window_s=2.0 * rows / rate,
+    )
+    return replace(ready, y=fast / scale[:, None], scale=ready.scale * scale, settings=settings)
+
+
+def _joined(out: Search, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> Search:
+    """Return the search with the candidates of one band more; of two for one mode the less doubtful one."""
+    more, offset = searched(ready, settings), len(out.poles.order)
+    if not len(more.poles.order):
+        return out
+    low_hz = ready.settings.lowest_frequency_hz
+    kept = list(out.judged)
+    for c in more.judged:
+        if c.objection is not None or not low_hz < c.mode.frequency_hz < high_hz:
+            continue
+        same = [o for o in kept if _same(o, c, ready.scale)]
+        if any(o.objection is None and (o.doubt is None or c.doubt is not None) for o in same):
+            continue
+        kept = [o for o in kept if not any(o is s for s in same)]
+        kept.append(replace(c, cluster=_moved(c.cluster, offset)))
+    return Search(
+        _together(out.poles, more.poles),
+        sorted(kept, key=lambda c: c.mode.frequency_hz),
+        _tones(out.tones, more.tones, ready, offset),
+        (*out.bands, QuietBand(ready, (low_hz, high_hz))),
+    )
+
+
+def _tones(known: Tones, more: Tones, ready: Prepared, offset: int) -> Tones:
+    """Return the tones of both, all samples freed of those that are new."""
+    clean, new = known.clean, [t for t in more.drifting if not any(t is k for k in known.drifting)]
+    for tone in new:
+        clean = less_phase(clean, tone.phase(clean.shape[1]))
+    if more.steady_hz:
+        clean = without_tones(clean, ready.settings.sample_rate_hz, list(more.steady_hz))
+    return Tones(
+        known.representatives | {k + offset for k in more.representatives},
+        (*known.steady_hz, *more.steady_hz),
+        (*known.drifting, *new),
+        clean,
+    )
+
+
+def _same(one: Candidate, other: Candidate, scale: FloatArray) -> bool:
+    a, b = one.mode, other.mode
+    reach = EXPLAINS * max(a.damping_ratio, b.damping_ratio)
+    alike = float(mac(a.mode_shape / scale, b.mode_shape / scale)) > SAME_SHAPE
+    return abs(a.frequency_hz / b.frequency_hz - 1.0) < reach and alike
+
+
+def _moved(cluster: Cluster, offset: int) -> Cluster:
+    return replace(
+        cluster,
+        poles=cluster.poles + offset,
+        core=cluster.core + offset,
+        representative=cluster.representative + offset,
+    )
+
+
+def _together(one: Stabilisation, other: Stabilisation) -> Stabilisation:
+    """Return the poles of both; orders of different bands may be alike."""
+    if not len(one.order):
+        return other
+    both: dict[str, Any] = {
+        name: None if ours is None else np.concatenate([ours, getattr(other, name)])
+        for name, ours in vars(one).items()
+    }
+    return Stabilisation(**both)
