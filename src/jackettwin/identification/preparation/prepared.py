@@ -15,6 +15,7 @@ from jackettwin.identification.preparation.resolve import (
     EDGE_BELOW_PEAK,
     FEWEST_SAMPLES,
     GUARD,
+    MOST_ORDER,
     SAMPLES_A_CYCLE,
     resolve,
     shortness,
@@ -167,7 +168,7 @@ def _above_tones(level: Record, settings: IdentificationSettings, lowest_hz: flo
 
 def _degrees(settings: IdentificationSettings, n_references: int) -> tuple[int, ...]:
     """Return degrees of polynomials with as many poles as SSI's model orders, and twice that at most."""
-    top = max(2 * (settings.max_order or 60) // n_references, FEWEST_DEGREES)
+    top = max(2 * (settings.max_order or MOST_ORDER) // n_references, FEWEST_DEGREES)
     return tuple(range(2, top + 1))
 
 

@@ -33,6 +33,8 @@ GUARD = 1.25
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
 WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
+MOST_ORDER = 60
+"""Largest model order."""
 DENSE_ORDERS = 20
 """Model orders up to which every step is taken, then every second; of relaxations, which are in few,
 all are taken."""
@@ -90,13 +92,26 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
     rate = settings.sample_rate_hz
     if rate is None:
         rate = record.sample_rate_hz / max(int(record.sample_rate_hz / (SAMPLES_A_CYCLE * high)), 1)
-    window = settings.block_rows or max(int(np.ceil(WINDOW_CYCLES * rate / low)), 4)
+    n_channels = len(record.channels)
+    window = settings.block_rows or _block_rows(rate / low, n_channels, record.duration_s * rate)
     _check_duration(record, low, 2.0 * window / rate)
     reduced = decimate(record, sample_rate_hz=rate) if rate < record.sample_rate_hz else record
-    n_channels = len(record.channels)
-    top = min(settings.max_order or 60, (window - 1) * n_channels)
+    top = min(settings.max_order or MOST_ORDER, (window - 1) * n_channels)
     orders = _orders(settings.order_step, top, top if settings.real_poles else DENSE_ORDERS)
     return ResolvedSettings(low, high, reduced.sample_rate_hz, window, orders, 2.0 * window / rate), reduced
+
+
+def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> int:
+    """Return the block rows: cycles of the lower edge, and enough for the models a few channels may need.
+
+    Examples
+    --------
+    >>> _block_rows(14.2, 6, 12_000.0), _block_rows(14.2, 1, 12_000.0), _block_rows(14.2, 1, 400.0)
+    (15, 61, 40)
+    """
+    cycles = max(int(np.ceil(WINDOW_CYCLES * samples_a_cycle)), 4)
+    wanted = -(-MOST_ORDER // n_channels) + 1
+    return max(cycles, min(wanted, int(0.5 * WINDOW_SHARE * n_samples)))
 
 
 def _orders(step: int, top: int, dense: int = DENSE_ORDERS) -> tuple[int, ...]:
