@@ -35,6 +35,8 @@ WINDOW_SHARE = 0.2
 """Largest lag window as a share of the record."""
 MOST_ORDER = 60
 """Largest model order."""
+ENOUGH_ORDER = 40
+"""Of a model of few channels: for it there are block rows, however short a cycle of the lower edge is."""
 DENSE_ORDERS = 20
 """Model orders up to which every step is taken, then every second; of relaxations, which are in few,
 all are taken."""
@@ -102,15 +104,15 @@ def resolve(record: Record, settings: IdentificationSettings) -> tuple[ResolvedS
 
 
 def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> int:
-    """Return the block rows: cycles of the lower edge, and enough for the models a few channels may need.
+    """Return the block rows: cycles of the lower edge, and enough for a model of few channels.
 
     Examples
     --------
     >>> _block_rows(14.2, 6, 12_000.0), _block_rows(14.2, 1, 12_000.0), _block_rows(14.2, 1, 400.0)
-    (15, 61, 40)
+    (15, 41, 40)
     """
     cycles = max(int(np.ceil(WINDOW_CYCLES * samples_a_cycle)), 4)
-    wanted = -(-MOST_ORDER // n_channels) + 1
+    wanted = -(-ENOUGH_ORDER // n_channels) + 1
     return max(cycles, min(wanted, int(0.5 * WINDOW_SHARE * n_samples)))
 
 
