@@ -15,9 +15,9 @@ from jackettwin.identification.preparation.components import at_all_channels, co
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
+from jackettwin.identification.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.choice import chosen_modes, cleared, screened_choice
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
-from jackettwin.identification.selection.quiet_bands import candidates_of, searched, with_quiet_bands
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from jackettwin.identification.estimate import ModalEstimate
     from jackettwin.identification.preparation.prepared import Prepared
-    from jackettwin.identification.selection.quiet_bands import QuietBand
+    from jackettwin.identification.selection.second_look import QuietBand
 
 Verdict = tuple[ModeStatus, Finding]
 

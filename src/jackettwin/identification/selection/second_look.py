@@ -28,6 +28,14 @@ SAME_FREQUENCY = 2.0
 
 
 @dataclass(frozen=True)
+class QuietBand:
+    """The samples of a further band, and between which frequencies modes are taken from it [Hz]."""
+
+    ready: Prepared
+    taken_hz: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class SecondLook:
     """Poles of the second look: flat arrays of the same length.
 

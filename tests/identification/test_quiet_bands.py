@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from jackettwin.identification import identify
+from jackettwin.identification import identify, quiet_bands
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.selection import quiet_bands
-from jackettwin.identification.selection.quiet_bands import clear_peaks_hz
+from jackettwin.identification.quiet_bands import clear_peaks_hz
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 

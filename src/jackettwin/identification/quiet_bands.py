@@ -22,6 +22,7 @@ from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
+from jackettwin.identification.selection.second_look import QuietBand
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.records.filters import lowpass_taps, resample
 from jackettwin.records.tones import less_phase
@@ -50,14 +51,6 @@ OCTAVE = 2.0
 MOST_BANDS = 2
 SAME_SHAPE = 0.8
 """MAC from which two candidates of one frequency are one."""
-
-
-@dataclass(frozen=True)
-class QuietBand:
-    """The samples of a further band, and between which frequencies modes are taken from it [Hz]."""
-
-    ready: Prepared
-    taken_hz: tuple[float, float]
 
 
 @dataclass(frozen=True)
