@@ -54,7 +54,7 @@ SAME_SHAPE = 0.8
 
 
 @dataclass(frozen=True)
-class Search:
+class PoleSearch:
     """Poles of one or several bands, the candidates among them, and the tones."""
 
     poles: Stabilisation
@@ -63,14 +63,14 @@ class Search:
     bands: tuple[QuietBand, ...] = ()
 
 
-def searched(ready: Prepared, settings: IdentificationSettings) -> Search:
+def searched(ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
     """Return poles and judged candidates of the prepared samples."""
     poles = poles_of(ready, settings)
     resolved = ready.settings
     found = clusters(poles, distance=settings.cluster_distance, orders=resolved.orders, scale=ready.scale)
     rate = resolved.sample_rate_hz
     tones = find_tones(poles, found, ready.y, ready.scale, rate, settings, ready.drifting)
-    return Search(poles, candidates_of(poles, found, tones, ready, settings), tones)
+    return PoleSearch(poles, candidates_of(poles, found, tones, ready, settings), tones)
 
 
 def candidates_of(
@@ -91,7 +91,7 @@ def candidates_of(
     )
 
 
-def with_quiet_bands(first: Search, ready: Prepared, settings: IdentificationSettings) -> Search:
+def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: IdentificationSettings) -> PoleSearch:
     """Return the search with what further bands add to it."""
     spectrum = welch(first.tones.clean, ready.settings.sample_rate_hz)
     out, above = first, 0.0
@@ -118,7 +118,7 @@ def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]
     return [float(frequency_hz[k]) for k in sorted(found)]
 
 
-def _explained(peak_hz: float, line_hz: float, search: Search, ready: Prepared) -> bool:
+def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:
     """Tell whether a peak lies outside the band, or is that of a mode or of a tone."""
     resolved, tones = ready.settings, search.tones
     if not resolved.lowest_frequency_hz < peak_hz < resolved.highest_frequency_hz:
@@ -148,7 +148,7 @@ def _above(ready: Prepared, low_hz: float) -> Prepared:
     return replace(ready, y=fast / scale[:, None], scale=ready.scale * scale, settings=settings)
 
 
-def _joined(out: Search, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> Search:
+def _joined(out: PoleSearch, ready: Prepared, high_hz: float, settings: IdentificationSettings) -> PoleSearch:
     """Return the search with the candidates of one band more; of two for one mode the less doubtful one."""
     more, offset = searched(ready, settings), len(out.poles.order)
     if not len(more.poles.order):
@@ -163,7 +163,7 @@ def _joined(out: Search, ready: Prepared, high_hz: float, settings: Identificati
             continue
         kept = [o for o in kept if not any(o is s for s in same)]
         kept.append(replace(c, cluster=_moved(c.cluster, offset)))
-    return Search(
+    return PoleSearch(
         _together(out.poles, more.poles),
         sorted(kept, key=lambda c: c.mode.frequency_hz),
         _tones(out.tones, more.tones, ready, offset),
