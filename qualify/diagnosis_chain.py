@@ -28,7 +28,7 @@ from jackettwin.twin.causes import _ONE_SIZE, ModelCauses, Modes, model_causes, 
 from jackettwin.twin.changed_structures import Happening, Standing
 from jackettwin.watching import Change, History, Watch, diagnose, start, step
 
-RECORDS, BLOCK, SEASONS = 24, 6, 3
+RECORDS, BLOCK, SEASONS = 18, 6, 6
 """Records of each state, made so many of all states at a time, and seasons that each change is watched in."""
 BASELINE, BEGUN, LONGEST = 365.0, 395.0, 60.0
 """Days of the baseline, day of the change, and for how long an alarm is waited for."""
@@ -37,13 +37,14 @@ NOISE = 1.0
 CHAINED = (
     "# Diagnosis through the whole chain",
     "",
-    "`python qualify/diagnosis_chain.py FOLDER {number}`: two jackets, feet of their own stiffness.",
+    "`python qualify/diagnosis_chain.py`: two jackets, feet of their own stiffness.",
     "{number} records of ten minutes under waves and wind before and after each of twelve causes at three",
     "sizes, of the same seeds, are simulated, identified and recognised as the twin does it. Their modes",
     "with their stated standard deviations fill the seasons of [watching](watching.md), two rows each time",
     f"that the rotor is parked: a year of baseline, then day by day until the alarm, {LONGEST:.0f} days at",
     f"most, in {SEASONS} turbines' seasons for each. What raised no alarm by then is not judged and not",
-    "counted.",
+    "counted. The friction of the loose connection is damping in proportion to mass, by what the cause",
+    "states for the first mode; modes that may mix with members' own are left out of the causes.",
     "",
 )
 
