@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.report import style
-from jackettwin.report.numbers import words
+from jackettwin.report.numbers import parameter_words
 from jackettwin.twin.followed import Followed
 
 _DAY_MS = 86_400_000
@@ -26,7 +26,7 @@ def parameters_through_time(followed: Followed) -> go.Figure:
             _line(figure, followed, name, row)
         unit = followed.units[name]
         figure.update_yaxes(
-            title=words(name) if unit == "-" else style.title(words(name), unit),
+            title=parameter_words(name) if unit == "-" else style.title(parameter_words(name), unit),
             type="log",
             exponentformat="power",
             row=row,
@@ -66,6 +66,7 @@ def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         y=[*high, *low[::-1]],
         fill="toself",
         fillcolor=style.rgba(colour, 0.2),
+        mode="lines",  # of few days the band's corners would be drawn as points
         line={"width": 0},
         hoverinfo="skip",
         name="slope through all days, 90 %",

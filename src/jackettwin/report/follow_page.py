@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from jackettwin.answers import Span
 from jackettwin.report.figures_follow import parameters_through_time
+from jackettwin.report.numbers import parameter_words
 from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.sentences import span_words
 from jackettwin.twin.followed import Followed
 from jackettwin.version import __version__
 
@@ -43,17 +46,17 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
 
 def _table(followed: Followed) -> Block:
     names = list(followed.units)
-    units = [f"{name} [{followed.units[name]}]" for name in names]
     rows = []
     for day in followed.days:
         cells = []
         for name in names:
             low, high = day.interval_90[name]
-            cells.append(f"{day.median[name]:.3g} ({low:.3g} to {high:.3g})")
+            unit = followed.units[name]
+            cells.append(span_words(Span(day.median[name], low, high), unit))
         rows.append((f"{day.time_utc:%Y-%m-%d}", str(day.records), day.status, *cells))
     return PageTable(
         "What was known after each day? Median and 90 % interval of every parameter.",
-        ("day (UTC)", "records", "posterior", *units),
+        ("day (UTC)", "records", "posterior", *map(parameter_words, names)),
         tuple(rows),
         text_columns=3,
     )

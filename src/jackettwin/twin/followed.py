@@ -103,7 +103,7 @@ class Followed:
         change = "changes" if len(self.stiffness) == 1 else "change"
         said = (
             f"{found}: {' and '.join(self.stiffness)} {change} by {slope:+.2g} % a day, 90 % interval "
-            f"{low:+.2g} to {high:+.2g} %, over {self.days_since_first[-1]:.3g} days."
+            f"{low:+.2g} to {high:+.2g} %, over {round(self.days_since_first[-1], 1):g} days."
         )
         if self.drift.detected:
             return said

@@ -15,7 +15,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import read_record
 from jackettwin.records.readers import read_record_pieces
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.zones import in_utc, read_zone
+from jackettwin.records.readers.zones import TWICE, in_utc, read_zone
 
 LOCAL = datetime(2025, 6, 1, 14, 0, 0)
 TWELVE = datetime(2025, 6, 1, 12, tzinfo=UTC)
@@ -74,6 +74,16 @@ def test_stamps_of_parquet_say_their_zone_or_not(tmp_path: Path) -> None:
     unsaid = Unsaid(unit="g", timezone="+02:00")
     assert read_record(tmp_path / "naive.parquet", unsaid).start_utc == TWELVE
     assert read_record(tmp_path / "utc.parquet", unsaid).start_utc == LOCAL.replace(tzinfo=UTC)
+
+
+def test_an_hour_that_is_there_twice_is_said(tmp_path: Path) -> None:
+    """Clocks went back at three on the 26th of October 2025: 02:15 was 00:15 and 01:15 UTC."""
+    path = written(tmp_path / "a.csv")
+    path.write_text(path.read_text().replace("2025-06-01 14", "2025-10-26 02"))
+    record = read_record(path, Unsaid(timezone="Europe/Berlin"))
+    assert record.start_utc == datetime(2025, 10, 26, 0, tzinfo=UTC)
+    assert TWICE in record.metadata["remarks"]
+    assert TWICE not in read_record(path, Unsaid(timezone="+02:00")).metadata.get("remarks", ())
 
 
 def test_the_statistics_of_stamps_stay_metadata(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from jackettwin.records.readers.channel_names import told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.sentinels import without_sentinels
-from jackettwin.records.readers.zones import UNSAID, in_utc, read_zone
+from jackettwin.records.readers.zones import TWICE, UNSAID, in_utc, read_zone
 from jackettwin.records.record import LARGEST, Record
 
 if TYPE_CHECKING:
@@ -231,7 +231,8 @@ def _start(table: ReadTable, said: Description, unsaid: Unsaid) -> tuple[datetim
     zone = said.clock or unsaid.timezone
     if zone is None:
         return table.start_utc, (UNSAID,)
-    return in_utc(table.start_utc, read_zone(zone, field="clock" if said.clock else "--timezone")), ()
+    start = in_utc(table.start_utc, read_zone(zone, field="clock" if said.clock else "--timezone"))
+    return start, (TWICE,) if in_utc(table.start_utc.replace(fold=1), read_zone(zone)) != start else ()
 
 
 def _described(

@@ -19,6 +19,9 @@ UNSAID = (
 )
 """Remark on a record whose stamps have no zone."""
 
+TWICE = "the clock's zone has this hour twice, or never: taken as the first (summer time); state start_utc"
+"""Remark on a record that begins in an hour in which clocks are put back or forward."""
+
 
 def read_zone(text: str, *, field: str = "clock") -> tzinfo:
     """Return a zone: ``UTC``, an offset (``+02:00``, ``UTC+2``), or a name (``Europe/Berlin``).
