@@ -38,6 +38,10 @@ CASES = {
     "6 m, 10 s, four metres of it buried": Water(46.0, 6.0, 10.0, axial=(1.0, 1.0, 1.0), growth_m=0.1),
     "no growth, no ends": Water(50.0, 6.0, 10.0),
 }
+FEET_Z_M = -50.001
+"""Where the deck's feet stand, from still water."""
+ABOVE_BED_MM = (-11, -6, -1, 1, 6, 11, 20)
+"""Where a bed stated to the centimetre leaves them, both sides of it; then two places in the water."""
 
 
 def main() -> None:
@@ -58,7 +62,24 @@ def main() -> None:
             a, b = (x - x.mean() for x in (mine[:, column], theirs[name]))
             cells.append(f"{np.ptp(b) / 1e6:.3f}, {100.0 * np.abs(a - b).max() / np.abs(b).max():.3f} %")
         lines.append(f"| {title} | {' | '.join(cells)} |")
-    write_page("hydrodyn", lines)
+    write_page("hydrodyn", [*lines, "", *feet(program)])
+
+
+def feet(program: str) -> list[str]:
+    """Return the table of feet close to the bed: the vertical force's range by both."""
+    lines = [
+        "The first case with its bed moved, its feet above (+) or below (−) it: the range of Fz [MN].",
+        "",
+        "| feet [mm] | HydroDyn | ours |",
+        "|---|---|---|",
+    ]
+    for gap in ABOVE_BED_MM:
+        water = Water(round(gap / 1e3 - FEET_Z_M, 6), 6.0, 10.0, axial=(1.0, 1.0, 1.0), growth_m=0.1)
+        with tempfile.TemporaryDirectory() as folder:
+            times, theirs = hydrodyn(program, Path(folder), water)
+        both = (np.ptp(x) / 1e6 for x in (theirs["Fz"], ours(water, times)[:, 2]))
+        lines.append(f"| {gap:+d} | {' | '.join(f'{x:.3f}' for x in both)} |".replace("| -", "| −"))
+    return lines
 
 
 def introduction() -> list[str]:

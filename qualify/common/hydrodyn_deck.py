@@ -74,7 +74,9 @@ def _seastate(structure: Structure, water: Water) -> str:
     half = 1.0 + max(abs(v) for name in structure.nodes for v in structure.nodes[name][:2])
     rows: list[Row | str] = [("False", "Echo"), "ENVIRONMENT"]
     rows += [(water.density_kg_m3, "WtrDens"), (water.depth_m, "WtrDpth"), (0.0, "MSL2SWL"), "GRID"]
-    rows += [(half, "X_HalfWidth"), (half, "Y_HalfWidth"), (water.depth_m, "Z_Depth")]
+    rows += [(half, "X_HalfWidth"), (half, "Y_HalfWidth")]
+    # a grid that rounding sinks below the bed has no pressure on its lowest level
+    rows += [(water.depth_m - 1e-4, "Z_Depth")]
     rows += [
         (21, "NX"),
         (21, "NY"),

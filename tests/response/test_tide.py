@@ -1,6 +1,7 @@
 """Slopes of frequencies with the sea level against the model at two levels, and a closed form."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,24 +18,27 @@ from jackettwin.soil.support import clamped
 from jackettwin.structure import Assembly, assemble, read_structure
 
 COEFFICIENTS = Coefficients(growth=(GrowthBand(2.0, -40.0, 0.1),))
-FLOODED = Water(flooded=("jacket",))
 N = 6
+DECKS = Path(__file__).parents[2] / "qualify/decks"
 
 
-def wet(dry: Assembly, level_m: float) -> tuple[Assembly, UndampedModes]:
+def wet(dry: Assembly, water: Water, level_m: float) -> tuple[Assembly, UndampedModes]:
     grid = morison_points(dry, highest_z=1.0, coefficients=COEFFICIENTS)
-    mass = dry.mass + water_mass(dry, grid, FLOODED, level_m=level_m).tocsc()
+    mass = dry.mass + water_mass(dry, grid, water, level_m=level_m).tocsc()
     assembly = replace(dry, mass=mass)
     return assembly, undamped_modes(build_system(assembly, clamped(dry.structure)), N)
 
 
-def test_slopes_are_differences_of_frequencies() -> None:
-    """A tide of ±0.5 m on jacket15, legs and braces flooded: second order in a level of 1e-3 of f."""
-    dry = assemble(read_structure("jacket15"))
-    assembly, modes = wet(dry, 0.0)
-    change = mass_per_level(assembly, COEFFICIENTS, FLOODED)
+@pytest.mark.parametrize("deck", ["jacket15", DECKS / "oc4_jacket.dat", DECKS / "oc3_tripod.dat"])
+def test_slopes_are_differences_of_frequencies(deck: str | Path) -> None:
+    """A tide of ±0.5 m, legs and braces flooded: second order in a level of 1e-3 of f."""
+    dry = assemble(read_structure(deck))
+    # members of a deck have no part but that of the tower
+    water = Water(flooded=tuple(m.name for m in dry.structure.members if m.part in ("jacket", "")))
+    assembly, modes = wet(dry, water, 0.0)
+    change = mass_per_level(assembly, COEFFICIENTS, water)
     found = tide_slopes(modes.frequency_hz, modes.shapes, assembly.mass, change)
-    high, low = (wet(dry, level)[1].frequency_hz for level in (0.5, -0.5))
+    high, low = (wet(dry, water, level)[1].frequency_hz for level in (0.5, -0.5))
     np.testing.assert_allclose(found.slope_hz_m, high - low, rtol=0.02, atol=1e-7)
     assert (found.relative < 0.0).all()
 

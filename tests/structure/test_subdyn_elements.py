@@ -257,6 +257,38 @@ def test_an_arbitrary_beam_with_a_tubes_numbers_is_that_tube(tmp_path: Path, fem
     assert lowered[0][0] < -1e3
 
 
+def test_a_column_of_arbitrary_section_gives_way_as_euler_says(tmp_path: Path) -> None:
+    """Across the top of a cantilever under P stands P/(tan(κL)/κ − L), κ² = P/EI, in either plane."""
+    L, E, weak, strong, load = 60.0, 210e9, 0.4, 1.1, 60e6
+    # rigid in shear and light: neither is in the closed form
+    deck = read_deck(
+        tmp_path,
+        femmod=1,
+        ndiv=8,
+        NJoints=f"1 0 0 0 1 0 0 0 0; 2 0 0 {L} 1 0 0 0 0",
+        NReact='1 1 1 1 1 1 1 ""',
+        NInterf="2 1 1 1 1 1 1",
+        NMembers="1 1 2 4 4 4 0",
+        NXPropSets=f"4 {E} 8e10 1e-6 2 2 2 {weak} {strong} 1.5",
+        NCmass=f"2 {load / GRAVITY_M_S2} 0 0 0 0 0 0 0 0 0",
+    )
+    assembly = assemble(deck, gravity=True)
+    held = assembly.dofs("1")
+    free = np.setdiff1d(np.arange(assembly.n_dof), held)
+    top = np.searchsorted(free, assembly.dofs("2")[:2])
+    push = np.zeros((free.size, 2))
+    push[top, [0, 1]] = 1.0
+    K = assembly.stiffness.toarray()[np.ix_(free, free)]
+    found = 1.0 / np.linalg.solve(K, push)[top, [0, 1]]
+    wanted = []
+    for inertia in (weak, strong):
+        kappa = np.sqrt(load / (E * inertia))
+        wanted.append(load / (np.tan(kappa * L) / kappa - L))
+    # the load takes more than a tenth of what stands without it, and eight pieces come within 1e-4
+    assert wanted[0] < 0.9 * 3.0 * E * weak / L**3
+    np.testing.assert_allclose(np.sort(found), wanted, rtol=1e-4)
+
+
 def test_a_weight_on_a_cable_is_a_pendulum() -> None:
     """Across a cable without pretension stands mg/L, and nothing without gravity."""
     top, bob, L, m = np.array([0.0, 0.0, 5.0]), np.zeros(3), 5.0, 1000.0
