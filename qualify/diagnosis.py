@@ -148,21 +148,23 @@ def cases(jacket: str, structure: Structure, draws: int) -> list[Case]:
         frequency = base.modes.frequency_hz[chosen] * missed
         model = model_causes(structure, labels, frequency, zeta[chosen], seed=draw)
         seen = seen_causes(model, quantities, labels)
+        own = [kind for kind, known in zip(kinds, seen.known, strict=True) if known]
 
         def judged(name: str, times: int, delta: np.ndarray, louder: bool = False) -> None:
             change = seen_change(delta, kinds, rng, louder)  # noqa: B023
             if louder or change.by_mode.sum() > LEAST:
-                out.append(case(jacket, name, times, diagnose(change, seen.causes, kinds)))  # noqa: B023
+                known = change.restricted(seen.known)  # noqa: B023
+                out.append(case(jacket, name, times, diagnose(known, seen.causes, own)))  # noqa: B023
 
         for event in planted(structure):
             name = name_of(event.name, seen.causes)
             for times in TIMES if name in {c.name for c in seen.causes} else ():
                 judged(name, times, moved(event, standing, times, base, zeta)[columns])
-        by_name = {cause.name: cause for cause in seen.causes}
+        by_name = {cause.name: cause for cause in model.causes}
         for name, size in SENSORS.items():
             for times in TIMES:
                 if name in by_name:
-                    judged(name, times, times * size * by_name[name].draws[0])
+                    judged(name, times, times * size * by_name[name].draws[0, columns])
         for times in TIMES:
             any_way = np.array([0.002 if kind == "frequency" else 0.1 for kind in kinds])
             judged("something else", times, times * any_way * rng.standard_normal(len(kinds)))
