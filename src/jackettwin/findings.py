@@ -185,6 +185,11 @@ CATALOGUE: dict[str, Kind] = {
         "warning",
         "the sensors do not move in phase (modal phase collinearity {mpc:.2f}) and no close mode explains it",
     ),
+    "one_part": Kind(
+        "warning",
+        "{share:.0%} of its power lie in one fifth of the record, those of the other modes do not: a tone "
+        "that ended, or a blow",
+    ),
     "one_sensor": Kind("warning", "{share:.0%} of its motion is that of one sensor"),
     "sensor_beside": Kind(
         "warning",
