@@ -28,6 +28,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
 from jackettwin.identification.selection.neighbours import apart, of_neighbours
 from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
+from jackettwin.identification.selection.peaks import contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records.another_time import may_be_compared
@@ -68,15 +69,9 @@ ONE_SENSOR = 0.98
 """Share of a shape, in units of each channel's motion, from which it is of one sensor …"""
 ENOUGH_SENSORS = 4
 """… of so many at least."""
-BESIDE = (2.5, 8.0)
-"""Half bandwidths from a mode between which the power beside it is taken, …"""
-BESIDE_LINES = 4
-"""… over so many lines a channel at least."""
-REGULAR = 1e-4
-"""Share of the mean power beside the mode that counts as noise of every channel."""
-PARTS, ONE_PART = 10, 0.75
-"""Parts of a record, and the share of a mode's power in two of them that meet from which it is of one part:
-modes of random systems have 0.2 to 0.6, the third order of a rotor that stops after thirty of 600 s 0.9."""
+ONE_PART = 0.75
+"""Share of a mode's power in two neighbouring tenths of the record from which it is of one part: modes of
+random systems have 0.2 to 0.6, the third order of a rotor that stops after thirty of 600 s 0.9."""
 KNOWN_FREQUENCY = 0.03
 """Standard deviation of a frequency, relative, up to which it is called known."""
 STEADY = 0.7
@@ -90,56 +85,6 @@ PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp")
 """Names of the peak period of the sea among a record's conditions."""
 NARROW = 1.5
 """2πζfT below which a peak is hardly broader than a line."""
-
-
-def contrast(
-    lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
-) -> tuple[float, float]:
-    """Return the power at a mode over that beside it through its filter, and the excess over its deviation.
-
-    Parameters
-    ----------
-    lines : (n_channels, n_lines)
-        Fourier transform of the samples.
-    shape : (n_channels,)
-        In the scaling of the samples.
-    """
-    at, beside = _lines_of(lines, duration_s, mode)
-    if at.sum() < 2 or beside.sum() <= len(lines):
-        return np.inf, np.inf
-    power = np.abs(_through(lines, beside, shape)) ** 2
-    ratio = float(power[at].mean() / power[beside].mean())
-    return ratio, float((ratio - 1.0) / np.sqrt(1.0 / at.sum() + 1.0 / beside.sum()))
-
-
-def share_of_one_part(
-    lines: ComplexArray, duration_s: float, mode: ModalEstimate, shape: ComplexArray
-) -> float:
-    """Return the largest share of a mode's power, through its filter, in two neighbouring tenths."""
-    at, beside = _lines_of(lines, duration_s, mode)
-    if beside.sum() <= len(lines):
-        return 0.0
-    wide = np.convolve(at, np.ones(2 * int(at.sum()) + 1), mode="same") > 0.0
-    envelope = np.abs(np.fft.ifft(np.where(wide, _through(lines, beside, shape), 0.0))) ** 2
-    parts = np.array([part.sum() for part in np.array_split(envelope, PARTS)])
-    return float(np.max(parts[1:] + parts[:-1]) / parts.sum())
-
-
-def _lines_of(lines: ComplexArray, duration_s: float, mode: ModalEstimate) -> tuple[BoolArray, BoolArray]:
-    """Return the lines at a mode and those beside it, (n_lines,) each."""
-    f = np.arange(lines.shape[1]) / duration_s
-    half = max(mode.damping_ratio * mode.frequency_hz, 1.5 / duration_s)
-    far = max(BESIDE[1] * half, BESIDE_LINES * len(lines) / duration_s)
-    away = np.abs(f - mode.frequency_hz)
-    return np.asarray(away <= half), np.asarray((away > BESIDE[0] * half) & (away <= far) & (f > 0.0))
-
-
-def _through(lines: ComplexArray, beside: BoolArray, shape: ComplexArray) -> ComplexArray:
-    """Return the lines through the filter that a shape makes against what is beside it, (n_lines,)."""
-    around = lines[:, beside]
-    matrix = around @ around.conj().T / beside.sum()
-    matrix += REGULAR * np.trace(matrix).real / len(lines) * np.eye(len(lines))
-    return np.asarray(np.linalg.solve(matrix, shape).conj() @ lines)
 
 
 @dataclass(frozen=True)
