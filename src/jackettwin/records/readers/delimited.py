@@ -172,7 +172,7 @@ def write(record: Record, path: Path) -> None:
 def decoded(raw: bytes) -> str:
     """Return the text of a file: in the encoding its mark tells, else UTF-8, else that of spreadsheets."""
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return raw.decode("utf-16")
+        return raw.decode("utf-16", errors="replace")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
