@@ -86,9 +86,11 @@ async function modes() {
 }
 
 async function findings() {
-  const page = await api("/findings?limit=50");
+  const [page, own] = await Promise.all([api("/findings?limit=50"), api("")]);
   const shown = page.items.filter((f) => f.severity !== "info");
-  const list = (shown.length ? shown : [{ text: "Nothing to beware of.", severity: "" }]).map((f) => {
+  const lost = (own.records.refused ?? 0) + (own.records.set_aside ?? 0);
+  const none = lost ? { text: `${lost} of the records were refused or set aside: their remarks are below.`, severity: "warning" } : { text: "Nothing to beware of.", severity: "" };
+  const list = (shown.length ? shown : [none]).map((f) => {
     const li = document.createElement("li");
     li.className = f.severity;
     li.textContent = f.time_utc ? `${f.time_utc.slice(0, 16).replace("T", " ")} ${f.severity}: ${f.text}` : f.text;
