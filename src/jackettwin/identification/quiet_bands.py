@@ -125,10 +125,11 @@ def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepar
         return True
     modes = [c.mode for c in search.judged if c.objection is None and c.doubt is None]
     own = [(m.frequency_hz, max(m.damping_ratio * m.frequency_hz, line_hz)) for m in modes]
-    own += [(f, line_hz) for f in (*tones.steady_hz, *ready.tones_hz)]
-    return any(abs(f - peak_hz) < EXPLAINS * half for f, half in own) or any(
-        tone.passes(peak_hz) for tone in tones.drifting
-    )
+    ranges = [(f - EXPLAINS * half, f + EXPLAINS * half) for f, half in own]
+    lines = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
+    lines += [tone.disturbed_hz for tone in tones.drifting]
+    ranges += [(low - EXPLAINS * line_hz, high + EXPLAINS * line_hz) for low, high in lines]
+    return any(low < peak_hz < high for low, high in ranges)
 
 
 def _above(ready: Prepared, low_hz: float) -> Prepared:
