@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import expm1
+from math import expm1, log
 
 from jackettwin.answers.result import Answers, Clearance, GroundAnswer, ModeAnswer, NextStep, Span
 from jackettwin.report.numbers import (
@@ -426,13 +426,18 @@ def _if_off(a: Answers) -> list[str]:
     moved = {} if a.fit is None else a.fit.moved
     of_kind = [g for g in a.ground if g.kind == "stiffness" and g.verdict in ("identified", "weak")]
     parts = [
-        f"{parameter_words(g.name)} by {100.0 * expm1(abs(moved[g.name])):.2g} %"
+        f"{parameter_words(g.name)} by {_percent(abs(moved[g.name]))}"
         for g in of_kind[:_MOST]
         if abs(moved.get(g.name, 0.0)) > _NOTHING
     ]
     return (
         [f"Each 1 % by which all frequencies of the model are wrong moves {listed(parts)}."] if parts else []
     )
+
+
+def _percent(log_change: float) -> str:
+    """Return a change of a logarithm as per cent; that of a fit far from its data may be of any size."""
+    return f"{100.0 * expm1(log_change):.2g} %" if log_change < log(WIDE) else "more than tenfold"
 
 
 def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
