@@ -1,16 +1,19 @@
 """What holds of every command: JSON, help, a line in the README; output goes to out/ unless named."""
 
+import importlib
 import json
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
+from threading import Event
 
 import click
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.cli import main
+from jackettwin.cli import console, main
 from jackettwin.cli.main import COMMANDS
 
 README = Path(__file__).parents[2] / "README.md"
@@ -45,6 +48,27 @@ def test_a_help_text_loads_no_numerics() -> None:
     # Python's own, click and rich's console: 172 with Python 3.11
     assert len(loaded) < 250
     assert not {"numpy", "scipy", "numba", "pydantic", "plotly", "pyarrow"} & set(loaded)
+
+
+def test_a_command_says_what_it_does_before_it_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However slow the disk: the line waits for no library."""
+    said = Event()
+
+    class Heard:
+        lines: list[str] = []
+
+        def print(self, line: str, **_: object) -> None:
+            self.lines.append(line)
+            said.set()
+
+    monkeypatch.setattr(console, "messages", Heard())
+    monkeypatch.setattr(
+        console, "import_module", lambda name: said.wait(10.0) and importlib.import_module(name)
+    )
+    start = time.monotonic()
+    assert main.get_command(click.Context(main), "run") is not None
+    assert time.monotonic() - start < 5.0  # waits 0.3 s; a machine may be busy
+    assert Heard.lines[0] == "run: Go from records to modes to updated supports (reading the program)"
 
 
 def test_watching_a_table_needs_no_statistics_library() -> None:

@@ -14,9 +14,10 @@ from jackettwin.errors import InputError, NumericalError
 from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate, RealPole
 from jackettwin.progress import Progress, Told
+from jackettwin.records.readers.channels import Unsaid
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.response.sensors import Sensor
-from jackettwin.twin import Observation, TwinConfig, TwinModel, follow, read_twin, twin_model
+from jackettwin.twin import Observation, TwinConfig, TwinModel, follow, observe_files, read_twin, twin_model
 from jackettwin.twin.follow import follow_observations, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
 from jackettwin.twin.followed import Followed, Known
@@ -182,7 +183,7 @@ def test_many_days_cost_what_ten_do(model: TwinModel, records: list[Observation]
 
 
 def test_what_cannot_be_followed(
-    config: TwinConfig, model: TwinModel, records: list[Observation], followed: Followed
+    config: TwinConfig, model: TwinModel, records: list[Observation], followed: Followed, tmp_path: Path
 ) -> None:
     with pytest.raises(InputError, match="another law, structure"):
         follow_observations(config, model, records[5:], law="zener", prior=followed)
@@ -190,6 +191,14 @@ def test_what_cannot_be_followed(
         follow_twin(config)
     with pytest.raises(InputError, match="without a start"):
         follow_observations(config, model, [replace(records[0], start_utc=None)])
+    undated = tmp_path / "clockless.csv"
+    undated.write_text("x [m/s^2]\n" + "0.1\n-0.1\n" * 300)
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        pytest.raises(InputError, match=r"clockless\.csv.*without a start"),
+    ):
+        patch.setattr(observe_files, "observe", None)  # nothing is identified in it
+        follow_twin(replace(config, records=(undated,), unsaid=Unsaid(sample_rate_hz=10.0)))
     relative = replace(config, update=config.update.model_copy(update={"weighting": "relative"}))
     with pytest.raises(InputError, match="needs a standard deviation"):
         follow_observations(relative, model, records)

@@ -22,8 +22,8 @@ from jackettwin.errors import InputError, JackettwinError
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
-_PATIENCE_S = 0.8
-"""Time after which a command that is still being read says so: on a cold disk SciPy takes seconds."""
+_PATIENCE_S = 0.3
+"""Time after which a command that is still being read says so: NumPy, SciPy and Numba take a second or two."""
 messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
@@ -31,15 +31,15 @@ output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatt
 
 
 @contextmanager
-def _reading_said() -> Iterator[None]:
-    """Say that the program is still being read, as often as any progress is told."""
+def _reading_said(command: str, summary: str) -> Iterator[None]:
+    """Say what a command does while it is still being read, and that it is, as often as any progress is told."""
     done = Event()
 
     def say() -> None:
-        waits, words = _PATIENCE_S, "reading the numerical libraries"
+        waits, words = _PATIENCE_S, f"{command}: {summary.rstrip('.')} (reading the program)"
         while not done.wait(waits):
-            messages.print(words)
-            waits, words = EVERY_S, "still reading the numerical libraries"
+            messages.print(words, soft_wrap=True, markup=False)
+            waits, words = EVERY_S, "still reading the program"
 
     thread = Thread(target=say, daemon=True)
     thread.start()
@@ -71,7 +71,7 @@ class Commands(click.Group):
         if cmd_name not in self.summaries:
             return None
         name = cmd_name.replace("-", "_")
-        with _reading_said():
+        with _reading_said(cmd_name, self.summaries[cmd_name].split(": ")[0]):
             command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
         return command
 

@@ -25,7 +25,7 @@ from jackettwin.twin.followed import FEWEST_DAYS, STIFFNESS, Followed, Known, si
 from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.observation import Observation
-from jackettwin.twin.observe_files import observe_files, sorted_out
+from jackettwin.twin.observe_files import observe_files, sorted_out, undated
 from jackettwin.twin.problem import UpdateEvidence, law_model, model_problem, tied_problem
 from jackettwin.twin.relaxations import measured_relaxations, relaxing
 from jackettwin.twin.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
@@ -76,7 +76,7 @@ def follow_twin(
     Raises
     ------
     InputError
-        If there is no new record, a record has no start time, or the twin has changed.
+        If there is no new record, no record has a start time, or the twin has changed.
     """
     if not config.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
@@ -104,13 +104,7 @@ def follow_observations(
     moments, findings = [], []
     for observation in ordered:
         if observation.start_utc is None:
-            raise InputError(
-                "a record without a start cannot be followed in time",
-                file=config.path,
-                field="records",
-                value=observation.name,
-                remedy="give start_utc in the record's description",
-            )
+            raise undated(observation.name)
         before = state
         state, found = advance(state, observation)
         findings += [str(finding) for finding in found]
@@ -153,6 +147,7 @@ def _observed(
         model,
         unsaid=config.unsaid,
         known=known,
+        dated=True,
         workers=workers,
         progress=progress,
         keep=keep,

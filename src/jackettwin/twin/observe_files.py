@@ -64,10 +64,13 @@ class _Work:
     unsaid: Unsaid | None
     keep: Keep
     known: Collection[str]
+    dated: bool
 
     def see(self, file: Path, *, make: bool = True) -> Seen | None:
         """Return what a file shows; unless ``make``, None if nothing is known of it yet."""
         record = read_record(file, self.unsaid)
+        if self.dated and record.start_utc is None:
+            raise undated(file)
         if record_id(record) in self.known:
             return Seen("", None)
         key = observation_key(record, self.model)
@@ -87,6 +90,7 @@ def observe_files(
     *,
     unsaid: Unsaid | None = None,
     known: Collection[str] = (),
+    dated: bool = False,
     workers: int | None = None,
     progress: Progress = SILENT,
     keep: Keep = NOT_KEPT,
@@ -99,6 +103,8 @@ def observe_files(
         Rate and unit, for files that do not say them.
     known : collection of str
         Identities of records that are not observed again.
+    dated : bool
+        Whether a record without a start is an error: it is told before anything is identified in it.
     workers : int, optional
         Processes; default one a core. One works in this process.
     progress : Progress
@@ -106,7 +112,7 @@ def observe_files(
     keep : Keep
         Keeps observations for the next time.
     """
-    work = _Work(model, unsaid, keep, frozenset(known))
+    work = _Work(model, unsaid, keep, frozenset(known), dated)
     left: list[int] = []
     for i, file in enumerate(files):
         left = list(range(i, len(files)))
@@ -134,6 +140,16 @@ def _one(work: _Work, file: Path) -> Seen | Exception | None:
         return work.see(file)
     except Exception as error:
         return error
+
+
+def undated(record: str | Path) -> InputError:
+    """Return the error of a record that has no place in time."""
+    return InputError(
+        "a record without a start cannot be followed in time",
+        file=record,
+        field="start_utc",
+        remedy="give start_utc in the description beside it (NAME.json), or a time column with a date",
+    )
 
 
 def observation_key(record: Record, model: TwinModel) -> str:
