@@ -23,7 +23,7 @@ from jackettwin.errors import InputError, JackettwinError
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 _PATIENCE_S = 0.3
-"""Time after which a command that is still being read says so: NumPy, SciPy and Numba take a second or two."""
+"""Time after which a command that is still being read says so: NumPy and SciPy take a second or two."""
 messages = Console(stderr=True, highlight=False)
 """Progress, warnings and errors."""
 output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 140)
@@ -32,7 +32,7 @@ output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatt
 
 @contextmanager
 def _reading_said(command: str, summary: str) -> Iterator[None]:
-    """Say what a command does while it is still being read, and that it is, as often as any progress is told."""
+    """Say what a command does while it is still being read, as often as any progress is told."""
     done = Event()
 
     def say() -> None:

@@ -38,10 +38,10 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
     Open the address that is printed. Nothing else has to be set up.
     """
     needs_service()
+    messages.print(f"starting {options['workers']} workers and the server …")
     from jackettwin.service import Service, ServiceSettings, demonstrate, serve
 
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")
-    messages.print(f"starting {options['workers']} workers and the server …")
 
     def ready(service: Service) -> None:
         scheme = "https" if service.settings.tls_certificate else "http"

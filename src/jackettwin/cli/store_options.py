@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -43,26 +44,21 @@ def opened(store: Path, database: str | None, *, make: bool = False) -> Engine:
         If there is no store.
     """
     needs_service()
-    from jackettwin.store import open_database, sqlite_url
-
     if not make and not store.is_dir():
         raise InputError(
             "there is no store",
             field="store",
-            value=store,
+            value=str(store),
             remedy="begin with `jackettwin asset add NAME TWIN --store STORE` or `jackettwin serve STORE`",
         )
+    from jackettwin.store import open_database, sqlite_url
+
     store.mkdir(parents=True, exist_ok=True)
     return open_database(database or sqlite_url(store))
 
 
 def needs_service() -> None:
     """Refuse to go on without the extra ``service``."""
-    try:
-        import distributed  # noqa: F401
-        import fastapi  # noqa: F401
-        import sqlalchemy  # noqa: F401
-    except ModuleNotFoundError as error:
-        raise MissingExtra(
-            f"the living twin needs {error.name}", remedy="pip install 'jackettwin[service]'"
-        ) from None
+    for library in ("distributed", "fastapi", "sqlalchemy"):  # none is read: that takes a second
+        if find_spec(library) is None:
+            raise MissingExtra(f"the living twin needs {library}", remedy="pip install 'jackettwin[service]'")
