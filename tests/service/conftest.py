@@ -18,7 +18,7 @@ from fastapi.testclient import TestClient
 from scipy.signal import lfilter
 from tests.support.observations import estimate, observation
 
-from jackettwin.service import ServiceSettings, engine
+from jackettwin.service import ServiceSettings, engine, verdict
 from jackettwin.service.app import create_app
 from jackettwin.service.catalogue import add_text_version
 from jackettwin.service.context import Service
@@ -158,8 +158,8 @@ def make_service(
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
-    monkeypatch.setattr(engine, "known", known)
-    monkeypatch.setattr(engine, "watched", lambda twin, state, kept: ({"days": len(state.days)}, ()))
+    monkeypatch.setattr(verdict, "known", known)
+    monkeypatch.setattr(verdict, "watched", lambda twin, state, kept: ({"days": len(state.days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:
         add_text_version(connection, made, "wtg", TWIN, {}, "test")

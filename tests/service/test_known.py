@@ -11,7 +11,7 @@ import pytest
 from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
-from jackettwin.service import engine
+from jackettwin.service import engine, verdict
 from jackettwin.service.tasks import Question, know
 from jackettwin.twin import OBSERVATION
 
@@ -50,7 +50,7 @@ def test_what_no_ground_explains_has_no_interval(tmp_path: Path) -> None:
     """The report's headline and the answer of the API are one."""
     odd = {1: MODES[1], 2: estimate(0.30, 0.011, 2e-3, 0.1)}
     known, page = asked_of(tmp_path, odd)
-    assert known["status"] == engine.CANNOT_MEET
+    assert known["status"] == verdict.CANNOT_MEET
     assert {found["interval_90"] for found in known["parameters"].values()} == {None}
     assert "cannot meet what was measured on any ground" in page
 

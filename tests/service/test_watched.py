@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import TWIN, turn, upload
 from tests.support.observations import seen
 
-from jackettwin.service import engine
+from jackettwin.service import engine, verdict
 from jackettwin.service.context import Service
 from jackettwin.twin import TwinState, advance_all
 
@@ -26,7 +26,7 @@ def days(n: int, step: float) -> dict[str, str]:
 
 def watched(folder: Path, days: dict[str, str], kept: Any) -> Any:
     twin = engine.load_twin(folder)
-    return engine.watched(twin, engine.state_of(twin.model, days), kept)
+    return verdict.watched(twin, engine.state_of(twin.model, days), kept)
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def test_an_alarm_reaches_the_api_once_and_stays_acknowledged(
         return list(client.get("/api/v1/assets/wtg/alarms").json()["items"])
 
     def record(k: int, *found: dict[str, Any]) -> None:
-        monkeypatch.setattr(engine, "watched", lambda folder, days, kept: ({}, found))
+        monkeypatch.setattr(verdict, "watched", lambda folder, days, kept: ({}, found))
         upload(client, k)
         turn(service)
 

@@ -1,26 +1,22 @@
 """The living twin as a service: intake, workers, consequences, API, pages."""
 
-from jackettwin.service.context import Service, open_service
-from jackettwin.service.demonstration import demonstrate
-from jackettwin.service.desk import add_conditions, add_twin, adopt_version, rebuild, take_here
-from jackettwin.service.intake.files import Accepted
-from jackettwin.service.intake.folder import record_files, watch_folders
-from jackettwin.service.server import running, serve
-from jackettwin.service.settings import ServiceSettings
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "Accepted",
-    "Service",
-    "ServiceSettings",
-    "add_conditions",
-    "add_twin",
-    "adopt_version",
-    "demonstrate",
-    "open_service",
-    "rebuild",
-    "record_files",
-    "running",
-    "serve",
-    "take_here",
-    "watch_folders",
-]
+from jackettwin.doors import door
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service as Service
+    from jackettwin.service.demonstration import demonstrate as demonstrate
+    from jackettwin.service.desk import (
+        add_conditions as add_conditions,
+        add_twin as add_twin,
+        adopt_version as adopt_version,
+        rebuild as rebuild,
+        take_here as take_here,
+    )
+    from jackettwin.service.intake.files import Accepted as Accepted
+    from jackettwin.service.intake.folder import record_files as record_files, watch_folders as watch_folders
+    from jackettwin.service.server import serve as serve
+    from jackettwin.service.settings import ServiceSettings as ServiceSettings
+
+door(__name__)

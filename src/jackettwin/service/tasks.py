@@ -171,17 +171,17 @@ class Question:
 
 def know(question: Question) -> Outcome:
     """Answer a question about what a turbine's records showed, and write the page on it."""
-    from jackettwin.service import engine
+    from jackettwin.service import engine, verdict
 
     twin = engine.load_twin(Path(question.twin_folder))
     state, page = engine.state_of(twin.model, question.days), None
     try:
-        known, sections = engine.known(twin, engine.seen(state, question.newest, question.in_all))
+        known, sections = verdict.known(twin, verdict.seen(state, question.newest, question.in_all))
         if sections is not None:
-            page = engine.report(sections, title=question.asset, subtitle=f"version {question.version}")
+            page = verdict.report(sections, title=question.asset, subtitle=f"version {question.version}")
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
-    judged, findings = engine.watched(twin, state, question.judged) if question.days else (None, ())
+    judged, findings = verdict.watched(twin, state, question.judged) if question.days else (None, ())
     return Outcome(
         json.dumps({"known": known, "judged": judged}), findings=findings, page=page, of=question.of
     )
