@@ -58,6 +58,7 @@ def test_parts_that_names_speak_of_have_their_nodes(tmp_path: Path) -> None:
     assert code == 0
     nodes = [(s["node"], bool(s["lacks"])) for s in json.loads(text)["sensors"]]
     assert nodes == [("tower_top", False), ("tp_top", False), ("tp_top", False), (None, True)]
+    assert "tower is at 86 m" in json.loads(text)["sensors"][3]["lacks"]
 
 
 def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
@@ -67,7 +68,8 @@ def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
     assert "ACC_400m_N: 400 m, [0, 1, 0]: lacks a place on the structure" in text
     assert "missing: the clock does not say its zone" in text
     assert "conditions of the records" in text
-    assert f"next: jackettwin run {tmp_path / 'twin.yaml'}" in text
+    twin = tmp_path / "twin.yaml"
+    assert f"complete the 1 sensors commented out in {twin}, then jackettwin run {twin}" in text
 
 
 def test_what_lies_in_a_folder_and_is_no_record_is_left_out_and_said(tmp_path: Path) -> None:

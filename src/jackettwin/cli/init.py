@@ -145,10 +145,9 @@ def _print(draft: Draft, out: Path) -> None:
     for sentence in draft.missing[sum(bool(place.lacks) for place in draft.places) :]:
         output.print(f"missing: {sentence}", markup=False)
     messages.print(f"wrote {out}")
-    if draft.complete:
-        output.print(f"next: jackettwin run {out}", markup=False)
-    else:
-        output.print(f"next: complete the sensors in {out}, then jackettwin run {out}", markup=False)
+    without = sum(bool(place.lacks) for place in draft.places)
+    first = f"complete the {without} sensors commented out in {out}, then " if without else ""
+    output.print(f"next: {first}jackettwin run {out}", markup=False)
 
 
 def _document(draft: Draft, out: Path, records: Sequence[str]) -> dict[str, object]:

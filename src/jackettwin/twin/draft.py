@@ -135,7 +135,10 @@ def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
     if read.direction is not None and read.direction == channel.direction:
         why.append(f"{read.direction_word} by its name")
     sensor = Sensor(channel.name, channel.direction, node, None if node is not None else height)
-    return SensorPlace(sensor, ", ".join(why), _lacks(sensor, assembly))
+    lacks = _lacks(sensor, assembly)
+    if read.level == "tower middle" and sensor.height_m is None and (middle := _middle(structure)) is not None:
+        lacks += f": the middle of the tower is at {middle:.0f} m"
+    return SensorPlace(sensor, ", ".join(why), lacks)
 
 
 def _levels(structure: Structure) -> dict[str, str]:
@@ -144,6 +147,15 @@ def _levels(structure: Structure) -> dict[str, str]:
     if len(structure.interface_nodes) == 1:  # where the transition piece ends and the tower begins
         levels |= dict.fromkeys(("transition piece", "tower bottom"), structure.interface_nodes[0])
     return levels
+
+
+def _middle(structure: Structure) -> float | None:
+    """Return the height of the middle of the tower above the sea; None where nobody knows where it begins."""
+    bottom = _levels(structure).get("tower bottom")
+    if bottom is None:
+        return None
+    ends = [structure.nodes[node][2] for node in (bottom, structure.top_node)]
+    return sum(ends) / 2.0 - structure.sea_level_z_m
 
 
 def _lacks(sensor: Sensor, assembly: Assembly) -> str:

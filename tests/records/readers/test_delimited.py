@@ -98,6 +98,28 @@ def test_dates_of_loggers_are_read(day: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(record.data[0] / 9.80665, np.arange(5) + 0.5, rtol=1e-15)
 
 
+def test_date_and_time_in_two_columns_are_one_stamp(tmp_path: Path) -> None:
+    """From one day into the next, with and without a zone."""
+    clocks = [("17.03.2025", "23:59:59,950"), ("18.03.2025", "00:00:00,000"), ("18.03.2025", "0:00:00,050")]
+    for zone, hour in (("", "23"), ("+01:00", "22")):
+        rows = [f"{k};{day};{clock}{zone};{k},5" for k, (day, clock) in enumerate(clocks)]
+        record = read_text("\n".join(["Nr;Datum;Uhrzeit;acc_x [g]", *rows]), tmp_path)
+        assert record.start_utc is not None
+        assert record.start_utc.isoformat() == f"2025-03-17T{hour}:59:59.950000+00:00"
+        assert record.sample_rate_hz == 20.0
+        np.testing.assert_allclose(record.data[1] / 9.80665, np.arange(3) + 0.5, rtol=1e-15)
+
+
+def test_a_time_of_day_alone_gives_the_rate_and_no_start(tmp_path: Path) -> None:
+    clocks = ("23:59:59.9", "00:00:00.0", "00:00:00.1", "00:00:00.3")
+    rows = [f"{clock},{k}" for k, clock in enumerate(clocks)]
+    record = read_text("\n".join(["Uhrzeit,acc_x [g]", *rows]), tmp_path)
+    assert record.start_utc is None and record.sample_rate_hz == 10.0
+    np.testing.assert_array_equal(np.isnan(record.data[0]), [0, 0, 0, 1, 0])
+    with pytest.raises(InputError, match="line 6: is not a time of day.*noon"):
+        read_text("\n".join(["Uhrzeit,acc_x [g]", *rows, "noon,4"]), tmp_path)
+
+
 def test_plain_times_and_others_are_the_same_times(tmp_path: Path) -> None:
     """Times of one plain form are read at once, others one by one; an empty or impossible one is refused."""
     seconds = [f"{0.1 * k:06.3f}" for k in range(5)]

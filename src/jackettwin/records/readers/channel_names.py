@@ -47,10 +47,10 @@ HEIGHTS: tuple[tuple[str, str], ...] = (
 """Pattern with the number of metres as ``m``, and the datum if it is not mean sea level."""
 
 LEVELS: tuple[tuple[str, str], ...] = (
-    (_LETTERS.format(r"tt|tower[\s_]?top|top|nac|nacelle|yaw[\s_]?br(?:g|ng|ing)?"), "tower top"),
-    (_LETTERS.format(r"tm|mid|middle|tower[\s_]?mid"), "tower middle"),
+    (_LETTERS.format(r"tt|(?:tower|twr)?[\s_]?top|nac|nacelle|rna|yaw[\s_]?br(?:g|ng|ing)?"), "tower top"),
+    (_LETTERS.format(r"tm|(?:tower|twr)?[\s_]?mid(?:dle)?"), "tower middle"),
     (_LETTERS.format(r"tp|transition[\s_]?piece"), "transition piece"),
-    (_LETTERS.format(r"tb|tower[\s_]?(?:bottom|base)|bot|bottom|base"), "tower bottom"),
+    (_LETTERS.format(r"tb|(?:tower|twr)?[\s_]?(?:bottom|base|bot)"), "tower bottom"),
 )
 """Pattern and the part of the structure that a name without a height speaks of."""
 

@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import parse_time
+from jackettwin.records.readers.stamps import has_zone, is_stamp, stamps, with_one_stamp
 from jackettwin.records.readers.table import ReadTable, table_from_columns
 
 if TYPE_CHECKING:
@@ -68,11 +69,6 @@ ROWS_OF_A_TABLE = 3
 SNIFFED_BYTES = 1 << 16
 """Of a text file, read to tell its encoding."""
 _BRACKETED = re.compile(r"^(?P<name>.*\S)\s*[\[(](?P<unit>[^\[\]()]*(?:\([^()]*\))?)[\])]$")
-# Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
-_DATE = re.compile(r"^\s*(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})")
-_ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
-_DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
-_PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
 _DECIMAL_COMMA = re.compile(r"^[+-]?\d+,\d+([eE][+-]?\d+)?$")
 
 
@@ -149,13 +145,12 @@ def _table(lines: list[str], above: int = 0) -> ReadTable:
         body = body[1:]
     first_line = start + len(rows) - len(body) + 1 + above
     _refuse_further_cells(names, body, delimiter, first_line)
+    names, body = with_one_stamp(names, body)
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
     if bare and _climbs_evenly(columns[0]):
         names[0] = ""  # a count or a time, as an index without a name is
     known = _known(comments)
-    if "start_utc" not in known and any(
-        _ZONED.search(cell) for cell in (body[0] if body else ()) if _DATE.match(cell)
-    ):
+    if "start_utc" not in known and any(has_zone(cell) for cell in (body[0] if body else ())):
         known["zone_said"] = True
     return table_from_columns(names, columns, units, **known)
 
@@ -295,7 +290,7 @@ def _is_value(cell: str, delimiter: str) -> bool:
     try:
         return not isnan(float(_with_point(cell, delimiter)))
     except ValueError:
-        return bool(_DATE.match(cell))
+        return is_stamp(cell)
 
 
 def _names_and_units(row: list[str]) -> tuple[list[str], dict[str, str]]:
@@ -345,8 +340,8 @@ def _column(i: int, name: str, rows: list[list[str]], delimiter: str, line: int)
     cells = [row[i] if i < len(row) else "" for row in rows]
     with suppress(ValueError):  # all at once; what is not so plain is read cell by cell
         return np.array(cells if delimiter == "," else [cell.replace(",", ".") for cell in cells], np.float64)
-    if cells and _DATE.match(cells[0]):
-        return _stamps(cells, line)
+    if cells and is_stamp(cells[0]):
+        return stamps(cells, line)
     known = [cell for cell in cells if cell.strip().lower() not in MISSING]
     if known and not any(_is_value(cell.strip(), delimiter) for cell in known):
         return np.array(cells)  # words: not a signal
@@ -371,23 +366,3 @@ def _number(cell: str, delimiter: str, name: str, line: int) -> float:
             allowed="a number or an empty cell",
             remedy="mend the cell; write times as 2025-01-01T13:00:00Z",
         ) from None
-
-
-def _stamps(cells: list[str], line: int) -> npt.NDArray[np.datetime64]:
-    """Return times; those of one plain form, without a zone or in UTC, all at once."""
-    texts = [_iso(cell) for cell in cells]
-    if all(map(_PLAIN_STAMP.fullmatch, texts)):
-        with suppress(ValueError):  # a 31st of June: the slow way names its line
-            return np.array([text.rstrip("Zz").replace(",", ".") for text in texts], "datetime64[ns]")
-    return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
-
-
-def _iso(cell: str) -> str:
-    return _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
-
-
-def _stamp(cell: str, line: int) -> np.datetime64:
-    try:
-        return np.datetime64(parse_time(_iso(cell)).replace(tzinfo=None), "ns")
-    except InputError as error:
-        raise error.at(field=f"line {line}") from None

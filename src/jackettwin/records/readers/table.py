@@ -75,8 +75,8 @@ def table_from_columns(
     """Return a table of equally long columns.
 
     The first column is the time if its name says so, or if it has no name and does not just count
-    rows; a column of datetimes is the time wherever it stands. Columns without numbers are left out
-    and named in a remark.
+    rows; a column of datetimes or of times of day is the time wherever it stands. Columns without
+    numbers are left out and named in a remark.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def table_from_columns(
 
 
 def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> int | None:
-    dated = [i for i, column in enumerate(columns) if column.dtype.kind == "M"]
+    dated = [i for i, column in enumerate(columns) if column.dtype.kind in "Mm"]
     if dated:
         return dated[0]
     if not names:
@@ -146,8 +146,10 @@ def time_unit(name: str) -> str | None:
 def seconds(stamps: npt.NDArray[Any], unit: str | None = None) -> tuple[FloatArray, datetime | None]:
     """Return stamps as seconds, and the UTC time of the first if they are absolute.
 
-    Datetimes are absolute; so are numbers that read as Unix seconds between 2001 and 2100.
+    Datetimes are absolute, times of day are not; numbers that read as Unix seconds between 2001 and 2100 are.
     """
+    if np.issubdtype(stamps.dtype, np.timedelta64):
+        return stamps / np.timedelta64(1, "s"), None
     if np.issubdtype(stamps.dtype, np.datetime64):
         first = stamps[0] if len(stamps) else np.datetime64("NaT")
         if np.isnat(first):

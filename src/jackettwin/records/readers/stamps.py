@@ -1,0 +1,103 @@
+"""Times as loggers write them: a date with a time, in one column or two, or a time of day alone."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.records.readers.description import parse_time
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy.typing as npt
+
+# Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
+_DAY = r"(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})"
+_CLOCK = r"\d\d?:\d\d:\d\d(?:[.,]\d{1,9})?"
+_DATE = re.compile(rf"\s*{_DAY}")
+_DATE_ALONE = re.compile(rf"\s*{_DAY}\s*")
+_CLOCK_ALONE = re.compile(rf"\s*{_CLOCK}\s*")
+_CLOCK_OF_A_DATE = re.compile(rf"\s*{_CLOCK}\s*(?:Z|[+-]\d\d:?\d\d)?\s*", re.IGNORECASE)
+_ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
+_DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
+_PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
+_DAY_S = 86_400.0
+
+
+def is_stamp(cell: str) -> bool:
+    """Tell whether a cell begins with a date, or is a time of day.
+
+    >>> [is_stamp(text) for text in ("2025-03-17T01:00:00Z", "17.03.2025", "1:00:00,04", "1:2", "0.5")]
+    [True, True, True, False, False]
+    """
+    return bool(_DATE.match(cell) or _CLOCK_ALONE.fullmatch(cell))
+
+
+def has_zone(cell: str) -> bool:
+    """Tell whether a cell is a time that says its zone."""
+    return bool(_DATE.match(cell) and _ZONED.search(cell) and not _DATE_ALONE.fullmatch(cell))
+
+
+def with_one_stamp(names: list[str], rows: list[list[str]]) -> tuple[list[str], list[list[str]]]:
+    """Return a table in which a date and the time of day in the column behind it are one column."""
+    first = rows[0] if rows else []
+    for i in range(min(len(first), len(names)) - 1):
+        if _DATE_ALONE.fullmatch(first[i]) and _CLOCK_OF_A_DATE.fullmatch(first[i + 1]):
+            joined = [[*row[:i], _joined(*row[i : i + 2]), *row[i + 2 :]] for row in rows]
+            return [*names[: i + 1], *names[i + 2 :]], joined
+    return names, rows
+
+
+def _joined(day: str = "", clock: str = "") -> str:
+    clock = clock.strip()
+    return f"{day.strip()} {'0' if clock[1:2] == ':' else ''}{clock}"
+
+
+def stamps(cells: Sequence[str], line: int) -> npt.NDArray[Any]:
+    """Return times, or seconds since midnight where there is no date; ``line`` is that of the first cell.
+
+    Raises
+    ------
+    InputError
+        Names the line of a cell that is no time.
+    """
+    if _CLOCK_ALONE.fullmatch(cells[0]):
+        return _of_day(cells, line)
+    texts = [_iso(cell) for cell in cells]
+    if all(map(_PLAIN_STAMP.fullmatch, texts)):
+        with suppress(ValueError):  # a 31st of June: the slow way names its line
+            return np.array([text.rstrip("Zz").replace(",", ".") for text in texts], "datetime64[ns]")
+    return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+
+
+def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
+    """Return times of day, which go on after midnight."""
+    for k, cell in enumerate(cells):
+        if not _CLOCK_ALONE.fullmatch(cell):
+            raise InputError(
+                "is not a time of day",
+                field=f"line {line + k}",
+                value=cell,
+                allowed="13:00:00.00",
+                remedy="mend the cell",
+            )
+    parts = np.array([cell.replace(",", ".").split(":") for cell in cells], np.float64)
+    seconds = parts @ [3600.0, 60.0, 1.0]
+    nights = np.cumsum(np.diff(seconds, prepend=seconds[0]) < -0.5 * _DAY_S)
+    return np.round(1e9 * (seconds + _DAY_S * nights)).astype("timedelta64[ns]")
+
+
+def _iso(cell: str) -> str:
+    return _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
+
+
+def _stamp(cell: str, line: int) -> np.datetime64:
+    try:
+        return np.datetime64(parse_time(_iso(cell)).replace(tzinfo=None), "ns")
+    except InputError as error:
+        raise error.at(field=f"line {line}") from None
