@@ -136,7 +136,8 @@ def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
         why.append(f"{read.direction_word} by its name")
     sensor = Sensor(channel.name, channel.direction, node, None if node is not None else height)
     lacks = _lacks(sensor, assembly)
-    if read.level == "tower middle" and sensor.height_m is None and (middle := _middle(structure)) is not None:
+    middle = _middle(structure) if read.level == "tower middle" and sensor.height_m is None else None
+    if middle is not None:
         lacks += f": the middle of the tower is at {middle:.0f} m"
     return SensorPlace(sensor, ", ".join(why), lacks)
 
