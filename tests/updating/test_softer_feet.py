@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from tests.response.conftest import monopile_structure
 
 from jackettwin.identification import ModalEstimate
+from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.modal import undamped_modes
 from jackettwin.response.mode_tracking import mass_mac
 from jackettwin.response.sensors import Sensor, observation_matrix
@@ -31,6 +34,20 @@ jacket:
     top: {outer_diameter_m: 4.0, thickness_m: 0.03}}
   rna: {mass_kg: 350000.0, cg_offset_m: [0.0, 0.0, 1.9],
     inertia_about_cg_kg_m2: [2.5e7, 2.5e7, 2.5e7, 0, 0, 0]}
+"""
+
+CROSSING = """
+sea_level_z_m: 43.5
+jacket:
+  lattice: {legs: 3, bays: 4, mud_braces: false, base_width_m: 24.5, top_width_m: 13.0, height_m: 58.0,
+    leg_diameter_m: 1.5, leg_thickness_bottom_m: 0.055, leg_thickness_top_m: 0.04,
+    brace: {outer_diameter_m: 0.8, thickness_m: 0.024}}
+  transition_piece: {top_z_m: 63.0, tube: {outer_diameter_m: 1.6, thickness_m: 0.05},
+    column: {outer_diameter_m: 6.2, thickness_m: 0.07}}
+  tower: {height_m: 84.0, elements: 8, bottom: {outer_diameter_m: 6.2, thickness_m: 0.038},
+    top: {outer_diameter_m: 4.1, thickness_m: 0.026}}
+  rna: {mass_kg: 410000.0, cg_offset_m: [ARM, 0.0, 2.4],
+    inertia_about_cg_kg_m2: [4.4e7, 2.6e7, 2.5e7, 0, 0, 0]}
 """
 
 
@@ -93,6 +110,23 @@ def test_a_second_pair_on_soft_feet_is_paired_by_the_path_and_not_by_pins(
     assert sorted(index for index, _ in found.values()) == [0, 1, 2, 3]
     assert all(subspace_mac > 0.99 for _, subspace_mac in found.values())
     assert sorted(index for index, _ in pinned.values()) == [0, 1]
+
+
+@pytest.mark.parametrize("arm", [0.0, -1.8])
+def test_modes_that_mix_as_they_cross_keep_their_names(arm: float, tmp_path: Path) -> None:
+    """A nacelle beside the axis lets torsion and second side-side mix where softer feet make them cross."""
+    file = tmp_path / "jacket.yaml"
+    file.write_text(CROSSING.replace("ARM", str(arm)))
+    assembly = assemble(read_structure(str(file)), gravity=True)
+    numbered = numbered_modes(assembly, 10)
+    path = softer_feet(assembly, numbered)
+    torsion = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz)).index("torsion_1")
+    soft = next(feet for feet in path if feet.stiffness_n_m < 5e8)
+    order = np.argsort(soft.frequency_hz)
+    kinds = mode_kinds(assembly, soft.shapes[:, order], soft.frequency_hz[order])
+    assert kinds[list(order).index(torsion)] == "torsion"
+    # below second side-side on pins, above it here: they did cross
+    assert torsion == 2 and soft.frequency_hz[torsion] > np.sort(soft.frequency_hz)[3]
 
 
 def test_clamped_feet_have_no_softer_ones() -> None:

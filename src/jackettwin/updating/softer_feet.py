@@ -2,7 +2,9 @@
 
 Modes are numbered on pinned feet. Springs there lower some of them far more than others (the second bending
 pair of a jacket by a third) and change their shapes, so that a measured mode may be near its counterpart
-only once the feet give way. Each mode is followed by shape from one stiffness to the next.
+only once the feet give way. On each stiffness a mode is recognised as a fit recognises it, by its shape on
+pinned feet: followed from one stiffness to the next, two modes that mix as they cross (second bending and
+torsion, where the nacelle's mass sits beside the axis) would swap their names.
 """
 
 from __future__ import annotations
@@ -62,7 +64,7 @@ def softer_feet(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]
         np.geomspace(STIFFEST_N_M, SOFTEST_N_M, int(PER_DECADE * decades) + 1) if on_pins else ()
     ):
         try:
-            found = _on_springs(assembly, float(stiffness), path[-1])
+            found = _on_springs(assembly, float(stiffness), numbered)
         except InputError:  # falls over under its own weight: so soft are no feet
             break
         if not found.frequency_hz[0] >= LOWEST_SHARE * numbered.frequency_hz[0]:
@@ -71,18 +73,14 @@ def softer_feet(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]
     return tuple(path)
 
 
-def _on_springs(assembly: Assembly, stiffness: float, before: Feet) -> Feet:
-    """Return the modes of ``before`` on springs; one that is lost keeps its shape and has no frequency."""
+def _on_springs(assembly: Assembly, stiffness: float, numbered: UndampedModes) -> Feet:
+    """Return the numbered modes on springs; one that is lost has its pinned shape and no frequency."""
     system = build_system(assembly, on_translations(assembly.structure, Prony(k0=stiffness)))
-    modes = undamped_modes(system, len(before.frequency_hz) + EXTRA)
-    order = np.argsort(before.frequency_hz)  # NaN, of modes lost sight of, goes last
-    successor = np.empty_like(order)
-    successor[order] = track_modes(
-        assembly.mass, before.frequency_hz[order], before.shapes[:, order], modes.shapes
-    )
+    modes = undamped_modes(system, len(numbered.frequency_hz) + EXTRA)
+    successor = track_modes(assembly.mass, numbered.frequency_hz, numbered.shapes, modes.shapes)
     lost = successor < 0
     return Feet(
         stiffness,
         np.where(lost, np.nan, modes.frequency_hz[successor]),
-        np.where(lost, before.shapes, modes.shapes[:, successor]),
+        np.where(lost, numbered.shapes, modes.shapes[:, successor]),
     )
