@@ -21,6 +21,7 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("Acc TwrTop FA", X, None, "tower top"),
         ("TowerMid_SS", Y, None, "tower middle"),
         ("Stop_x", X, None, ""),
+        ("a89m_E", X, 89.0, ""),
         ("WTG_TW_ACC_LAT097_FA", X, 97.0, ""),
         ("SG_LAT-003_DEG000", None, -3.0, ""),
         ("tower_bottom_side_side", Y, None, "tower bottom"),

@@ -39,7 +39,8 @@ LAT = "LAT"
 HEIGHTS: tuple[tuple[str, str], ...] = (
     (r"(?<![a-z])lat[\s_]?(?P<m>[+\-]?\d{1,3}(?:[.,]\d+)?)(?!\d)", LAT),
     (
-        r"(?<![a-z0-9.,])(?:h|z|el|elev|level|height)?(?P<m>[+\-]?\d{1,3}(?:[.,p]\d+)?)\s?m(?:sl)?(?![a-z0-9/^²])",
+        r"(?<![a-z0-9.,])(?:h|z|el|elev|level|height|(?:acc|a)(?=\d))?"
+        r"(?P<m>[+\-]?\d{1,3}(?:[.,p]\d+)?)\s?m(?:sl)?(?![a-z0-9/^²])",
         "",
     ),
     (r"(?<![a-z0-9])(?:h|el|elev|height)[\s_]?(?P<m>[+\-]?\d{2,3}(?:[.,p]\d+)?)(?![a-z0-9])", ""),
