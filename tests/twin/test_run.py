@@ -27,6 +27,7 @@ from jackettwin.twin.rotor import RotorDamping
 from jackettwin.twin.sums import ModeSums, of_day, of_estimate
 from jackettwin.twin.truth import true_modes
 from jackettwin.updating import Target, numbered_modes
+from jackettwin.updating.pairing import Held
 
 
 @pytest.fixture(scope="module")
@@ -268,3 +269,35 @@ def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None
     bare = replace(config, update=config.update.model_copy(update={"dashpots": (), "rotor": None}))
     assert any("upper value" in line for line in cautions(bare, found, fitted, ()))
     assert not any("upper value" in line for line in cautions(config, found, fitted, ()))
+
+
+def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinResult) -> None:
+    """What holds of three records is one line; that a doubtful pole is no mode of the model is no news."""
+    sure, doubtful = estimate(0.31, 0.01), replace(estimate(0.52, 0.01), status="doubtful")
+    against = Held(0, 0.18, 0.7, 0.9, "frequency")
+    one = replace(
+        observation({90: sure, 91: doubtful}, None, name="one"),
+        held=(against, against),
+        quality={"findings": [{"subject": "", "text": "the clock does not say its zone"}]},
+    )
+    found = Measured((one, replace(one, name="two")), TwinState("model"))
+    config = read_twin("openfast_pile")
+    lines = cautions(config, found, pile.measured, pile.updates)
+    assert "one, two: the clock does not say its zone" in lines
+    assert [line[:3] for line in lines if "0.310 Hz" in line] == ["one", "two"]
+    assert not any("0.520 Hz" in line for line in lines)
+    # where nothing is paired, every reason helps
+    assert any("0.520 Hz" in line for line in cautions(config, found, (), ()))
+
+
+def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Path) -> None:
+    config = read_twin("openfast_pile")
+    file = tmp_path / "noise.npz"
+    names = [sensor.channel for sensor in config.sensors]
+    noise = np.random.default_rng(3).normal(size=(len(names), 3000))
+    np.savez(file, data=noise, channel_names=names, units=["m/s^2"] * len(names), fs=10.0)
+    with pytest.raises(InputError, match="this is noise, or the record is too short.*connected"):
+        run_twin(replace(config, records=(file,)))
+    stated = config.identification.model_copy(update={"lowest_frequency_hz": 0.1})
+    with pytest.raises(InputError, match="no record shows any mode.*spectra"):
+        run_twin(replace(config, records=(file,), identification=stated))

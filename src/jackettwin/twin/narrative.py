@@ -91,11 +91,8 @@ def cautions(
     if found is not None:
         lines += [f"left out: {one.problem}" for one in found.failed]
         lines += [str(finding) for finding in found.findings]
-        for seen in found.observations:
-            lines += [f"{_place(seen.name, f)}: {f['text']}" for f in seen.quality.get("findings", ())]
-            lines += [f"{seen.name}: {text}" for text in seen.identification.warnings]
-            lines += [f"{seen.name}: {f}" for f in seen.findings if f.code == "sensor_against_model"]
-        lines += [*_strangers(found, labels), *_wind_without_rotor(config, found, measured)]
+        lines += [*_of_records(found), *_strangers(found, labels, every=not updates)]
+        lines += _wind_without_rotor(config, found, measured)
     lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
     for u in updates:
         if u.best.locked_damper:
@@ -111,6 +108,18 @@ def cautions(
             if m.frequency_hz is not None and _misses(config, m, float(f))
         ]
     return tuple(lines)
+
+
+def _of_records(found: Measured) -> list[str]:
+    """Return what was found of the records, each sentence once with all that it holds of."""
+    places: dict[str, list[str]] = {}
+    for seen in found.observations:
+        said = [(_place(seen.name, f), f["text"]) for f in seen.quality.get("findings", ())]
+        said += [(seen.name, text) for text in seen.identification.warnings]
+        said += [(seen.name, str(f)) for f in seen.findings if f.code == "sensor_against_model"]
+        for place, text in said:
+            places.setdefault(text, []).append(place)
+    return [f"{', '.join(dict.fromkeys(where))}: {text}" for text, where in places.items()]
 
 
 def _place(record: str, finding: Mapping[str, Any]) -> str:
@@ -162,12 +171,13 @@ def _dashpots(config: TwinConfig, u: Update) -> list[int]:
     return [i for i, p in enumerate(u.problem.parameters) if p.name in config.update.dashpots]
 
 
-def _strangers(found: Measured, labels: tuple[str, ...]) -> list[str]:
-    """Return a line for every identified mode without a counterpart in the model, with the reason."""
+def _strangers(found: Measured, labels: tuple[str, ...], *, every: bool) -> list[str]:
+    """Return a line for each mode that is ``ok``, or for every one, without a counterpart in the model."""
     reasons = (
         (one.name, unpaired_finding(mode, against, labels))
         for one in found.observations
         for mode, against in zip(one.identification.modes, one.held, strict=False)
+        if every or mode.status == "ok"
     )
     return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
 

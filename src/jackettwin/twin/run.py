@@ -154,7 +154,16 @@ def _recorded(
     except InputError:
         for line in cautions(config, found, (), (), labels)[:_MOST_REASONS]:
             log.warning(line)
-        raise
+        if any(one.identification.modes for one in found.observations):
+            raise
+        raise InputError(
+            "no record shows any mode",
+            file=config.path,
+            field="records",
+            value=[path.name for path in config.records],
+            remedy="look at their spectra (`jackettwin identify RECORD --report PAGE`); see that the sensors "
+            "are connected and finer than the motion, and measure in more wind or for longer",
+        ) from None
 
 
 def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:

@@ -178,10 +178,11 @@ def _band(record: Record, settings: IdentificationSettings) -> tuple[float, floa
         peak = lowest_peak_hz(welch(record.data, record.sample_rate_hz))
         if peak is None:
             raise InputError(
-                "no spectral peak stands out",
+                "no spectral peak stands out: this is noise, or the record is too short",
                 field="lowest_frequency_hz",
                 value=f"a record of {record.duration_s:.0f} s",
-                remedy="state the lowest frequency of interest, or use a longer record",
+                remedy="see that the sensors are connected and finer than the motion, and measure in more "
+                "wind or for longer; to see the spectra all the same, state lowest_frequency_hz",
             )
         low = EDGE_BELOW_PEAK * peak
     limit = 2.0 / SAMPLES_A_CYCLE * nyquist
