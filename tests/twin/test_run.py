@@ -14,6 +14,7 @@ from jackettwin.errors import InputError
 from jackettwin.files.json import null_for_nan
 from jackettwin.identification import ModalEstimate
 from jackettwin.progress import Told
+from jackettwin.records import read_record, write_record
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.twin import TwinResult, TwinState, count_steps, read_twin, run_document, run_twin
 from jackettwin.twin.assembled import assembled
@@ -292,10 +293,10 @@ def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinRe
 
 def test_records_of_noise_are_told_from_those_of_another_structure(tmp_path: Path) -> None:
     config = read_twin("openfast_pile")
-    file = tmp_path / "noise.npz"
-    names = [sensor.channel for sensor in config.sensors]
-    noise = np.random.default_rng(3).normal(size=(len(names), 3000))
-    np.savez(file, data=noise, channel_names=names, units=["m/s^2"] * len(names), fs=10.0)
+    file = tmp_path / "noise.parquet"
+    whole = read_record(config.records[0])
+    noise = np.random.default_rng(3).normal(size=(len(whole.channels), 30_000))
+    write_record(replace(whole, data=noise, name="noise"), file)
     with pytest.raises(InputError, match="this is noise, or the record is too short.*connected"):
         run_twin(replace(config, records=(file,)))
     stated = config.identification.model_copy(update={"lowest_frequency_hz": 0.1})
