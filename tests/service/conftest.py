@@ -65,6 +65,12 @@ class Here:
         except Exception as error:
             return Done(error=error)
 
+    def result(self, future: Any, limit_s: float) -> Any:
+        return future.result()
+
+    def has_begun(self, future: Any, ago_s: float = 0.0) -> bool:
+        return ago_s == 0.0
+
     def end(self, future: Any) -> None:
         self.restarts += 1
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sqlalchemy import select
 from tests.service.conftest import description, hour, make_service, record_file, turn
 
-from jackettwin.service import consequences, uploads
+from jackettwin.service import consequences, dispatch, uploads
 from jackettwin.service.context import Service
 from jackettwin.service.dispatch import Dispatcher
 from jackettwin.store import assets, reading, results, tables, work, writing
@@ -126,12 +126,11 @@ def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(service: S
         assert len(connection.execute(select(tables.modes)).all()) == 2
 
 
+def poison(task: object) -> None:
+    raise RuntimeError("segmentation fault, as it were")
+
+
 def test_a_record_whose_worker_dies_is_tried_three_times_and_set_aside(service: Service, monkeypatch) -> None:
-    from jackettwin.service import dispatch
-
-    def poison(task: object) -> None:
-        raise RuntimeError("segmentation fault, as it were")
-
     monkeypatch.setattr(dispatch, "observe_stored", poison)
     send(service, 0)
     turn(service, 12)
@@ -140,6 +139,20 @@ def test_a_record_whose_worker_dies_is_tried_three_times_and_set_aside(service: 
         status = connection.scalar(select(tables.records.c.status))
     assert (job.state, job.tries, status) == ("set_aside", work.MOST_TRIES, "set_aside")
     monkeypatch.undo()
+
+
+def test_a_record_that_waited_at_a_worker_that_died_was_not_tried(service: Service, monkeypatch) -> None:
+    """Dask gives back whatever a worker held when it died of something else."""
+    send(service, 0)
+    with monkeypatch.context() as patch:
+        patch.setattr(dispatch, "observe_stored", poison)
+        patch.setattr(service.compute, "has_begun", lambda *_: False)
+        turn(service, 12)
+    with reading(service.database) as connection:
+        assert work.list_jobs(connection)[0].tries <= 1
+    turn(service, 12)
+    with reading(service.database) as connection:
+        assert {job.state for job in work.list_jobs(connection)} == {"done"}
 
 
 def test_states_are_made_again_from_stored_observations(service: Service) -> None:

@@ -35,7 +35,11 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(folder: Path) -> None:
+def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which cause it is, is judged elsewhere, at the price of a thousand eigenvalue problems."""
+    monkeypatch.setattr("jackettwin.twin.judge._causes", lambda *_: None)
     kept, findings = watched(folder, days(95, -0.008), None)
     assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
     assert findings[1]["day"] > "2025-03-16"

@@ -1,12 +1,16 @@
 """Workers.
 
 A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are told apart from wrong input.
+A task's time counts from when a worker begins with it: neither waiting for a worker nor its start count.
 """
 
 from __future__ import annotations
 
 import logging
 import os
+import secrets
+import signal
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Lock
@@ -17,6 +21,7 @@ from distributed import Client, Future, LocalCluster
 from distributed.core import Status
 
 from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.tasks import NoWorker, begun
 
 log = logging.getLogger(__name__)
 
@@ -24,6 +29,11 @@ _NICE = 5
 """Of workers of our own: readers are answered first, records are observed with what is left of the cores.
 
 Stated absolutely, since Dask runs it twice."""
+_START = (
+    f"import os, jackettwin.service.engine, jackettwin.service.tasks\n"
+    f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
+)
+"""What a worker of our own does before it takes a task: a record does not wait for libraries."""
 _DASK = {
     "distributed.worker.memory.target": False,
     "distributed.worker.memory.spill": False,
@@ -35,13 +45,16 @@ _DASK = {
     "distributed.worker.daemon": True,
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.log-length": 100,
-    "distributed.worker.preload": [f"import os; os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"],
+    "distributed.worker.preload": [_START],
 }
 """A worker over its memory is ended, not paused.
 
 A task that ended a worker comes back to us at once, and counts a try. Dask's profiler and monitor keep
 what every thread did for an hour, and let workers grow meanwhile: off, and short.
 """
+
+_REMEMBERED = 10_000
+"""Tasks of which it is known that they began: far more than there are at once."""
 
 
 class Compute:
@@ -51,10 +64,11 @@ class Compute:
         dask.config.set(_DASK)
         self._lock = Lock()
         self._wanted = settings.workers
+        self._topic, self._began = f"begun-{secrets.token_hex(8)}", dict[str, float]()
         self._cluster: LocalCluster | None = None
         if settings.scheduler is None:
             self._cluster = LocalCluster(
-                n_workers=settings.workers,
+                n_workers=0,  # they come while the server answers already
                 threads_per_worker=1,
                 processes=True,
                 memory_limit=settings.worker_memory_bytes,
@@ -62,7 +76,9 @@ class Compute:
                 host="127.0.0.1",
                 silence_logs=logging.ERROR,
             )
+            self._cluster.scale(settings.workers)
         self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
+        self.client.subscribe_topic(self._topic, self._note)
         self.restarts = 0
 
     @property
@@ -86,16 +102,56 @@ class Compute:
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
         """Start a task; urgent ones overtake."""
-        return self.client.submit(task, *args, pure=False, priority=priority, retries=0)
+        return self.client.submit(begun, self._topic, task, *args, pure=False, priority=priority, retries=0)
+
+    def _note(self, event: tuple[float, str]) -> None:
+        self._began[event[1]] = time.monotonic()
+        while len(self._began) > _REMEMBERED:
+            del self._began[next(iter(self._began))]
+
+    def has_begun(self, future: Future, ago_s: float = 0.0) -> bool:
+        """Tell whether a worker began with a task, and so long ago."""
+        began = self._began.get(future.key)
+        return began is not None and time.monotonic() - began >= ago_s
+
+    def result(self, future: Future, limit_s: float) -> Any:
+        """Return the result of a task that may take so long once it has begun, or end it.
+
+        Raises
+        ------
+        NoWorker
+            If no worker came to it within the same time.
+        TimeoutError
+            If it takes longer.
+        """
+        left = limit_s
+        while True:
+            try:
+                return future.result(timeout=left)
+            except TimeoutError:
+                if future.done():  # it is the task's own
+                    raise
+                began = self._began.get(future.key)
+                if began is None:
+                    future.cancel()
+                    raise NoWorker from None
+                left = began + limit_s - time.monotonic()
+                if left <= 0.0:
+                    self.end(future)
+                    raise
 
     def end(self, future: Future) -> None:
         """Give a task up that takes too long: its worker is started anew, with whatever it holds."""
         with self._lock, suppress(Exception):
             busy = [address for address, keys in self.client.processing().items() if future.key in keys]
             future.cancel()
-            if busy:
-                self.restarts += 1
+            self.restarts += len(busy)
+            if self._cluster is None:
                 self.client.restart_workers(busy, timeout=30, raise_for_error=False)
+            else:  # a nanny starts a worker anew that died, sooner than one that it must end itself
+                for nanny in self._cluster.workers.values():
+                    if nanny.worker_address in busy:
+                        os.kill(nanny.pid, signal.SIGKILL)
 
     def close(self) -> None:
         """Stop; what runs is dropped and will be leased again."""

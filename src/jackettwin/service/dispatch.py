@@ -6,11 +6,13 @@ Leases work, has it done, keeps results with their consequences, takes over from
 from __future__ import annotations
 
 import logging
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event, Thread
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
@@ -96,7 +98,7 @@ class Dispatcher(Thread):
             chore.turn()
 
     def _beat(self) -> None:
-        """Count our beat up, bury those whose beat stands still, come back if we were buried ourselves."""
+        """Count our beat up, bury who is dead, come back if we were buried ourselves."""
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
@@ -104,21 +106,22 @@ class Dispatcher(Thread):
         me, now = self.service.server_id, self.service.now()
         with writing(self.service.database) as connection:
             if not work.beat(connection, me):
-                work.join(connection, me, self.service.about(), now)
-            seen = {}
-            for server, count in work.beats(connection).items():
-                before = self._seen.get(server)
-                if before is None or before[0] != count:
-                    seen[server] = (count, time.monotonic())
-                elif server != me and time.monotonic() - before[1] > DEAD_AFTER_S:
-                    freed = work.bury(connection, server, count)
-                    log.warning(
-                        "server %s is dead, %d pieces of work go back to the queue", server, len(freed)
-                    )
-                else:
-                    seen[server] = before
-            self._seen = seen
+                work.join(connection, me, {**self.service.about(), "machine": _MACHINE}, now)
+            beats = work.beats(connection)
+            for server in [name for name in beats if name != me and self._dead(name, *beats[name])]:
+                freed = work.bury(connection, server, beats[server][0])
+                log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
             work.take_back_orphans(connection)
+
+    def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
+        """Tell whether a server's process is gone from this machine, or its beat stands still."""
+        if _MACHINE and about.get("machine") == _MACHINE and not _runs(about["pid"]):
+            return True
+        known, since = self._seen.get(server, (None, 0.0))
+        if known != count:
+            self._seen[server] = (count, time.monotonic())
+            return False
+        return time.monotonic() - since > DEAD_AFTER_S
 
     def _lease(self) -> None:
         free = _AHEAD * max(self.service.compute.workers, 1) - len(self._running)
@@ -168,21 +171,45 @@ class Dispatcher(Thread):
                 asked = running.job.kind == work.KNOW
                 keep = consequences.keep_known if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
-        else:
-            reason = _reason(running.future)
-            with writing(self.service.database) as connection:
+            return
+        reason, tried = _reason(running.future), self.service.compute.has_begun(running.future)
+        with writing(self.service.database) as connection:
+            if tried:
                 consequences.failed(connection, self.service, running.job, reason)
+            else:  # it waited at a worker that died of another task
+                work.release(connection, running.job, self.service.server_id)
 
     def _end_overrun(self) -> None:
         limit = self.service.settings.observe_limit_s
         for running in list(self._running.values()):
-            started = time.monotonic() - running.since
-            if started > limit * _AHEAD and not running.future.done():
+            if self.service.compute.has_begun(running.future, limit) and not running.future.done():
                 reason = f"took longer than {limit:g} s"
                 self.service.compute.end(running.future)
                 with writing(self.service.database) as connection:
                     consequences.failed(connection, self.service, running.job, reason)
                 del self._running[running.job.id]
+
+
+def _runs(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass  # of another user
+    return True
+
+
+def _machine() -> str:
+    """Return what two servers share if the number of a process means the same to both; empty if unknown."""
+    try:
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
+        return f"{boot} {os.readlink('/proc/self/ns/pid')}"
+    except OSError:
+        return ""
+
+
+_MACHINE = _machine()
 
 
 def _reason(future: Future) -> str:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 from typing import Any
 
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
+from jackettwin.service.tasks import NoWorker
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -76,6 +78,11 @@ def no_database() -> ApiError:
     return ApiError(503, "the database does not answer; try again soon", headers={"Retry-After": "5"})
 
 
+def disk_full() -> ApiError:
+    """Return the answer where nothing more can be written."""
+    return ApiError(507, "the disk of the store is full", remedy="make room, or prune old samples")
+
+
 def as_problem(error: InputError, status: int = 422) -> ProblemDocument:
     """Return an error of the user's input as a problem document; paths of ours are left out."""
     return ProblemDocument(
@@ -107,6 +114,9 @@ def register(app: FastAPI) -> None:
     app.add_exception_handler(StarletteHTTPException, _http_error)
     app.add_exception_handler(RequestValidationError, _invalid_request)
     app.add_exception_handler(OperationalError, _database_away)
+    app.add_exception_handler(DataError, _not_kept)
+    app.add_exception_handler(NoWorker, _no_worker)
+    app.add_exception_handler(OSError, _disk_full)
 
 
 def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> JSONResponse:
@@ -133,6 +143,22 @@ async def _database_away(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, OperationalError)
     away = no_database()
     return _answer(away.problem, away.headers)
+
+
+async def _not_kept(_: Request, error: Exception) -> JSONResponse:
+    """Answer what PostgreSQL cannot keep, such as text with a NUL."""
+    return answered(ApiError(422, "a text holds characters that cannot be kept"))
+
+
+async def _no_worker(_: Request, error: Exception) -> JSONResponse:
+    busy = "every worker is busy; nothing was kept, send it again"
+    return answered(ApiError(503, busy, headers={"Retry-After": "30"}))
+
+
+async def _disk_full(_: Request, error: Exception) -> JSONResponse:
+    if not isinstance(error, OSError) or error.errno != errno.ENOSPC:
+        raise error
+    return answered(disk_full())
 
 
 async def _http_error(_: Request, error: Exception) -> JSONResponse:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from pathlib import Path
 from threading import Event, Thread
 
 import uvicorn
+from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.app import create_app
 from jackettwin.service.chores import Housekeeping
@@ -19,12 +21,15 @@ from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.intake.mqtt import MqttIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
+from jackettwin.service.tasks import NoWorker
 from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)
 
 INBOX = "inbox"
 """Folder of the store whose folders, named like assets, take records."""
+REFUSED = ".refused.json"
+"""What is added to the name of a file that could not be read, for the file that says why."""
 
 
 @contextmanager
@@ -94,22 +99,30 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
     folder = service.settings.store / INBOX
     folder.mkdir(exist_ok=True)
 
-    def take(path: Path) -> Accepted:
-        return take_from_inbox(service, folder, path)
+    def take(path: Path) -> Accepted | None:
+        try:
+            return take_from_inbox(service, folder, path)
+        except (SQLAlchemyError, OSError, NoWorker) as error:
+            log.warning("%s waits in the inbox: %s", path.name, str(error).partition("\n")[0] or "no worker")
+            return None
 
     watch_folders([folder], take, stop)
 
 
 def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted:
     """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it."""
-    asset = path.relative_to(inbox).parts[0]
+    asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:
         known = asset in assets.asset_names(connection)
-    if not known:
-        return Accepted("", None, False, {"detail": f"there is no asset {asset}"})
-    taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
+    if known:
+        taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
+    else:
+        taken = Accepted("", None, False, {"detail": f"there is no asset {asset}", "field": "folder"})
     if taken.problem is None:
-        path.unlink(missing_ok=True)
-        path.with_suffix(".json").unlink(missing_ok=True)
+        for file in (path, path.with_suffix(".json"), reason):
+            file.unlink(missing_ok=True)
         service.wake()
+    else:
+        log.warning("%s stays in the inbox: %s", path.name, taken.problem["detail"])
+        reason.write_text(json.dumps(taken.problem, indent=1))
     return taken

@@ -13,7 +13,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import conditions, engine
 from jackettwin.service.consequences import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
-from jackettwin.service.problems import ApiError
+from jackettwin.service.problems import ApiError, disk_full
 from jackettwin.service.routes.common import known_asset
 from jackettwin.service.schemas import PicksIn, Taken
 from jackettwin.service.tasks import read_conditions
@@ -38,7 +38,7 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
     if description is not None:
         _check(description)
     if service.free_bytes() < _ROOM_BYTES:
-        raise ApiError(507, "the disk of the store is full", remedy="make room, or prune old samples")
+        raise disk_full()
     path = spooled(
         service.settings.spool,
         name,
@@ -77,9 +77,10 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     )
     try:
         asked = partial(read_conditions, zone=zone, end_stamped=end_stamped)
-        values = service.compute.submit(asked, str(path), priority=100).result(
-            timeout=service.settings.parse_limit_s
-        )
+        future = service.compute.submit(asked, str(path), priority=100)
+        values = service.compute.result(future, service.settings.parse_limit_s)
+    except TimeoutError:
+        raise ApiError(422, "the table could not be read in time", field="file") from None
     finally:
         discard(path)
     if isinstance(values, InputError):
@@ -99,9 +100,8 @@ def stabilisation(connection: Connection, service: Service, record: records.Stor
     waveform = str(service.settings.store / record.waveform)
     future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
     try:
-        found: dict[str, Any] = future.result(timeout=service.settings.observe_limit_s)
+        found: dict[str, Any] = service.compute.result(future, service.settings.observe_limit_s)
     except TimeoutError:
-        service.compute.end(future)
         raise ApiError(503, "the identification takes too long") from None
     return found
 

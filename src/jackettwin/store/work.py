@@ -220,9 +220,10 @@ def beat(connection: Connection, server: str) -> bool:
     return counted.rowcount == 1
 
 
-def beats(connection: Connection) -> dict[str, int]:
-    """Return the beat of every server."""
-    return {server: count for server, count in connection.execute(select(servers.c.id, servers.c.beat))}
+def beats(connection: Connection) -> dict[str, tuple[int, dict[str, Any]]]:
+    """Return the beat of every server, and what it says of itself."""
+    rows = connection.execute(select(servers.c.id, servers.c.beat, servers.c.about))
+    return {server: (count, about) for server, count, about in rows}
 
 
 def bury(connection: Connection, server: str, at_beat: int | None = None) -> Sequence[int]:

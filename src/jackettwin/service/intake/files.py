@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import secrets
 import shutil
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.tasks import LOST_WORKER, Parsed, read_file
+from jackettwin.service.tasks import LOST_WORKER, NoWorker, Parsed, read_file
 from jackettwin.store import assets, journal, records, work, writing
 from jackettwin.version import __version__
 
@@ -69,7 +70,8 @@ def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
     """Return the reader that uses the server's workers.
 
     One that takes too long is ended. A worker that dies may have been killed: the file is read again, as
-    often as a record is tried.
+    often as a record is tried. That there is no worker, or no room on the disk, is not the file's fault: that
+    is raised (``NoWorker``, ``OSError``), and the file can be sent again.
     """
     settings = service.settings
 
@@ -80,12 +82,15 @@ def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
                 read_file, str(path), asset, str(settings.store), *limits, priority=100
             )
             try:
-                found: Parsed = future.result(timeout=settings.parse_limit_s)
+                found: Parsed = service.compute.result(future, settings.parse_limit_s)
                 return found
+            except NoWorker:
+                raise
             except TimeoutError:
-                service.compute.end(future)
                 return Parsed("", problem={"detail": "the file could not be read in time", "field": "file"})
             except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
+                if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+                    raise
                 name = type(error).__name__
                 if name not in LOST_WORKER:
                     break

@@ -29,9 +29,9 @@ def record_files(paths: Iterable[Path]) -> list[Path]:
 
 
 def watch_folders(
-    paths: Iterable[Path], take: Callable[[Path], Accepted], stop: Callable[[], bool] = lambda: False
+    paths: Iterable[Path], take: Callable[[Path], Accepted | None], stop: Callable[[], bool] = lambda: False
 ) -> None:
-    """Take what stands in folders and what appears, until told to stop.
+    """Take what stands in folders and what appears, until told to stop; what ``take`` returns None of, later.
 
     ``watchfiles`` says that something happened; what is there is looked at each time, so that no event is
     needed twice and none can be lost.
@@ -51,9 +51,10 @@ def watch_folders(
                 waiting[file] = (mark, time.monotonic())
             elif time.monotonic() - since >= STILL_S:
                 took = take(file)
-                log.info("%s: %s", file.name, took.problem["detail"] if took.problem else took.record_id)
-                seen[file] = mark
                 del waiting[file]
+                if took is not None:
+                    seen[file] = mark
+                    log.info("%s: %s", file.name, took.problem["detail"] if took.problem else took.record_id)
 
 
 def _left_out(file: Path, *, given: bool) -> bool:

@@ -1,0 +1,82 @@
+"""Files that somebody drops into the inbox of a store."""
+
+from __future__ import annotations
+
+import errno
+import json
+from pathlib import Path
+
+import pytest
+from tests.service.conftest import Done, description, record_file
+
+from jackettwin.service.context import Service
+from jackettwin.service.intake import folder
+from jackettwin.service.intake.files import Accepted
+from jackettwin.service.intake.folder import watch_folders
+from jackettwin.service.server import take_from_inbox
+from jackettwin.service.tasks import NoWorker
+from jackettwin.store import reading
+from jackettwin.store.records import find_record
+
+
+def dropped(service: Service, content: bytes, asset: str = "wtg") -> Path:
+    path = service.settings.store / "inbox" / asset / "r1.parquet"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+    path.with_suffix(".json").write_text(description())
+    return path
+
+
+def taken(service: Service, path: Path) -> Accepted:
+    return take_from_inbox(service, service.settings.store / "inbox", path)
+
+
+def test_a_file_becomes_a_record_and_leaves_the_inbox(service: Service) -> None:
+    path = dropped(service, record_file(1))
+    found = taken(service, path)
+    with reading(service.database) as connection:
+        assert find_record(connection, "wtg", found.record_id) is not None
+    assert list(path.parent.iterdir()) == []
+
+
+def test_what_cannot_be_read_stays_with_the_reason_beside_it_until_it_can(service: Service) -> None:
+    path = dropped(service, b"nothing that is read")
+    assert taken(service, path).problem is not None
+    reason = path.with_name("r1.parquet.refused.json")
+    assert {"detail", "field"} <= set(json.loads(reason.read_text()))
+    path.write_bytes(record_file(1))
+    assert taken(service, path).problem is None
+    assert list(path.parent.iterdir()) == []
+
+
+def test_a_folder_of_no_asset_is_said(service: Service) -> None:
+    path = dropped(service, record_file(1), asset="wgt")
+    assert "no asset wgt" in taken(service, path).problem["detail"]  # type: ignore[index]
+    assert path.exists() and path.with_name("r1.parquet.refused.json").exists()
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), NoWorker()])
+def test_a_full_disk_or_no_worker_is_not_the_files_fault(
+    service: Service, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    path = dropped(service, record_file(1))
+    monkeypatch.setattr(service.compute, "submit", lambda *_, **__: Done(error=error))
+    with pytest.raises(type(error)):
+        taken(service, path)
+    assert not path.with_name("r1.parquet.refused.json").exists()
+    monkeypatch.undo()
+
+
+def test_what_could_not_be_taken_now_is_taken_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As while the database is away: the watcher lives on and comes back to the file."""
+    monkeypatch.setattr(folder, "STILL_S", 0.0)
+    (tmp_path / "r1.parquet").write_bytes(b"x")
+    tried: list[Path] = []
+
+    def take(path: Path) -> Accepted | None:
+        tried.append(path)
+        return None if len(tried) == 1 else Accepted("1", 1, True)
+
+    turns = iter(range(6))
+    watch_folders([tmp_path], take, lambda: next(turns) == 5)
+    assert len(tried) == 2
