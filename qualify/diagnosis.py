@@ -50,8 +50,11 @@ LEAST = 25.0
 CONFIDENT = 0.9
 
 
-def jackets(where: Path) -> dict[str, Structure]:
-    """Return the reference jacket, and one of three legs, smaller, for another turbine."""
+def jackets(where: Path) -> dict[str, tuple[Structure, str]]:
+    """Return the reference jacket, one of three legs, smaller, for another turbine, and the OC4 jacket.
+
+    With each its name or file. Nothing of the watch was made with the OC4 jacket at hand.
+    """
     text = (files("jackettwin") / "data" / "structures" / "jacket15.yaml").read_text()
     changes = {
         "name: jacket15": "name: three_legs", "legs: 4": "legs: 3", "bays: 4": "bays: 3",
@@ -66,7 +69,11 @@ def jackets(where: Path) -> dict[str, Structure]:
         text = text.replace(old, new)
     path = where / "three_legs.yaml"
     path.write_text(text)
-    return {"four legs, 15 MW": read_structure("jacket15"), "three legs, smaller": read_structure(str(path))}
+    sources = {
+        "four legs, 15 MW": "jacket15", "three legs, smaller": str(path),
+        "OC4": str(Path(__file__).parent / "decks/oc4_jacket.dat"),
+    }  # fmt: skip
+    return {jacket: (read_structure(source), source) for jacket, source in sources.items()}
 
 
 def truth(structure: Structure, rng: np.random.Generator) -> Standing:
@@ -238,7 +245,7 @@ def _share(right: list[bool]) -> str:
 def main() -> None:
     draws = int(sys.argv[1]) if len(sys.argv) > 1 else 6
     with tempfile.TemporaryDirectory() as name:
-        found = [c for jacket, s in jackets(Path(name)).items() for c in cases(jacket, s, draws)]
+        found = [c for jacket, (s, _) in jackets(Path(name)).items() for c in cases(jacket, s, draws)]
     write_page("diagnosis", page(found, DRAWN, number=draws))
 
 

@@ -122,12 +122,11 @@ class Pieces:
         return [self.known[f"{at.key}/{seed}"] for seed in range(1, number + 1)]
 
 
-def make(pieces: Pieces, number: int, where: Path, stand: dict[str, Structure]) -> None:
+def make(pieces: Pieces, number: int, where: Path, stand: dict[str, tuple[Structure, str]]) -> None:
     """Make the records of all states, so many of each at a time that what is there covers all of them."""
-    sources = dict(zip(stand, ("jacket15", str(where / "three_legs.yaml")), strict=True))
-    benches = {jacket: bench(s, sources[jacket], where) for jacket, s in stand.items()}
+    benches = {jacket: bench(structure, source, where) for jacket, (structure, source) in stand.items()}
     for first in range(1, number + 1, BLOCK):
-        for jacket, structure in stand.items():
+        for jacket, (structure, _) in stand.items():
             for at in states(jacket, structure):
                 pieces.made(at, benches[jacket], range(first, min(first + BLOCK, number + 1)))
 
@@ -187,7 +186,7 @@ def main() -> None:
         stand = jackets(Path(name))
         pieces = Pieces(folder)
         make(pieces, number, Path(name), stand)
-    found = [c for jacket, structure in stand.items() for c in chained(pieces, jacket, structure, number)]
+    found = [c for jacket, (structure, _) in stand.items() for c in chained(pieces, jacket, structure, number)]
     write_page("diagnosis_chain", page(found, CHAINED, number=number))
 
 

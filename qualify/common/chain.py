@@ -48,6 +48,7 @@ class Bench:
 def bench(structure: Structure, source: str, where: Path) -> Bench:
     """Return scenario and model of a jacket; ``source`` is its name or file."""
     sea = structure.sea_level_z_m
+    depth = sea - min(structure.nodes[foot][2] for foot in structure.reaction_nodes)
     top = structure.nodes[structure.top_node][2] - sea
     axes = {"x": [1, 0, 0], "y": [0, 1, 0]}
     sensors: list[dict[str, Any]] = [
@@ -65,7 +66,7 @@ def bench(structure: Structure, source: str, where: Path) -> Bench:
             "structure": source, "gravity": True, "support": "kelvin-voigt:k=2.5e9,c=1e7",
             "damping": {"rayleigh": {"ratio": 0.0055, "frequency_hz": 0.183}},
             "wind": {"speed_m_s": 10, "turbulence": "B", "seed": 1}, "rotor": {"state": "parked"},
-            "water": {"depth_m": float(sea)},
+            "water": {"depth_m": float(depth)},
             "waves": {"type": "jonswap", "hs_m": 1.5, "tp_s": 7.0, "seed": 1},
             "time": {"duration_s": 600, "step_s": 0.1, "load_step_s": 0.2}, "sensors": sensors,
         },
