@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from common.chain import Bench, Row, bench, identified, late, louder, record, season, watched_labels
 from common.page import write_page
-from diagnosis import SENSORS, TIMES, Case, case, jackets, name_of, page, planted, truth
+from diagnosis import SENSORS, TIMES, Case, calibration, case, jackets, name_of, page, planted, truth
 
 from jackettwin.records import Record
 from jackettwin.structure import Structure, assemble
@@ -37,7 +37,7 @@ NOISE = 1.0
 CHAINED = (
     "# Diagnosis through the whole chain",
     "",
-    "`python qualify/diagnosis_chain.py`: two jackets, feet of their own stiffness.",
+    "`python qualify/diagnosis_chain.py`: three jackets, feet of their own stiffness.",
     "{number} records of ten minutes under waves and wind before and after each of twelve causes at three",
     "sizes, of the same seeds, are simulated, identified and recognised as the twin does it. Their modes",
     "with their stated standard deviations fill the seasons of [watching](watching.md), two rows each time",
@@ -186,8 +186,17 @@ def main() -> None:
         stand = jackets(Path(name))
         pieces = Pieces(folder)
         make(pieces, number, Path(name), stand)
-    found = [c for jacket, (structure, _) in stand.items() for c in chained(pieces, jacket, structure, number)]
-    write_page("diagnosis_chain", page(found, CHAINED, number=number))
+    found = [c for jacket, (one, _) in stand.items() for c in chained(pieces, jacket, one, number)]
+    lines = page(found, CHAINED, shared=True, number=number)
+    lines += ["| jacket | first place right | calibration error | by chance |", "|---|---|---|---|"]
+    for jacket in stand:
+        own = [c for c in found if c[0] == jacket]
+        alone = [c[5] for c in own if not c[6]]
+        error, chance, most = (100 * x for x in calibration(own, shared=True))
+        lines.append(
+            f"| {jacket} | {sum(alone)} of {len(alone)} | {error:.1f} % | {chance:.1f} %; {most:.1f} % |"
+        )
+    write_page("diagnosis_chain", [*lines, ""])
 
 
 if __name__ == "__main__":

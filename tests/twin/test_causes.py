@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.response.modal import UndampedModes
-from jackettwin.structure import read_structure
+from jackettwin.structure import assemble, read_structure
 from jackettwin.twin import causes
 from jackettwin.twin.causes import (
     MODES,
@@ -18,8 +18,9 @@ from jackettwin.twin.causes import (
     model_causes,
     next_measurements,
     seen_causes,
+    standings,
 )
-from jackettwin.twin.changed_structures import braces
+from jackettwin.twin.changed_structures import Standing, braces
 from jackettwin.watching import CauseVerdict, Diagnosis
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
@@ -89,6 +90,20 @@ def test_shapes_are_kept_by_their_part_in_those_of_the_whole() -> None:
     like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2))
     shapes = np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]])
     np.testing.assert_allclose(_kept(like, shapes), [1.0, 0.36, 0.0])
+
+
+def test_a_model_that_misses_frequencies_is_trusted_less() -> None:
+    """Four modes, two fitted numbers: without a rest √(1/3) of the usual 1 %, with one of 3 % far more."""
+    structure = read_structure("jacket15")
+    stiff, assembly = np.full(4, 2.5e9), assemble(structure, gravity=True)
+    typical = Standing(structure, stiff, stiff)
+    named, places = Modes.of(typical, assembly), [0, 1, 2, 3]
+    seen = named.modes.frequency_hz[:4]
+    off = seen * [1.0, 1.0, 1.03, 1.0]  # torsion, which the feet hardly move
+    rng = np.random.default_rng(1)
+    good, bad = (standings(typical, named, places, f, assembly, rng) for f in (seen, off))
+    np.testing.assert_allclose(good[2], 0.01 / np.sqrt(3.0), rtol=1e-6)
+    np.testing.assert_allclose(bad[2], np.sqrt((0.03**2 + 0.01**2) / 3.0), rtol=0.2)
 
 
 def test_labels_that_no_mode_has_are_refused() -> None:

@@ -1,5 +1,7 @@
 """Evidence of a cause whose direction is uncertain, against the densities that it is a ratio of."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.stats import multivariate_normal
 
@@ -20,7 +22,7 @@ def case(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, Cause]:
 def test_the_evidence_is_that_of_a_normal_direction(rng: np.random.Generator) -> None:
     """X = A⁻¹b is N(θJ, A⁻¹ + θ²RRᵀ) if it is the cause, N(0, A⁻¹) if nothing changed."""
     info, score, cause = case(rng)
-    noise, root = np.linalg.inv(info), _misfit(cause.draws, KINDS)
+    noise, root = np.linalg.inv(info), _misfit(cause, KINDS)
     x, J = noise @ score, cause.draws.mean(axis=0)
     expected = [
         multivariate_normal(size * J, noise + size**2 * root @ root.T).logpdf(x)
@@ -41,10 +43,12 @@ def test_a_free_step_is_normal_too(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(_free(info[None], score[None], std), [expected])
 
 
-def test_draws_that_differ_make_the_direction_uncertain_where_they_do() -> None:
+def test_draws_that_differ_make_the_direction_uncertain_where_they_do(rng: np.random.Generator) -> None:
+    cause = case(rng)[2]
     same = np.tile([1.0, 0.5, 1.0], (5, 1))
     turned = same + np.array([0.3, 0.0, -0.3]) * np.array([-1, -0.5, 0, 0.5, 1])[:, None]
-    alone, together = (root @ root.T for root in (_misfit(d, KINDS) for d in (same, turned)))
+    roots = (_misfit(replace(cause, draws=draws), KINDS) for draws in (same, turned))
+    alone, together = (root @ root.T for root in roots)
     assert alone[0, 2] == 0.0 and together[0, 2] < 0.0
     np.testing.assert_allclose((together - alone)[0, 0], 0.3**2 * 2.5 / 4, rtol=0.1)  # misfit grows a little
 

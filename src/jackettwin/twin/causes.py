@@ -34,7 +34,7 @@ from jackettwin.watching import (
     lognormal_sizes,
     sensor_noise,
 )
-from jackettwin.watching.diagnosis import MISFIT
+from jackettwin.watching.causes import MISFIT
 
 MODES = 8
 """Modes of the model that are computed."""
@@ -45,7 +45,11 @@ _FEET_APART = 0.15
 """Standard deviation of ln stiffness from foot to foot: no site is the same at all of them, and in a nearly
 round structure that turns the axes of a pair."""
 _MODEL_ERROR = 0.01
-"""Relative standard deviation by which the model misses frequencies."""
+"""Relative standard deviation by which a model misses frequencies, before its own are compared: worth as much
+as one mode."""
+_MISSES = 5.0
+"""A model that misses frequencies by a share misses the directions of causes by so many times as much:
+docs/verification/directions.md."""
 _LOSS = (0.08, 0.4)
 """Loss factor of the ground: median and spread in ln."""
 _ALIKE = 0.995
@@ -142,7 +146,8 @@ def model_causes(
             allowed=", ".join(named.labels), remedy="label modes as `jackettwin modes` does",
         )  # fmt: skip
     rng = np.random.default_rng((77, seed))
-    stands, fitted = _standings(typical, named, places, frequency_hz, assembly, rng)
+    stands, best, error = standings(typical, named, places, frequency_hz, assembly, rng)
+    fitted = Modes.of(best, assembly, like=named).modes.frequency_hz
     zeta = np.full(MODES, 0.01)
     for place, value in zip(places, damping_ratio, strict=True):
         if place >= 0 and np.isfinite(value):
@@ -165,7 +170,10 @@ def model_causes(
         else:
             sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
             bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
-            found.append((event.family, Cause(event.name, draws, sizes, weights, event.unit, bend=bend)))
+            cause = Cause(
+                event.name, draws, sizes, weights, event.unit, bend=bend, misfit=min(_MISSES * error, MISFIT)
+            )  # fmt: skip
+            found.append((event.family, cause))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
     mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
     return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed)
@@ -259,15 +267,23 @@ def _bend(
     return np.asarray(0.5 * (often - once) * event.median / event.per)
 
 
-def _standings(
+def standings(
     typical: Standing,
     named: Modes,
     places: Sequence[int],
     frequency_hz: FloatArray,
     assembly: Assembly,
     rng: np.random.Generator,
-) -> tuple[list[Standing], FloatArray]:
-    """Return draws of the feet's stiffness that agree with the measured frequencies, and the fitted ones."""
+) -> tuple[list[Standing], Standing, float]:
+    """Return draws of the feet's stiffness that agree with the measured frequencies, and the likeliest.
+
+    The third is by how much the model misses frequencies: what the fit leaves over tells, with one mode's
+    worth of what is usual.
+
+    Parameters
+    ----------
+    places, frequency_hz : of measured modes among the named ones, −1 for none of them
+    """
     known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
 
     def at(x: FloatArray) -> Standing:
@@ -281,17 +297,18 @@ def _standings(
         return np.array([*off, *x])
 
     fit = least_squares(residual, np.zeros(2), diff_step=[1e-3, 1e-3], max_nfev=12, bounds=(-3.0, 3.0))
-    slope: FloatArray = np.asarray(fit.jac)
+    slope, left = np.asarray(fit.jac), fit.fun[: len(known)]
+    error = np.sqrt((left @ left + 1.0) / (max(len(known) - 2, 0) + 1))  # in units of the usual
+    slope[: len(known)] /= error
     covariance = np.linalg.inv(slope.T @ slope)
     points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
-    best = Modes.of(at(fit.x), assembly, like=named)
     drawn = [at(x) for x in points]
     apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
     drawn = [
         replace(s, horizontal=s.horizontal * h, vertical=s.vertical * v)
         for s, (h, v) in zip(drawn, apart, strict=True)
     ]
-    return drawn, best.modes.frequency_hz
+    return drawn, at(fit.x), float(error) * _MODEL_ERROR
 
 
 def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
@@ -447,6 +464,6 @@ def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -
     size_std = (high - low) / 3.29
     spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
     kind = slice(0, MODES) if column < MODES else slice(MODES, None)
-    misfit = MISFIT * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
+    misfit = cause.misfit * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
     mean = cause.steps(np.array([verdict.size]))[0, column]
     return float(mean), float(np.sqrt(spread**2 + noise**2 + misfit**2))

@@ -19,6 +19,8 @@ times as much in ln ζ."""
 _DAMPING_OVER_FREQUENCY = 200.0
 BENT = 4.0
 """Of the median size: up to there the bend of a direction goes on."""
+MISFIT = 0.12
+"""By how much of its length a direction misses in any quantity, if nothing says how good its model is."""
 _SENSOR_PRIOR = 5.0
 """Sensors and their cables fail some times as often as anything in the structure."""
 
@@ -41,6 +43,8 @@ class Cause:
     prior : weight before the data; of all causes they need not add up to one
     bend : (m,) change of the direction from one unit to the next, if a large one is not many small ones: a
         brace that carries less and less, soil under ever longer free piles
+    misfit : a model's direction is not the structure's: share of its length by which it may miss in any
+        quantity
     """
 
     name: str
@@ -51,6 +55,7 @@ class Cause:
     louder: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     prior: float = 1.0
     bend: FloatArray = field(default_factory=lambda: np.zeros(0))
+    misfit: float = MISFIT
 
     def steps(self, sizes: FloatArray) -> FloatArray:
         """Return the mean change of all quantities, (n_sizes, m), bent up to ``BENT`` medians."""

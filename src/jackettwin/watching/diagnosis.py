@@ -25,8 +25,6 @@ from jackettwin.watching.watch import Change
 INSEPARABLE = 2.0
 """Causes that differ by fewer than so many standard deviations of data and model are not told apart."""
 _OTHER_PRIOR = 1.0
-MISFIT = 0.12
-"""A model's direction is not the structure's: it may miss by so much of its length, in any quantity."""
 SHIFTS = (0.1, 0.3, 1.0)
 """What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
 
@@ -106,7 +104,7 @@ def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequen
     .. math:: \ln Λ = θ J^T b - \tfrac12 θ^2 J^T A J + \tfrac12 Σ \frac{θ^2 c_i^2}{1 + θ^2 Λ_i}
               - \tfrac12 Σ \ln (1 + θ^2 Λ_i)
     """
-    size, root, steps = cause.sizes, _misfit(cause.draws, kinds), cause.steps(cause.sizes)
+    size, root, steps = cause.sizes, _misfit(cause, kinds), cause.steps(cause.sizes)
     moved = steps @ info  # (n_begins, n_sizes, m)
     plain = score @ steps.T - 0.5 * np.einsum("tsi,si->ts", moved, steps)
     values, vectors = np.linalg.eigh(root.T @ info @ root)
@@ -116,15 +114,16 @@ def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequen
     return np.asarray(plain + 0.5 * np.sum(square / wide - np.log(wide), axis=-1))
 
 
-def _misfit(draws: FloatArray, kinds: Sequence[str]) -> FloatArray:
+def _misfit(cause: Cause, kinds: Sequence[str]) -> FloatArray:
     """Return R, (m, r), by which a unit of a cause may miss its mean direction: RRᵀ is the covariance.
 
     Draws of the structure's state tell how quantities miss together; what no state explains is independent.
     """
+    draws = cause.draws
     kind, J = np.array(kinds), draws.mean(axis=0)
     alone = np.zeros(len(kind))
     for one in np.unique(kind):
-        alone[kind == one] = MISFIT * np.sqrt(np.mean(draws[:, kind == one] ** 2))
+        alone[kind == one] = cause.misfit * np.sqrt(np.mean(draws[:, kind == one] ** 2))
     return np.concatenate([np.diag(alone), (draws - J).T / np.sqrt(max(len(draws) - 1, 1))], axis=1)
 
 
@@ -196,7 +195,7 @@ def _groups(
     with_size = [c for c in causes if not c.louder.size]
     best = change.info[_best(change)]
     steps = {c.name: c.steps(np.array([verdicts[c.name].size]))[0] for c in with_size}
-    roots = {c.name: verdicts[c.name].size * _misfit(c.draws, kinds) for c in with_size}
+    roots = {c.name: verdicts[c.name].size * _misfit(c, kinds) for c in with_size}
     groups: list[set[str]] = []
     for i, one in enumerate(with_size):
         for other in with_size[:i]:
