@@ -58,7 +58,9 @@ def test_the_table_and_the_statement(run) -> None:  # type: ignore[no-untyped-de
     done = run(found())
     assert done.exit_code == 0, done.stderr
     assert "2025-01-02 12:30" in done.stdout
-    assert "Falling: k changes by -1 % a day, 90 % interval -1.2 to -0.84 %, over 2 days." in done.stdout
+    assert (
+        "Falling: stiffness changes by -1 % a day, 90 % interval -1.2 to -0.84 %, over 2 days." in done.stdout
+    )
     assert "warning: r0a: few cycles" in done.stdout
 
 

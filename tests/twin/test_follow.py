@@ -86,7 +86,7 @@ def test_the_drift_is_found_and_said(followed: Followed) -> None:
     assert followed.drift is not None and followed.drift.detected
     # a planted slope of ln 0.9 a day; three standard deviations are one in four hundred
     assert followed.drift.slope_per_day == pytest.approx(np.log(0.9), abs=3.0 * followed.drift.std_per_day)
-    assert followed.statement.startswith("Falling: k changes by -")
+    assert followed.statement.startswith("Falling: stiffness changes by -")
 
 
 def test_going_on_from_yesterday_is_the_same_as_all_at_once(
@@ -182,6 +182,14 @@ def test_many_days_cost_what_ten_do(model: TwinModel, records: list[Observation]
     assert sum(len(span.days) for span in spans) == 100
 
 
+def test_of_a_drift_too_short_to_be_seen_nothing_is_said(followed: Followed) -> None:
+    """Over some hours the interval of a daily change is thousands of per cent: no number to quote."""
+    drift = followed.drift
+    assert drift is not None
+    blind = replace(drift, z=np.zeros_like(drift.z), covariance=np.eye(len(drift.z)))
+    assert "not even a doubling a day would be seen" in replace(followed, drift=blind).statement
+
+
 def test_what_cannot_be_followed(
     config: TwinConfig, model: TwinModel, records: list[Observation], followed: Followed, tmp_path: Path
 ) -> None:
@@ -216,9 +224,9 @@ def test_a_file_that_is_no_prior(tmp_path: Path) -> None:
 
 def test_the_page_shows_parameters_and_the_statement(followed: Followed, tmp_path: Path) -> None:
     text = build_follow_page(followed, tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "Falling: k changes by" in text
+    assert "Falling: stiffness changes by" in text
     assert "2025-01-03" in text
-    assert "parameters_through_time" in text
+    assert "stiffness_through_time" in text and "others_through_time" in text
 
 
 @pytest.fixture

@@ -9,9 +9,10 @@ from markupsafe import Markup
 
 from jackettwin.answers.result import Answers, GroundAnswer, ModeAnswer, Span
 from jackettwin.report import style
-from jackettwin.report.numbers import digits_of, parameter_words, quantity, words
+from jackettwin.report.numbers import digits_of, quantity, words
 from jackettwin.report.sentences import MARGIN, verdict_words
 from jackettwin.report.svg import Canvas, spread
+from jackettwin.soil.families import parameter_words
 
 SOURCE_COLOURS = {
     "structure": style.GREY,

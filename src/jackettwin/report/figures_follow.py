@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.report import style
-from jackettwin.report.numbers import parameter_words
+from jackettwin.soil.families import parameter_words
 from jackettwin.twin.followed import Followed
 
 _DAY_MS = 86_400_000
@@ -16,26 +18,32 @@ _FEW_DAYS = 10
 """Days up to which each has its own tick: an axis in hours says nothing of days."""
 
 
-def parameters_through_time(followed: Followed) -> go.Figure:
-    """Draw every parameter of the model after each day with its 90 % interval, and the fitted slope."""
-    names = list(followed.units)
-    figure = make_subplots(rows=len(names), cols=1, shared_xaxes=True, vertical_spacing=0.06)
+def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figure:
+    """Draw parameters of the model after each day with their 90 % intervals, and the fitted slope."""
+    units = [followed.units[name] for name in names]
+    titles = [
+        parameter_words(n) if u == "-" else style.title(parameter_words(n), u)
+        for n, u in zip(names, units, strict=True)
+    ]
+    figure = make_subplots(
+        rows=len(names), cols=1, shared_xaxes=True, vertical_spacing=0.24 / len(names), subplot_titles=titles
+    )
+    figure.update_annotations(x=0.0, xanchor="left", font={"size": 13})
     for row, name in enumerate(names, start=1):
         _points(figure, followed, name, row)
         if followed.drift is not None and name in followed.stiffness:
             _line(figure, followed, name, row)
-        unit = followed.units[name]
-        figure.update_yaxes(
-            title=parameter_words(name) if unit == "-" else style.title(parameter_words(name), unit),
-            type="log",
-            exponentformat="power",
-            row=row,
-            col=1,
-        )
-    figure.update_xaxes(type="date", tickformat="%d %b\n%Y", row=len(names), col=1, title="day (UTC)")
-    if len(followed.days) <= _FEW_DAYS:
+    figure.update_yaxes(type="log", dtick="D2", exponentformat="power")
+    by_day = followed.moments == "day"
+    form = "%d %b\n%Y" if by_day else "%H:%M\n%d %b %Y"
+    figure.update_xaxes(type="date", tickformat=form, row=len(names), col=1, title="time (UTC)")
+    if by_day and len(followed.days) <= _FEW_DAYS:
         figure.update_xaxes(dtick=_DAY_MS)
-    return style.finish(figure, height=max(360, 240 * len(names)))
+    return style.finish(
+        figure,
+        height=110 + 170 * len(names),
+        legend={**style.LEGEND_ABOVE, "y": 1.0, "yref": "container", "yanchor": "top"},
+    )
 
 
 def _points(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
@@ -47,7 +55,7 @@ def _points(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         error_y={"type": "data", "symmetric": False, "array": high - median, "arrayminus": median - low},
         mode="markers",
         marker={"size": 8, "color": style.law_look(followed.law).colour},
-        name="known after the day, 90 %",
+        name=f"known after the {followed.moments}, 90 %",
         legendgroup="points",
         showlegend=row == 1,
         row=row,
@@ -69,7 +77,7 @@ def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         mode="lines",  # of few days the band's corners would be drawn as points
         line={"width": 0},
         hoverinfo="skip",
-        name="slope through all days, 90 %",
+        name="slope through all, 90 %",
         legendgroup="line",
         showlegend=row == 1,
         row=row,
@@ -82,7 +90,7 @@ def _line(figure: go.Figure, followed: Followed, name: str, row: int) -> None:
         line={"color": colour, "width": 2},
         showlegend=False,
         legendgroup="line",
-        name="slope through all days",
+        name="slope through all",
         row=row,
         col=1,
     )

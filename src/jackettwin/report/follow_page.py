@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from jackettwin.answers import Span
 from jackettwin.report.figures_follow import parameters_through_time
-from jackettwin.report.numbers import parameter_words
-from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
-from jackettwin.report.sentences import span_words
+from jackettwin.report.numbers import count
+from jackettwin.report.page import PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.tables_answers import ranged
+from jackettwin.soil.families import parameter_words
 from jackettwin.twin.followed import Followed
 from jackettwin.version import __version__
 
@@ -21,42 +23,50 @@ def build_follow_page(followed: Followed, path: Path) -> Path:
     OSError
         If the file cannot be written.
     """
-    caption = (
-        "Does the ground drift? What is known of each parameter from all records up to each day; band: one "
-        "slope of all stiffness, 90 %, fitted to the data of all days at once."
+    each, others = followed.moments, [n for n in followed.units if n not in followed.stiffness]
+    drift = (
+        f"Does the ground drift? What is known of its stiffness from all records up to each {each}; band: "
+        "one slope of all stiffness, 90 %, fitted to all data at once."
     )
+    more = f"What else becomes known, {each} after {each}? Median and 90 %."
     sections = [
         PageSection(
             "Drift",
             (
                 Text((followed.statement,)),
-                Plot("parameters_through_time", caption, parameters_through_time(followed)),
+                _plot(followed, "stiffness_through_time", drift, followed.stiffness),
+                _table(followed, followed.stiffness),
             ),
         ),
-        PageSection("Days", (_table(followed),)),
+        *([PageSection("Damping", (_plot(followed, "others_through_time", more, others),
+                                   _table(followed, others)))] if others else []),
         *([PageSection("Warnings", (Text(followed.warnings, "warnings"),))] if followed.warnings else []),
-    ]
+    ]  # fmt: skip
     return write_page(
         sections,
         path,
         title=f"{followed.name} through time",
-        subtitle=f"{followed.law}, {len(followed.days)} days · jackettwin {__version__}",
+        subtitle=f"{followed.law}, {count(len(followed.days), each)} · jackettwin {__version__}",
     )
 
 
-def _table(followed: Followed) -> Block:
-    names = list(followed.units)
+def _plot(followed: Followed, name: str, caption: str, names: Sequence[str]) -> Plot:
+    return Plot(name, caption, parameters_through_time(followed, names), fits=True)
+
+
+def _table(followed: Followed, names: Sequence[str]) -> PageTable:
+    by_day, failed = followed.moments == "day", any(day.status != "ok" for day in followed.days)
     rows = []
     for day in followed.days:
-        cells = []
-        for name in names:
-            low, high = day.interval_90[name]
-            unit = followed.units[name]
-            cells.append(span_words(Span(day.median[name], low, high), unit))
-        rows.append((f"{day.time_utc:%Y-%m-%d}", str(day.records), day.status, *cells))
+        cells = [ranged(Span(day.median[n], *day.interval_90[n]), followed.units[n]) for n in names]
+        when = f"{day.time_utc:%Y-%m-%d}" if by_day else f"{day.time_utc:%Y-%m-%d %H:%M}"
+        rows.append(
+            (when, *([str(day.records)] if by_day else []), *([day.status] if failed else []), *cells)
+        )
+    columns = ("time (UTC)", *(["records"] if by_day else []), *(["posterior"] if failed else []))
     return PageTable(
-        "What was known after each day? Median and 90 % interval of every parameter.",
-        ("day (UTC)", "records", "posterior", *map(parameter_words, names)),
+        f"What was known after each {followed.moments}? Median and, in brackets, 90 % interval.",
+        (*columns, *map(parameter_words, names)),
         tuple(rows),
-        text_columns=3,
+        text_columns=len(columns),
     )

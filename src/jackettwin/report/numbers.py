@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from jackettwin.intervals import NORMAL_95
-from jackettwin.soil.families import FAMILIES
 
 UNKNOWN = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -148,22 +147,3 @@ def between(low: float, high: float, unit: str) -> str:
     a, b = quantity(low, unit, digits=digits), quantity(high, unit, digits=digits)
     number, _, same = a.partition(" ")
     return f"{number} to {b}" if same == b.partition(" ")[2] else f"{a} to {b}"
-
-
-_PARAMETERS = {p.name: p.words for law in FAMILIES.values() for p in law.parameters}
-
-
-def parameter_words(name: str) -> str:
-    """Return a ground parameter's name as text.
-
-    >>> parameter_words("loss_factor_vertical"), parameter_words("k0_foot_1_vertical"), parameter_words("c")
-    ('vertical loss factor', 'static stiffness of foot 1 vertical', 'dashpot')
-    """
-    name, _, state = name.partition("@")
-    base = next(
-        (b for b in sorted(_PARAMETERS, key=len, reverse=True) if name == b or name.startswith(f"{b}_")), ""
-    )
-    rest = name[len(base) + 1 :].replace("_", " ") if base else ""
-    said = _PARAMETERS.get(base, name.replace("_", " "))
-    said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
-    return f"{said} ({state})" if state else said

@@ -13,11 +13,10 @@ from jackettwin.report.numbers import (
     count,
     factor,
     listed,
-    parameter_words,
     words,
 )
 from jackettwin.report.sentences_fit import fit_sentence, mend, misfit_headline, value_words
-from jackettwin.soil.families import FAMILIES
+from jackettwin.soil.families import FAMILIES, parameter_words
 
 MARGIN = 0.10
 """Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
@@ -136,19 +135,29 @@ def _stiff_enough(a: Answers) -> list[str]:
     clear = _clear(a, {m.label for m in first})
     if all(m.as_designed for m in first):
         return [f"The foundation is stiff enough: {names} {_be(first)} as designed{clear}."]
-    lower = [_softening(m) for m in first]
-    return [
-        f"{names.capitalize()} {_be(first)} {' and '.join(lower)} below what rigid feet would give{clear}."
-    ]
+    higher = any(_softening(m) < 0.0 for m in first)
+    sides = {_side(m) for m in first}
+    each = [f"{_moved(m)} {_side(m)}" if len(sides) > 1 else _moved(m) for m in first]
+    side = "" if len(sides) > 1 else f" {sides.pop()}"
+    why = ": no ground raises a frequency" if higher else ""
+    return [f"{names.capitalize()} {_be(first)} {listed(each)}{side} what rigid feet would give{clear}{why}."]
 
 
 def _be(modes: Sequence[object]) -> str:
     return "is" if len(modes) == 1 else "are"
 
 
-def _softening(m: ModeAnswer) -> str:
-    value = 0.0 if m.measured_hz is None else m.measured_hz.value
-    return f"{100.0 * (1.0 - value / m.rigid_hz):.1f} %"
+def _softening(m: ModeAnswer) -> float:
+    """Return by which share a measured frequency lies below that on rigid feet."""
+    return 1.0 - (0.0 if m.measured_hz is None else m.measured_hz.value) / m.rigid_hz
+
+
+def _moved(m: ModeAnswer) -> str:
+    return f"{100.0 * abs(_softening(m)):.1f} %"
+
+
+def _side(m: ModeAnswer) -> str:
+    return "above" if _softening(m) < 0.0 else "below"
 
 
 def _clear(a: Answers, labels: set[str]) -> str:
@@ -318,8 +327,8 @@ def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if not a.ground:
         said = ["No law was fitted."]
     first, more = _firsts(a), []
-    if first:
-        lower = listed([f"{words(m.label)} by {_softening(m)}" for m in first])
+    if first and all(_softening(m) > 0.0 for m in first):
+        lower = listed([f"{words(m.label)} by {_moved(m)}" for m in first])
         more.append(f"The ground lowers {lower} below rigid feet: that much is there to be seen of it.")
     return tuple(said[:_MOST]), (*said[_MOST:], *more)
 
@@ -462,8 +471,9 @@ def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 def _step(a: Answers, step: NextStep) -> str:
     what, gains = step_words(a, step), _gains(a, step)
-    narrows = f"narrows the 90 % interval of {listed(gains)}" if gains else "narrows no interval noticeably"
-    return f"{what[0].upper()}{what[1:]}. It {narrows}."
+    narrow = "They narrow" if step.what == "records" and not _enough(a, step) else "It narrows"
+    how = f"the 90 % interval of {listed(gains)}" if gains else "no interval noticeably"
+    return f"{what[0].upper()}{what[1:]}. {narrow} {how}."
 
 
 def _gains(a: Answers, step: NextStep) -> list[str]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from jackettwin.answers.result import Answers, FitAnswer, Span
-from jackettwin.report.numbers import count, digits_of, listed, parameter_words, quantity, words
+from jackettwin.report.numbers import count, digits_of, listed, quantity, words
+from jackettwin.soil.families import parameter_words
 
 _NAMED = 2
 """Modes that a sentence names: the table has all."""

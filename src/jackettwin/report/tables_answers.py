@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from jackettwin.answers.result import Answers, Span
-from jackettwin.report.numbers import UNKNOWN, between, factor, fixed, parameter_words, words
+from jackettwin.report.numbers import UNKNOWN, between, factor, fixed, words
 from jackettwin.report.page import PageTable
 from jackettwin.report.sentences import span_words, step_words, verdict_words
 from jackettwin.report.sentences_fit import value_words
+from jackettwin.soil.families import parameter_words
 from jackettwin.twin import TwinResult
 from jackettwin.updating.budget import SOURCES
 
@@ -59,8 +60,9 @@ def _cell(span: Span | None, factor: float, decimals: int) -> str:
 def ground_table(a: Answers) -> PageTable:
     """Return what is known of every parameter of the ground, and why."""
     rows = tuple(
-        (parameter_words(g.name), verdict_words(g) or UNKNOWN, g.reason or UNKNOWN, _ranged(g.before, g.unit),
-         _ranged(g.value, g.unit), UNKNOWN if g.factor is None else f"{g.factor:.3g}")
+        (parameter_words(g.name), (verdict_words(g) if a.fits else "does not fit") or UNKNOWN,
+         g.reason or UNKNOWN, ranged(g.before, g.unit),
+         ranged(g.value, g.unit), UNKNOWN if g.factor is None else f"{g.factor:.3g}")
         for g in a.ground
     )  # fmt: skip
     median = "median" if any(g.verdict for g in a.ground) else "best fit"
@@ -72,7 +74,8 @@ def ground_table(a: Answers) -> PageTable:
     return PageTable(caption, columns, rows, 3)
 
 
-def _ranged(span: Span | None, unit: str) -> str:
+def ranged(span: Span | None, unit: str) -> str:
+    """Return a value above its interval in brackets, as a cell of a table."""
     if span is None:
         return "any between its bounds"
     if span.low is None or span.high is None:

@@ -227,3 +227,27 @@ def family(name: str) -> Family:
             remedy=did_you_mean(name, FAMILIES),
         )
     return FAMILIES[name]
+
+
+_PARAMETERS = {p.name: p.words for law in FAMILIES.values() for p in law.parameters}
+_ROTORS = {f"c_{axis}": f"rotor's {axis.replace('_', '-')} dashpot" for axis in ("fore_aft", "side_side")}
+
+
+def parameter_words(name: str) -> str:
+    """Return the name of a parameter of the ground, or of a rotor's dashpot, as text.
+
+    >>> parameter_words("loss_factor_vertical"), parameter_words("k0_foot_1_vertical"), parameter_words("c")
+    ('vertical loss factor', 'static stiffness of foot 1 vertical', 'dashpot')
+    >>> parameter_words("c_fore_aft")
+    "rotor's fore-aft dashpot"
+    """
+    if name in _ROTORS:
+        return _ROTORS[name]
+    name, _, state = name.partition("@")
+    base = next(
+        (b for b in sorted(_PARAMETERS, key=len, reverse=True) if name == b or name.startswith(f"{b}_")), ""
+    )
+    rest = name[len(base) + 1 :].replace("_", " ") if base else ""
+    said = _PARAMETERS.get(base, name.replace("_", " "))
+    said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
+    return f"{said} ({state})" if state else said

@@ -9,6 +9,7 @@ from datetime import datetime
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.soil.families import parameter_words
 from jackettwin.twin.state import TwinState
 from jackettwin.twin.stored import StoredSchema
 from jackettwin.updating.drift import Drift
@@ -18,6 +19,8 @@ FEWEST_DAYS = 3
 STIFFNESS = "N/m"
 """Unit of the parameters that may drift."""
 SECONDS_A_DAY = 86400.0
+_BLIND = 100.0
+"""Per cent a day: where no smaller drift would be seen, nothing can be said of any."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,11 @@ class Followed:
         return f"Followed({self.name!r}, {self.law}, {len(self.days)} days; last: {last})"
 
     @property
+    def moments(self) -> str:
+        """What is followed from one to the next: ``day``, or ``record``."""
+        return "record" if any("T" in day.date for day in self.days) else "day"
+
+    @property
     def stiffness(self) -> tuple[str, ...]:
         """Names of the stiffness parameters: those that may drift."""
         return tuple(name for name, unit in self.units.items() if unit == STIFFNESS)
@@ -99,16 +107,21 @@ class Followed:
         if self.drift is None:
             return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
         slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
+        what, most = " and ".join(map(parameter_words, self.stiffness)), max(abs(low), abs(high))
+        over = f"{round(self.days_since_first[-1], 1):g} days"
+        if not self.drift.detected and most > _BLIND:
+            return (
+                f"Too early to speak of a drift of {what}: in {over} not even a doubling a day would be seen."
+            )
         found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
         change = "changes" if len(self.stiffness) == 1 else "change"
         said = (
-            f"{found}: {' and '.join(self.stiffness)} {change} by {slope:+.2g} % a day, 90 % interval "
-            f"{low:+.2g} to {high:+.2g} %, over {round(self.days_since_first[-1], 1):g} days."
+            f"{found}: {what} {change} by {slope:+.2g} % a day, 90 % interval {low:+.2g} to {high:+.2g} %, "
+            f"over {over}."
         )
-        if self.drift.detected:
-            return said
-        most = max(abs(low), abs(high))
-        return f"{said} A drift of more than {most:.2g} % a day would have been seen."
+        return (
+            said if self.drift.detected else f"{said} A drift of more than {most:.2g} % a day would be seen."
+        )
 
 
 def since_first(times: Sequence[datetime]) -> FloatArray:
