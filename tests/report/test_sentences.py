@@ -7,6 +7,7 @@ from dataclasses import replace
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
 from jackettwin.report.sentences import percent_words, sentences, span_words
+from jackettwin.report.tables_answers import ground_table
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),
@@ -49,7 +50,7 @@ def test_the_headline_tells_the_story() -> None:
 
 def test_where_nothing_is_identified_that_is_said() -> None:
     lost = replace(ANSWERS, ground=(replace(STIFF, verdict="unidentified"), LOSS))
-    assert any(line.startswith("Nothing of the ground is known") for line in sentences(lost).headline)
+    assert sentences(lost).headline[0].startswith("Nothing of the ground is known from these 5 records")
 
 
 def test_a_model_that_cannot_meet_the_data_is_said_before_all_it_says() -> None:
@@ -67,6 +68,7 @@ def test_a_model_that_cannot_meet_the_data_is_said_before_all_it_says() -> None:
         in answers["Is the model right?"]
     )
     assert "of a model that does not fit" in answers["How stiff and how damped is the ground?"]
+    assert {row[1] for row in ground_table(lost).rows} == {"does not fit"}
     assert answers["What to do next?"].startswith("Mend the model first")
     assert "3.1 % on frequencies (update.model_error) would cover this" in answers["What to do next?"]
     met = replace(ANSWERS, fit=replace(fit, chi2=3.0, probability=0.5, fits=True, cover=None))
@@ -75,6 +77,22 @@ def test_a_model_that_cannot_meet_the_data_is_said_before_all_it_says() -> None:
 
 def test_the_ends_of_a_narrow_interval_are_told_apart() -> None:
     assert span_words(Span(4.18e8, 4.1e8, 4.25e8), "N/m") == "418 MN/m (410 to 425 MN/m)"
+
+
+def test_a_frequency_above_that_on_rigid_feet_is_no_grounds_doing() -> None:
+    """It was said to be "-2.9 % below"."""
+    bare = replace(MODE, design_hz=None)
+    soft = sentences(replace(ANSWERS, modes=(bare,), clearances=()))
+    assert soft.headline[0] == "Fore-aft 1 is 4.8 % below what rigid feet would give."
+    stiff = sentences(replace(ANSWERS, modes=(replace(bare, rigid_hz=0.19),), clearances=()))
+    assert stiff.headline[0] == (
+        "Fore-aft 1 is 5.3 % above what rigid feet would give: no ground raises a frequency."
+    )
+    other = replace(bare, label="side_side_1", rigid_hz=0.19)
+    mixed = sentences(replace(ANSWERS, modes=(bare, other), clearances=())).headline[0]
+    assert "are 4.8 % below and 5.3 % above what rigid feet would give" in mixed
+    lowers = [any("The ground lowers" in m for q in said.questions for m in q.more) for said in (soft, stiff)]
+    assert lowers == [True, False]
 
 
 def test_a_mode_within_the_rotors_range_is_the_first_thing_said() -> None:

@@ -81,10 +81,13 @@ def sentences(a: Answers) -> Said:
 
 
 def _headline(a: Answers) -> list[str]:
-    """Return the headline; a model that cannot meet the data comes before all that it says."""
+    """Return the headline; a model that cannot meet the data, or a ground of which nothing is known, first."""
     if misfit := misfit_headline(a):
         return [misfit[0], *_stiff_enough(a), *misfit[1:]]
-    return [*_stiff_enough(a), *_ground_headline(a), _owner_headline(a), _next_headline(a)]
+    lead = [*_stiff_enough(a), *(ground := _ground_headline(a))]
+    if a.ground and all(g.verdict == "unidentified" for g in a.ground):
+        lead = [*ground, *_stiff_enough(a)]
+    return [*lead, _owner_headline(a), _next_headline(a)]
 
 
 def span_words(span: Span, unit: str) -> str:
@@ -187,7 +190,7 @@ def _against_design(m: ModeAnswer) -> str:
 
 
 def _ground_headline(a: Answers) -> list[str]:
-    """Return what is known of the ground; where nothing is, that comes first."""
+    """Return what is known of the ground."""
     if not a.ground:
         return []
     if all(g.verdict == "" for g in a.ground):
