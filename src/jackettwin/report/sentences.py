@@ -81,7 +81,7 @@ def sentences(a: Answers) -> Said:
 
 
 def _headline(a: Answers) -> list[str]:
-    """Return the headline; a model that cannot meet the data, or a ground of which nothing is known, first."""
+    """Return the headline; what stands in the way of an answer (misfit, nothing known) comes first."""
     if misfit := misfit_headline(a):
         return [misfit[0], *_stiff_enough(a), *misfit[1:]]
     lead = [*_stiff_enough(a), *(ground := _ground_headline(a))]
