@@ -73,7 +73,7 @@ def central(function, p, k, step):
 def test_score_equals_finite_differences(kind, request):
     data, p = request.getfixturevalue(kind)
     prior = likelihood.prior_of(data, p)
-    score, _ = likelihood.scoring(data, prior, p)
+    score, _ = likelihood.scoring(data, prior, likelihood.point(data, prior, p))
     for k in range(0, len(score), 7):
         slope = central(lambda q: likelihood.objective(data, prior, q), p, k, 1e-6)
         # differences of a value near 1e4 lose 1e-5; the kernel's own differences 1e-7 of the score
@@ -85,10 +85,12 @@ def test_information_is_the_mean_curvature(fitted):
     data, p = fitted
     exact = replace(data, density=expected(data, p, 0.0).matrix)
     prior = likelihood.prior_of(exact, p)
-    _, fisher = likelihood.scoring(exact, prior, p)
+    _, fisher = likelihood.scoring(exact, prior, likelihood.point(exact, prior, p))
     size = np.sqrt(np.diag(fisher))
     for k in range(0, len(size), 11):
-        column = -central(lambda q: likelihood.scoring(exact, prior, q)[0], p, k, 1e-5)
+        column = -central(
+            lambda q: likelihood.scoring(exact, prior, likelihood.point(exact, prior, q))[0], p, k, 1e-5
+        )
         # the prior's own curvature is its Fisher information only at its centre: 1 of 10³ or more
         np.testing.assert_allclose(fisher[:, k] / size / size[k], column / size / size[k], atol=5e-3)
 
@@ -149,11 +151,13 @@ def test_curvature_biases_as_foretold():
     prior = replace(likelihood.prior_of(data, p), centre=p.vector)
     matrix = expected(data, p, 0.0).matrix
     root = np.linalg.cholesky(matrix)
-    fisher = likelihood.scoring(data, prior, p)[1]
+    fisher = likelihood.scoring(data, prior, likelihood.point(data, prior, p))[1]
     left = []
     for _ in range(300):
         drawn = replace(data, density=wishart(root, data.count, rng))
-        linear = np.linalg.solve(fisher, likelihood.scoring(drawn, prior, p)[0])
+        linear = np.linalg.solve(
+            fisher, likelihood.scoring(drawn, prior, likelihood.point(drawn, prior, p))[0]
+        )
         left.append((likelihood.climbed(drawn, p).parameters.vector - p.vector - linear)[:2])
     foretold = accuracy.curvature_bias(data, p, accuracy.accuracy_of(data, p))[:2]
     error = np.std(left, axis=0) / np.sqrt(len(left))

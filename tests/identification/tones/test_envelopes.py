@@ -26,10 +26,10 @@ def test_envelope_of_a_tone_is_steady_and_of_noise_is_exponential(rng):
     t = np.arange(60_000) / RATE
     tone = np.sin(2 * np.pi * 0.5 * t)[None]
     one = np.ones(1, dtype=complex)
-    assert envelope_variance(tone, RATE, 0.5, one) < 0.05
+    assert envelope_variance(transform(tone), 6000.0, 0.5, one) < 0.05
     noise = rng.standard_normal((1, 60_000))
     # squared envelope of a Gaussian process: relative variance 1; 120 independent values
-    assert envelope_variance(noise, RATE, 0.5, one) == pytest.approx(1.0, abs=0.5)
+    assert envelope_variance(transform(noise), 6000.0, 0.5, one) == pytest.approx(1.0, abs=0.5)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 0.95, 1.5, 3.0])
@@ -122,9 +122,10 @@ def test_modes_of_short_records_are_no_tones(tower):
     taken, steady = 0, 0
     for seed in range(40):
         y = simulate(tower, np.random.default_rng(seed), duration_s=180.0, sample_rate_hz=5.0).data
+        lines = transform(y)
         for f, zeta, shape in zip(tower.frequency_hz, tower.damping_ratio, shapes, strict=True):
-            steady += envelope_variance(y, 5.0, f, shape) < 0.25
-            taken += is_steady_tone(y, 5.0, f, zeta, shape) or tone_at(transform(y), 180.0, f) is not None
+            steady += envelope_variance(lines, 180.0, f, shape) < 0.25
+            taken += is_steady_tone(lines, 180.0, f, zeta, shape) or tone_at(lines, 180.0, f) is not None
     # a threshold that does not know the length of the record takes several of 160
     assert steady >= 3
     # 0.1 % each: two or more once in eighty such tests
@@ -151,7 +152,7 @@ def test_a_tone_that_swells_and_drifts_a_little_is_suspicious_and_a_mode_seldom_
         mode = signal.lfilter([1.0], np.real(np.poly([pole, pole.conjugate()])), forces)[6000:]
         for name, y in (("tone", tone), ("mode", np.asarray(mode) / np.std(mode))):
             noisy = np.outer(shape.real, y) + 0.2 * rng.standard_normal((2, 6000))
-            seen[name] += is_suspiciously_steady(noisy, 10.0, 0.6, 0.004, shape)
+            seen[name] += is_suspiciously_steady(transform(noisy), 600.0, 0.6, 0.004, shape)
     assert seen["tone"] >= 15
     # 2πζfT is 9 to 11: three in a hundred by chance
     assert seen["mode"] <= 3

@@ -16,10 +16,9 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.likelihood import (
     add_coherence_prior,
     inverse_root,
+    misfit_of,
     prior_of,
     products,
-    scoring,
-    whitened,
 )
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
@@ -30,6 +29,7 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
 )
 
 if TYPE_CHECKING:
+    from jackettwin.identification.maximum_likelihood.likelihood import ParameterPrior
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
@@ -81,10 +81,9 @@ def accuracy_of(data: Periodogram, p: Parameters) -> Accuracy:
     values, vectors = np.linalg.eigh(np.eye(white.shape[1]) - share)
     root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
     middle = _information(data, p, model, np.asarray(root.conj().transpose(0, 2, 1) @ white))
-    bread = _inverse(scoring(data, prior, p)[1])
-    clear = _information(data, p, *_barely_regular(data, p))
-    clear[np.diag_indices(len(clear))] += prior.precision
-    add_coherence_prior(p, np.zeros(len(clear)), clear)
+    information = products(data, p, model, white, misfit_of(data, white))[1]
+    bread = _inverse(_with_prior(information, p, prior))
+    clear = _with_prior(_information(data, p, *_barely_regular(data, p)), p, prior)
     return Accuracy(np.asarray(bread @ middle @ bread), bread, np.sqrt(np.diag(_inverse(clear))))
 
 
@@ -119,7 +118,8 @@ def lack_of_fit(data: Periodogram, p: Parameters) -> float:
 
     Near 1 (a little below, as parameters were fitted) where the record is what the model says.
     """
-    white, misfit = whitened(data, expected(data, p))
+    white = inverse_root(expected(data, p).matrix)
+    misfit = misfit_of(data, white)
     share = np.einsum("kab,kb,kab->k", white, data.dither, white.conj(), optimize=True).real
     variance = data.count * (white.shape[1] - share) ** 2
     passed = np.cumsum(data.count)
@@ -127,6 +127,13 @@ def lack_of_fit(data: Periodogram, p: Parameters) -> float:
     total = np.add.reduceat(data.count[:, None, None] * misfit, first, axis=0)
     size = np.sum(np.abs(total) ** 2, axis=(1, 2))
     return float(np.mean(size / np.add.reduceat(variance, first)))
+
+
+def _with_prior(information: FloatArray, p: Parameters, prior: ParameterPrior) -> FloatArray:
+    """Return the information with that of the prior."""
+    out = information + np.diag(prior.precision)
+    add_coherence_prior(p, np.zeros(len(out)), out)
+    return out
 
 
 def _inverse(information: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import linalg
+from scipy.linalg import lapack
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
@@ -72,6 +73,22 @@ class ParameterPrior:
 
 
 @dataclass(frozen=True)
+class Point:
+    """The log-posterior at one set of parameters, up to a constant, and what it was made of.
+
+    Attributes
+    ----------
+    white : (n_groups, n_channels, n_channels)
+        (chol E)⁻¹.
+    """
+
+    parameters: Parameters
+    value: float
+    model: Expected
+    white: ComplexArray
+
+
+@dataclass(frozen=True)
 class Climb:
     """Where a climb ended."""
 
@@ -83,27 +100,27 @@ class Climb:
 def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Climb:
     """Climb to the maximum of the posterior by damped Fisher scoring, in at most so many steps."""
     prior = prior_of(data, p)
-    value, lift, idle = objective(data, prior, p), 1e-3, 0
-    if not np.isfinite(value):
-        return Climb(p, value, False)
+    at, lift, idle = point(data, prior, p), 1e-3, 0
+    if at is None:
+        return Climb(p, -np.inf, False)
     for _ in range(most):
-        score, fisher = scoring(data, prior, p)
-        trial_value = -np.inf
-        while trial_value < value and lift < 1e7:
+        score, fisher = scoring(data, prior, at)
+        trial = None
+        while (trial is None or trial.value < at.value) and lift < 1e7:
             used, step = lift, _solved(fisher, score, lift)
-            if _far(p, step) <= 1.0:
-                trial = p.moved(step)
-                trial_value = objective(data, prior, trial)
+            trial = (
+                point(data, prior, at.parameters.moved(step)) if _far(at.parameters, step) <= 1.0 else None
+            )
             lift *= 6.0
-        if trial_value < value:
-            return Climb(p, value, False)
+        if trial is None or trial.value < at.value:
+            return Climb(at.parameters, at.value, False)
         n = 2 * len(p.log_f)
         small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
-        idle = idle + 1 if trial_value - value < LEAST_GAIN else 0
-        p, value, lift = trial, trial_value, max(lift / 60.0, 1e-6)
+        idle = idle + 1 if trial.value - at.value < LEAST_GAIN else 0
+        at, lift = trial, max(lift / 60.0, 1e-6)
         if idle == MOST_IDLE or (used <= FREE and (idle or bool(np.all(small < TOLERANCE)))):
-            return Climb(p, value, True)
-    return Climb(p, value, False)
+            return Climb(at.parameters, at.value, True)
+    return Climb(at.parameters, at.value, False)
 
 
 def start(
@@ -173,28 +190,35 @@ def prior_of(data: Periodogram, p: Parameters) -> ParameterPrior:
 
 def objective(data: Periodogram, prior: ParameterPrior, p: Parameters) -> float:
     """Return the log-posterior up to a constant; −∞ outside the admissible region."""
+    at = point(data, prior, p)
+    return -np.inf if at is None else at.value
+
+
+def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Point | None:
+    """Return the log-posterior and what it is made of; None outside the admissible region."""
     low, high = np.log(ZETA_RANGE)
     if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
-        return -np.inf
+        return None
     try:
         root = np.linalg.cholesky(p.gamma)
         with np.errstate(over="ignore", invalid="ignore"):
-            factor = np.linalg.cholesky(expected(data, p).matrix)
+            model = expected(data, p)
+            factor = np.linalg.cholesky(model.matrix)
     except np.linalg.LinAlgError:
-        return -np.inf
+        return None
     log_det = 2.0 * np.log(np.einsum("kaa->ka", factor).real).sum(axis=1)
-    white = np.linalg.inv(factor)
-    trace = np.einsum("kab,kbc,kac->k", white, _dithered(data), white.conj(), optimize=True).real
+    white = np.asarray(np.linalg.inv(factor))
+    trace = np.einsum("kab,kab->k", white @ data.dithered, white.conj()).real
     value = -np.sum(data.count * (log_det + trace))
     value -= 0.5 * np.sum(prior.precision * (p.vector - prior.centre) ** 2)
-    return float(value + COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real)))
+    value += COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real))
+    return Point(p, float(value), model, white) if np.isfinite(value) else None
 
 
-def scoring(data: Periodogram, prior: ParameterPrior, p: Parameters) -> tuple[FloatArray, FloatArray]:
+def scoring(data: Periodogram, prior: ParameterPrior, at: Point) -> tuple[FloatArray, FloatArray]:
     """Return the score and the Fisher information, prior included."""
-    model = expected(data, p)
-    white, misfit = whitened(data, model)
-    score, fisher = products(data, p, model, white, misfit)
+    p = at.parameters
+    score, fisher = products(data, p, at.model, at.white, misfit_of(data, at.white))
     score -= prior.precision * (p.vector - prior.centre)
     fisher[np.diag_indices(len(score))] += prior.precision
     add_coherence_prior(p, score, fisher)
@@ -239,23 +263,15 @@ def add_coherence_prior(p: Parameters, score: FloatArray, fisher: FloatArray) ->
     fisher[at, at] += COHERENCE_PRIOR * np.block([[rr, ri], [ri.T, ii]])
 
 
-def whitened(data: Periodogram, model: Expected) -> tuple[ComplexArray, ComplexArray]:
-    """Return W = (chol E)⁻¹ and the misfit W Ŝ Wᴴ − I."""
-    white = inverse_root(model.matrix)
-    misfit = white @ _dithered(data) @ white.conj().transpose(0, 2, 1)
-    return white, np.asarray(misfit - np.eye(white.shape[1]))
+def misfit_of(data: Periodogram, white: ComplexArray) -> ComplexArray:
+    """Return the misfit W Ŝ Wᴴ − I of W = (chol E)⁻¹."""
+    misfit = white @ data.dithered @ white.conj().transpose(0, 2, 1)
+    return np.asarray(misfit - np.eye(white.shape[1]))
 
 
 def inverse_root(matrices: ComplexArray) -> ComplexArray:
     """Return the inverse of the lower Cholesky factor of each matrix."""
     return np.asarray(np.linalg.inv(np.linalg.cholesky(matrices)))
-
-
-def _dithered(data: Periodogram) -> ComplexArray:
-    out = data.density.copy()
-    channel = np.arange(out.shape[1])
-    out[:, channel, channel] += data.dither
-    return out
 
 
 def _far(p: Parameters, step: FloatArray) -> float:
@@ -280,7 +296,7 @@ def _solved(fisher: FloatArray, score: FloatArray, lift: float) -> FloatArray:
     """Solve the damped scoring equation, every parameter in units of its own information."""
     unit = 1.0 / np.sqrt(np.diag(fisher))
     scaled = fisher * np.outer(unit, unit) + lift * np.eye(len(unit))
-    try:
-        return np.asarray(unit * linalg.solve(scaled, unit * score, assume_a="pos"))
-    except linalg.LinAlgError:
+    solution, fault = lapack.dposv(scaled, unit * score)[1:]
+    if fault:
         return np.asarray(unit * linalg.lstsq(scaled, unit * score)[0])
+    return np.asarray(unit * solution)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,6 +53,14 @@ class Periodogram:
     floor: FloatArray
     dither: FloatArray
     duration_s: float
+
+    @cached_property
+    def dithered(self) -> ComplexArray:
+        """The density with the dither on its diagonal, (n_groups, n_channels, n_channels)."""
+        out = self.density.copy()
+        channel = np.arange(out.shape[1])
+        out[:, channel, channel] += self.dither
+        return out
 
     @property
     def variance(self) -> FloatArray:

@@ -94,15 +94,19 @@ def modal_slopes(data: Periodogram, p: Parameters, model: Expected) -> tuple[Com
     colour = np.exp(-0.5 * p.colour * away)
     colours = colour[:, :, None] * colour[:, None, :]
 
-    def slope(ahead: ComplexArray, behind: ComplexArray) -> ComplexArray:
-        both = zip(_kernel(data, p, ahead, lam), _kernel(data, p, behind, lam), strict=True)
-        steady, leaked = (a - b for a, b in both)
-        return np.asarray(p.gamma * (steady * colours + leaked) / (2.0 * STEP))
-
+    up, down = np.exp(STEP), np.exp(-STEP)
+    moved = [poles(f * up, zeta), poles(f * down, zeta), poles(f, zeta * up), poles(f, zeta * down)]
+    steady, leaked = (
+        part.reshape(len(part), len(moved), len(f), len(f))
+        for part in _kernel(data, p, np.concatenate(moved), lam)
+    )
+    slopes = (
+        p.gamma * ((steady[:, k] - steady[:, k + 1]) * colours + leaked[:, k] - leaked[:, k + 1])
+        for k in (0, 2)
+    )
+    by_f, by_zeta = (np.asarray(slope / (2.0 * STEP)) for slope in slopes)
     forced = p.gamma * model.forced
-    by_f = slope(poles(f * np.exp(STEP), zeta), poles(f * np.exp(-STEP), zeta))
     by_f += (0.5 * p.colour)[:, None] * forced
-    by_zeta = slope(poles(f, zeta * np.exp(STEP)), poles(f, zeta * np.exp(-STEP)))
     by_colour = forced * (-0.5 * away)[:, :, None]
     return by_f, by_zeta, by_colour
 
@@ -218,9 +222,12 @@ def gram(
 def _kernel(
     data: Periodogram, p: Parameters, first: ComplexArray, second: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return K and L; a background has no peak to leak from, though its force may be large far below."""
+    """Return K and L of the poles of all modes, or of several such sets one after the other, and of all.
+
+    A background has no peak to leak from, though its force may be large far below.
+    """
     steady, leaked = kernel(data.omega, data.variance, data.duration_s, first, second)
-    leaked[:, : p.background] = 0.0
+    leaked[:, np.arange(len(first)) % len(second) < p.background] = 0.0
     leaked[:, :, : p.background] = 0.0
     return steady, leaked
 

@@ -145,15 +145,16 @@ def find_tones(
     likely = [c.representative for c in found if c.order_share >= settings.min_order_share]
     f, zeta = poles.frequency_hz, poles.damping_ratio
     clean, lines, followed, steady = y, transform(y), list(drifting), []
+    duration_s = y.shape[1] / sample_rate_hz
     for k in sorted(likely):
         if any(tone.passes(f[k]) for tone in followed):
             continue
-        track = tone_at(lines, y.shape[1] / sample_rate_hz, f[k])
+        track = tone_at(lines, duration_s, f[k])
         if track is not None:
             followed.append(track)
             clean = less_phase(clean, track.phase(y.shape[1]))
             lines = transform(clean)
-        elif is_steady_tone(clean, sample_rate_hz, f[k], zeta[k], poles.mode_shape[k] / scale):
+        elif is_steady_tone(lines, duration_s, f[k], zeta[k], poles.mode_shape[k] / scale):
             steady.append(k)
             clean = without_tones(clean, sample_rate_hz, [f[k]])
             lines = transform(clean)

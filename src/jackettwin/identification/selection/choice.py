@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
 from jackettwin.identification.mac import mac, normalised
@@ -24,6 +24,7 @@ from jackettwin.identification.selection.screening import rescued, screened, wor
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
 from jackettwin.identification.tones.mains import is_mains
+from jackettwin.identification.tones.sinusoid import transform
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -68,6 +69,7 @@ def chosen_modes(
 ) -> Choice:
     """Refine the candidates and keep those that are modes inside the band."""
     y, scale, resolved = tones.clean, ready.scale, ready.settings
+    duration_s = y.shape[1] / resolved.sample_rate_hz
     open_to = [i for i, c in enumerate(judged) if c.objection is None]
     sure = np.array([judged[i].doubt is None for i in open_to], dtype=bool)
     findings: tuple[Finding, ...] = ()
@@ -83,21 +85,22 @@ def chosen_modes(
             for fit in fits:
                 for position in np.flatnonzero(fit.candidates):
                     modes.pop(open_to[position], None)
-                modes |= _numbers(judged, open_to, fit.modes, scale, y.shape[1] / resolved.sample_rate_hz)
+                modes |= _numbers(judged, open_to, fit.modes, scale, duration_s)
     tones_hz = [(f, f) for f in (*tones.steady_hz, *ready.tones_hz)]
     tones_hz += [tone.swept_hz for tone in tones.drifting]
     found = _sorted(judged, modes, tones_hz, resolved, settings, findings)
     flagged = (beside_orders(mode, ready.rotor_orders) for mode in found.modes)
-    found = replace(found, modes=tuple(_steady(mode, y, ready) for mode in flagged))
+    lines = transform(y)
+    found = replace(found, modes=tuple(_steady(mode, lines, duration_s, scale) for mode in flagged))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
 
 
-def _steady(mode: ModalEstimate, y: FloatArray, ready: Prepared) -> ModalEstimate:
+def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:
     """Flag a light mode whose envelope is as steady as that of a tone."""
-    rate, shape = ready.settings.sample_rate_hz, mode.mode_shape / ready.scale
-    if not is_suspiciously_steady(y, rate, mode.frequency_hz, mode.damping_ratio, shape):
+    shape = mode.mode_shape / scale
+    if not is_suspiciously_steady(lines, duration_s, mode.frequency_hz, mode.damping_ratio, shape):
         return mode
     return mode.flagged(ModeStatus.DOUBTFUL, Finding("steady_envelope"))
 

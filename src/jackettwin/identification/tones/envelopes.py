@@ -35,7 +35,7 @@ LEAST_HALF_BANDWIDTH = 0.9
 
 
 def envelope_variance(
-    y: FloatArray, sample_rate_hz: float, frequency_hz: float, shape: ComplexArray
+    lines: ComplexArray, duration_s: float, frequency_hz: float, shape: ComplexArray
 ) -> float:
     r"""Return the relative variance of the squared envelope in a narrow band around a candidate.
 
@@ -46,16 +46,16 @@ def envelope_variance(
 
     Parameters
     ----------
-    y : (n_channels, n_samples)
-        Zero mean; NaN marks a missing sample and counts as zero.
+    lines : (n_channels, n_lines)
+        Of the channels' transforms, from zero frequency.
     shape : (n_channels,) complex
     """
-    half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES * sample_rate_hz / y.shape[1])
-    return float(relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape)))
+    half = max(HALF_WIDTH * frequency_hz, FEWEST_LINES / duration_s)
+    return float(relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)))
 
 
 def is_suspiciously_steady(
-    y: FloatArray, sample_rate_hz: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
+    lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
     """Return whether a light mode has the envelope of a tone that swells and drifts a little.
 
@@ -64,16 +64,16 @@ def is_suspiciously_steady(
 
     Parameters
     ----------
-    y : (n_channels, n_samples)
-        Zero mean; NaN marks a missing sample and counts as zero.
+    lines : (n_channels, n_lines)
+        Of the channels' transforms, from zero frequency.
     shape : (n_channels,) complex
     """
-    line = sample_rate_hz / y.shape[1]
+    line = 1.0 / duration_s
     bandwidth = damping_ratio * frequency_hz
     if 2.0 * np.pi * bandwidth / line > MANY_VALUES:
         return False
     half = max(BANDWIDTHS * bandwidth, 0.5 * HALF_WIDTH * frequency_hz, FEWEST_LINES * line)
-    return bool(relative_variance(_analytic(y, sample_rate_hz, frequency_hz, half, shape)) < SUSPICIOUS)
+    return bool(relative_variance(_analytic(lines, duration_s, frequency_hz, half, shape)) < SUSPICIOUS)
 
 
 def least_variance(n: float) -> float:
@@ -88,26 +88,29 @@ def least_variance(n: float) -> float:
 
 
 def is_steady_tone(
-    y: FloatArray, sample_rate_hz: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
+    lines: ComplexArray, duration_s: float, frequency_hz: float, damping_ratio: float, shape: ComplexArray
 ) -> bool:
     """Return whether a candidate is a steady tone rather than a mode.
 
     Independent values there are no more than lines in the band, nor than 2πζfT of a mode of that damping.
     """
-    line = sample_rate_hz / y.shape[1]
-    lines = 2.0 * max(HALF_WIDTH * frequency_hz / line, FEWEST_LINES)
+    line = 1.0 / duration_s
+    n_lines = 2.0 * max(HALF_WIDTH * frequency_hz / line, FEWEST_LINES)
     peak = 2.0 * np.pi * max(damping_ratio * frequency_hz / line, LEAST_HALF_BANDWIDTH)
-    most = min(STEADY, least_variance(1.0 / np.hypot(1.0 / lines, 1.0 / peak)))
-    return envelope_variance(y, sample_rate_hz, frequency_hz, shape) < most
+    most = min(STEADY, least_variance(1.0 / np.hypot(1.0 / n_lines, 1.0 / peak)))
+    return envelope_variance(lines, duration_s, frequency_hz, shape) < most
 
 
 def _analytic(
-    y: FloatArray, sample_rate_hz: float, frequency_hz: float, half_hz: float, shape: ComplexArray
+    lines: ComplexArray, duration_s: float, frequency_hz: float, half_hz: float, shape: ComplexArray
 ) -> ComplexArray:
-    """Return the analytic signal of the channels projected on a shape, in a band around a frequency."""
-    lines = fft.fft(shape.conj() @ np.where(np.isfinite(y), y, 0.0))
-    f = fft.fftfreq(y.shape[1], 1.0 / sample_rate_hz)
-    return np.asarray(fft.ifft(np.where(np.abs(f - frequency_hz) <= half_hz, lines, 0.0)))
+    """Return the analytic signal of the channels projected on a shape, in a band around a frequency.
+
+    About the band's first line, at so many instants that the mean of its fourth power is exact.
+    """
+    first = max(int(np.ceil((frequency_hz - half_hz) * duration_s)), 0)
+    last = min(int((frequency_hz + half_hz) * duration_s), lines.shape[1] - 1)
+    return np.asarray(fft.ifft(shape.conj() @ lines[:, first : last + 1], 2 * max(last - first + 1, 1)))
 
 
 def relative_variance(analytic: ComplexArray) -> FloatArray:

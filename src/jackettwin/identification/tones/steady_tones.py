@@ -155,15 +155,19 @@ def _over_background(spectrum: ComplexArray) -> FloatArray:
     for first in range(max(NEAREST_LINE, reach + 1), n_lines - reach, chunk):
         k = np.arange(first, min(first + chunk, n_lines - reach))
         wide = spectrum[:, k[0] - reach : k[-1] + reach + 1]
-        products = np.cumsum(wide.T[:, :, None] * wide.T[:, None, :].conj(), axis=0)
-        products = np.concatenate([np.zeros((1, n_channels, n_channels)), products])
-        at = k - k[0] + reach
-        all_, inner = (products[at + half + 1] - products[at - half] for half in (reach, REACH))
-        around = regular(np.asarray((all_ - inner) / n))
+        products = np.zeros((wide.shape[1] + 1, n_channels, n_channels), dtype=complex)
+        np.cumsum(wide.T[:, :, None] * wide.T[:, None, :].conj(), axis=0, out=products[1:])
+        around = regular((_moving(products, reach, reach) - _moving(products, reach, REACH)) / n)
         x = spectrum[:, k].T
         solved = np.linalg.solve(around, x[:, :, None])[:, :, 0]
         out[k] = np.einsum("ka,ka->k", x.conj(), solved).real
     return np.asarray(out * (max(n - n_channels, 1) / (n * n_channels)))
+
+
+def _moving(sums: ComplexArray, ends: int, half: int) -> ComplexArray:
+    """Return sums of 2 half + 1 terms about each but ``ends`` terms at either end, from running sums."""
+    n = len(sums) - 1 - 2 * ends
+    return np.asarray(sums[ends + half + 1 :][:n] - sums[ends - half :][:n])
 
 
 def _less(y: FloatArray, position: float) -> FloatArray:
