@@ -150,6 +150,10 @@ CATALOGUE: dict[str, Kind] = {
         "a free decay from {from_s:.4g} to {to_s:.4g} s, over {fall:.1f} e-folds; its modes explain "
         "{explained:.1%} of it, and nothing else of the record is used",
     ),
+    "beside_knock": Kind(
+        "info",
+        "one knock rings out over {fall:.1f} e-folds; modes are those of the {used_s:.4g} s beside it",
+    ),
     "transient": Kind(
         "warning",
         "the record falls by {fall:.1f} e-folds from one high point while forces go on: no free decay, not "

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jackettwin.errors import InputError
+from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
@@ -20,10 +21,12 @@ from jackettwin.identification.selection.choice import chosen_modes, cleared, sc
 from jackettwin.identification.selection.picked import left_out, picked_clusters, with_verdicts
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.identification.status import ModeStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from jackettwin.identification.decays.free_decay import Transient
     from jackettwin.identification.selection.candidates import Candidate
     from jackettwin.records import Record
 
@@ -81,7 +84,7 @@ def identify(
     if settings.method == "efdd":
         _refuse_picks(wanted)
         return fdd(record, settings)
-    fallen = transient(record, settings) if settings.method == "ssi-cov" and not wanted else None
+    fallen = _fallen(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
     if fallen is not None and fallen.identified is not None:
         return fallen.identified
     if settings.method != "ssi-cov":
@@ -132,6 +135,24 @@ def identify(
         picks=tuple(_pick(poles, c, record.name) for c in judged if c.objection is None),
     )
     return identified if basis is None else at_all_channels(identified, whole, basis)
+
+
+def _fallen(
+    record: Record, settings: IdentificationSettings, progress: Callable[[str], None] | None
+) -> Transient | None:
+    """Return what falls in a record, with its modes if it is a free decay, or those beside it if a knock."""
+    fallen = transient(record, settings)
+    if fallen is None or fallen.beside is None:
+        return fallen
+    try:
+        found = identify(fallen.beside, settings, progress=progress)
+    except InputError:
+        return transient(record, settings, knocks=True)
+    if not any(mode.status is ModeStatus.OK for mode in found.modes):
+        return transient(record, settings, knocks=True)
+    said = Finding("beside_knock", params={"fall": fallen.fall, "used_s": fallen.beside.duration_s})
+    found = replace(found, findings=(said, *found.findings), warnings=(str(said), *found.warnings))
+    return replace(fallen, identified=found)
 
 
 def _pick(poles: Stabilisation, chosen: Candidate, record: str) -> Pick:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,6 +46,10 @@ MOSTLY = 0.88
 """… if damped cosines explain this share of it; responses to random forces leave more …"""
 NEARLY_ALL = 0.97
 """… and this share of a shallower one."""
+BRIEF = 0.1
+"""Share of the record below which a decay may be a knock …"""
+A_KNOCK = 3.0
+"""… if it falls by fewer e-folds: of a structure that was let go the rest of the record tells less."""
 STILL_FORCED = 1.5
 """Power that the fit leaves of the first quarter, over that of the rest: forces still act."""
 LATER_STARTS = 8
@@ -83,11 +88,15 @@ class Transient:
     fall : float
         E-folds of the amplitude.
     identified : Identification or None
-        Its modes, where damped cosines explain what falls; None where forces go on.
+        Its modes, where damped cosines explain what falls, or those of what is beside it; None where forces
+        go on.
+    beside : Record or None
+        The longer stretch before or after a fall so brief and shallow that it may be a knock.
     """
 
     fall: float
     identified: Identification | None
+    beside: Record | None = None
 
     def doubted(self, modes: Iterable[ModalEstimate]) -> tuple[ModalEstimate, ...]:
         """Return modes that were taken from the whole record, which is not stationary, as doubtful."""
@@ -95,8 +104,13 @@ class Transient:
         return tuple(mode.flagged(ModeStatus.DOUBTFUL, reason) for mode in modes)
 
 
-def transient(record: Record, settings: IdentificationSettings) -> Transient | None:
+def transient(record: Record, settings: IdentificationSettings, *, knocks: bool = False) -> Transient | None:
     """Return the decay in a record, with its modes if it is a free one; None if the record does not decay.
+
+    Parameters
+    ----------
+    knocks : bool
+        Whether the modes of what may be a knock are sought as well.
 
     Raises
     ------
@@ -116,6 +130,9 @@ def transient(record: Record, settings: IdentificationSettings) -> Transient | N
     if part is None:
         return None
     rate = level.sample_rate_hz
+    beside = _beside_knock(record, part, rate)
+    if beside is not None and not knocks:
+        return Transient(part.fall, None, beside)
     decay = _free(part, level.data, rate)
     if decay is None:
         return Transient(part.fall, None)
@@ -151,6 +168,17 @@ def transient(record: Record, settings: IdentificationSettings) -> Transient | N
         warnings=(*warnings, str(said)),
     )
     return Transient(part.fall, identified)
+
+
+def _beside_knock(record: Record, part: DecayPart, rate: float) -> Record | None:
+    """Return the longer stretch before or after a decay that may be a knock; None if it is more."""
+    first, last = (int(k / rate * record.sample_rate_hz) for k in (part.first, part.last))
+    if part.fall > A_KNOCK or last - first > BRIEF * record.data.shape[1]:
+        return None
+    if first >= record.data.shape[1] - last:
+        return replace(record, data=record.data[:, :first])
+    start = record.start_utc and record.start_utc + timedelta(seconds=last / record.sample_rate_hz)
+    return replace(record, data=record.data[:, last:], start_utc=start)
 
 
 def _falling(level: Record) -> tuple[DecayPart | None, Record]:

@@ -119,6 +119,7 @@ def accepted_fits(
             continue
         left &= ~group.members
         work = partial(refine_group, y, sample_rate_hz, group, **_given(start))
+        work = partial(work, most_lack_of_fit=MOST_LOCAL_LACK_OF_FIT)
         many = np.sum(group.members & start.sure) >= MANY_MODES
         for share in DITHER_SHARES[:1] if many else DITHER_SHARES:
             local = _tried(partial(work, dither_share=share), MOST_LOCAL_LACK_OF_FIT, start, duration_s)

@@ -49,14 +49,21 @@ LAG_PRIOR = 0.05
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
 """Exponents tried at the start, of all force spectra together."""
 MAX_ITERATIONS = 80
-TOLERANCE = 0.02
-"""Stop when the step is below this share of every standard deviation of ln f and ln ζ …"""
+TOLERANCE = 0.1
+"""Stop where the whole step, undamped, is below this share of the standard deviations of ln f and ln ζ of the
+modes that are sought: it would change what is said of them by nothing that matters …"""
+EXPECTED_GAIN = 1.0
+"""… and would gain less log-likelihood than this: forces and noise have settled as well …"""
+NO_LIFT = 1e-4
+"""Share of the information that is added to call a step undamped: some directions have next to none."""
 LEAST_GAIN = 0.001
-"""… or the log-likelihood gains less than this, …"""
+"""… or where a step gains less than this, if it was damped by no more than …"""
 FREE = 0.1
-"""… and the step was damped by no more than this share of the information: one held back is short. …"""
+"""… this share of the information: one held back is short. …"""
+LITTLE_GAIN = 0.03
+"""… Or where several steps running gain less than this and less than the above is expected, or …"""
 MOST_IDLE = 3
-"""… Or when so many steps running gain no more, however damped."""
+"""… where so many running gain next to nothing, however damped."""
 ZETA_RANGE = (1e-5, 0.5)
 ROUNDED_OFF = np.complex64(1e-4 + 1e-4j)
 """Derivatives below 1e-11 are taken for zero."""
@@ -105,6 +112,9 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
         return Climb(p, -np.inf, False)
     for _ in range(most):
         score, fisher = scoring(data, prior, at)
+        left, expected_gain = _left(at.parameters, score, fisher)
+        if left < TOLERANCE and expected_gain < EXPECTED_GAIN:
+            return Climb(at.parameters, at.value, True)
         trial = None
         while (trial is None or trial.value < at.value) and lift < 1e7:
             used, step = lift, _solved(fisher, score, lift)
@@ -114,13 +124,24 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
             lift *= 6.0
         if trial is None or trial.value < at.value:
             return Climb(at.parameters, at.value, False)
-        n = 2 * len(p.log_f)
-        small = np.abs(step[:n]) * np.sqrt(np.diag(fisher)[:n])
-        idle = idle + 1 if trial.value - at.value < LEAST_GAIN else 0
+        gain = trial.value - at.value
+        idle = idle + 1 if gain < (LITTLE_GAIN if expected_gain < EXPECTED_GAIN else LEAST_GAIN) else 0
         at, lift = trial, max(lift / 60.0, 1e-6)
-        if idle == MOST_IDLE or (used <= FREE and (idle or bool(np.all(small < TOLERANCE)))):
+        if idle == MOST_IDLE or (used <= FREE and gain < LEAST_GAIN):
             return Climb(at.parameters, at.value, True)
     return Climb(at.parameters, at.value, False)
+
+
+def _left(p: Parameters, score: FloatArray, fisher: FloatArray) -> tuple[float, float]:
+    """Return how far the maximum of a parabola is, and how much higher.
+
+    The distance is the largest in standard deviations of ln f and ln ζ of the modes that are sought.
+    """
+    step = _solved(fisher, score, NO_LIFT)
+    size = np.abs(step) * np.sqrt(np.diag(fisher))
+    n = len(p.log_f)
+    sought = np.append(size[p.held : n], size[n + p.held : 2 * n])
+    return float(sought.max(initial=0.0)), float(0.5 * score @ step)
 
 
 def start(

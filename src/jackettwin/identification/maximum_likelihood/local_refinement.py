@@ -88,6 +88,7 @@ def refine_group(
     derivatives: Sequence[int],
     avoid_hz: Sequence[tuple[float, float]] = (),
     dither_share: float = DITHER_SHARES[0],
+    most_lack_of_fit: float = np.inf,
 ) -> Refined:
     """Fit one group; parameters as of ``refine``, candidates counted as there.
 
@@ -114,6 +115,7 @@ def refine_group(
         avoid_hz=avoid_hz,
         background=True,
         narrow=Narrow(dither_share, frequency_hz[beside], damping_ratio[beside], shapes[beside]),
+        most_lack_of_fit=most_lack_of_fit,
     )
     wider = FEW_LINES * max(fit.lack_of_fit, 1.0)
     if basis is not None:

@@ -42,7 +42,7 @@ WORTH_A_TRY = 12
 """… and after so many steps more …"""
 STILL_HOPELESS = 1.5
 """… if it still lacks this many times that."""
-MOST_STEPS, FEWEST_STEPS = 60, 8
+MOST_STEPS, FEWEST_STEPS = 30, 8
 """Steps after those: fits that end take eight to twenty as a rule …"""
 MOST_WORK = 4e9
 """… and no more than this many products: what is still on its way then seldom arrives."""
@@ -125,12 +125,12 @@ def refine(
         first = with_background(data, first)
     climb = likelihood.climbed(data, first, APPROACH)
     lack = accuracy.lack_of_fit(data, climb.parameters)
-    if lack > BEYOND_HOPE * most_lack_of_fit:
+    if narrow is None and lack > BEYOND_HOPE * most_lack_of_fit:
         return _given_up(np.full(len(sure), np.inf), unit.shape[1], lack)
     least = PARAMETERS_OF_A_MODE + unit.shape[1] if narrow is None else needed_gain(data)
     climb, chosen, gain = joined(data, climb, chosen, frequency_hz, damping_ratio, unit, least)
     lack = accuracy.lack_of_fit(data, climb.parameters)
-    if lack > HOPELESS * most_lack_of_fit:
+    if narrow is None and lack > HOPELESS * most_lack_of_fit:
         return _given_up(gain, unit.shape[1], lack)
     climb = likelihood.climbed(data, climb.parameters, WORTH_A_TRY)
     lack = accuracy.lack_of_fit(data, climb.parameters)

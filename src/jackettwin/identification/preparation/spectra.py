@@ -31,7 +31,7 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
     f, matrix = spectral_matrix(y, sample_rate_hz, length)
     density = np.asarray(np.einsum("faa->af", matrix).real)
     scale = np.sqrt(np.nanmean(y**2, axis=1))
-    # the eigenvalues of a matrix that is Hermitian and positive are its singular values, at a third of the cost
+    # of a positive Hermitian matrix these are the singular values, at a third of their cost
     singular = np.linalg.eigvalsh(matrix / np.multiply.outer(scale, scale))[:, ::-1].T
     return Spectrum(f, density, np.abs(singular))
 
