@@ -98,26 +98,34 @@ def test_a_gust_that_dies_down_is_no_decay_and_leaves_no_mode_ok() -> None:
     assert all(mode.status != "ok" for mode in found.modes)
 
 
+LIVELY = ModalSystem(4.0 * F, ZETA, SHAPES, np.diag([1.0, 0.3]), noise_ratio=0.02)
+
+
+def knock(at_s: float) -> np.ndarray:
+    """Return what a blow does to a tower that swings four times as fast, (8 channels, n)."""
+    omega, later = 2.0 * np.pi * LIVELY.frequency_hz[:, None], np.maximum(T - at_s, 0.0)
+    swing = np.exp(-ZETA[:, None] * omega * later) * np.cos(omega * later) * (T >= at_s)
+    return np.asarray(SHAPES.T @ (np.array([[30.0], [10.0]]) * swing))
+
+
 @pytest.mark.parametrize("at_s", [200.0, 480.0])
 def test_a_knock_in_a_long_record_costs_what_it_touches_only(at_s: float) -> None:
-    """Something bumps the tower, far more strongly than wind: the rest of the record tells more."""
-    lively = ModalSystem(F * 4.0, ZETA, SHAPES, np.diag([1.0, 0.3]), noise_ratio=0.02)
-    wind = simulate(lively, np.random.default_rng(4), duration_s=600.0, sample_rate_hz=RATE).data
-    later = np.maximum(T - at_s, 0.0)
-    omega = 2.0 * np.pi * lively.frequency_hz[:, None]
-    swing = np.exp(-ZETA[:, None] * omega * later) * np.cos(omega * later) * (T >= at_s)
-    found = identify(record(wind / wind.std() + SHAPES.T @ (np.array([[30.0], [10.0]]) * swing)))
+    """Something bumps the tower far more strongly than wind: the rest of the record tells more."""
+    wind = simulate(LIVELY, np.random.default_rng(4), duration_s=600.0, sample_rate_hz=RATE).data
+    found = identify(record(wind / wind.std() + knock(at_s)))
     assert any(f.code == "beside_knock" for f in found.findings)
     assert found.duration_s < 600.0
     assert [mode.status for mode in found.modes] == ["ok", "ok"]
-    for mode, f, zeta in zip(found.modes, lively.frequency_hz, ZETA, strict=True):
+    for mode, f, zeta in zip(found.modes, LIVELY.frequency_hz, ZETA, strict=True):
         std_f, std_zeta = np.sqrt(np.diag(mode.log_covariance))
         assert abs(np.log(mode.frequency_hz / f)) < 4.0 * std_f
         assert abs(np.log(mode.damping_ratio / zeta)) < 4.0 * std_zeta
 
 
 def test_a_knock_on_what_stands_still_is_identified_from_itself() -> None:
-    y = let_go(100.0, (1.0, 0.4)) + 0.1 * np.random.default_rng(3).standard_normal((8, LENGTH))
-    found = identify(record(y))
+    noise = np.random.default_rng(3).standard_normal((8, LENGTH))
+    settings = IdentificationSettings()
+    assert transient(record(noise + knock(200.0)), settings).beside is None
+    found = identify(record(noise + knock(200.0)))
     assert found.modes
     assert {mode.method for mode in found.modes} == {"decay"}

@@ -21,8 +21,8 @@ from jackettwin.identification.estimate import (
     Stabilisation,
 )
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
-from jackettwin.identification.preparation.resolve import usable_channels
-from jackettwin.identification.preparation.spectra import welch
+from jackettwin.identification.preparation.resolve import FEWEST_SAMPLES, usable_channels
+from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 from jackettwin.identification.preparation.whitening import accelerated, as_measured
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.identification.status import ModeStatus
@@ -130,7 +130,7 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
     if part is None:
         return None
     rate = level.sample_rate_hz
-    beside = _beside_knock(record, part, rate)
+    beside = _beside_knock(record, part, level)
     if beside is not None and not knocks:
         return Transient(part.fall, None, beside)
     decay = _free(part, level.data, rate)
@@ -170,10 +170,20 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
     return Transient(part.fall, identified)
 
 
-def _beside_knock(record: Record, part: DecayPart, rate: float) -> Record | None:
-    """Return the longer stretch before or after a decay that may be a knock; None if it is more."""
-    first, last = (int(k / rate * record.sample_rate_hz) for k in (part.first, part.last))
-    if part.fall > A_KNOCK or last - first > BRIEF * record.data.shape[1]:
+def _beside_knock(record: Record, part: DecayPart, level: Record) -> Record | None:
+    """Return the longer stretch before or after a decay that may be a knock; None if it is more.
+
+    It is more where nothing moved before; as much again is left out after it, in which it still rings.
+    """
+    # its highest point is that of a mean over cycles: it begins before
+    begin = max(part.first - round(2.0 * CYCLES * level.sample_rate_hz / part.strongest_hz), 0)
+    times = record.sample_rate_hz / level.sample_rate_hz
+    first, last = int(begin * times), int((2 * part.last - part.first) * times)
+    brief = part.last - part.first < BRIEF * level.data.shape[1]
+    before = level.data[:, :begin]
+    if part.fall > A_KNOCK or not brief or before.shape[1] < FEWEST_SAMPLES:
+        return None
+    if lowest_peak_hz(welch(before, level.sample_rate_hz)) is None:
         return None
     if first >= record.data.shape[1] - last:
         return replace(record, data=record.data[:, :first])
