@@ -194,6 +194,20 @@ def guess_quantity(name: str, unit: str) -> str:
     return allowed[0] if len(allowed) == 1 and unit != "1" else "other"
 
 
+def unit_in_name(name: str, kind: str) -> str:
+    """Return the unit of a kind of vibration that a channel's name ends with, "" if it ends with none.
+
+    >>> unit_in_name("disp_x_mm", "displacement"), unit_in_name("acc top m_s2", "acceleration")
+    ('mm', 'm/s2')
+    """
+    words = name.replace(" ", "_").split("_")
+    for n in (2, 1):
+        unit = "/".join(words[-n:])
+        if len(words) > n and _has_unit(QUANTITIES[kind], unit) and unit != "1":
+            return unit
+    return ""
+
+
 def names_other(name: str) -> bool:
     """Tell whether a channel's name is that of something else than a vibration.
 

@@ -65,6 +65,23 @@ def test_what_a_logger_writes_above_its_table_is_no_table(tmp_path: Path) -> Non
     np.testing.assert_allclose(record.data[0] / 9.80665, [0.5, 1.5, 2.5, 3.5])
 
 
+def test_a_clock_or_count_of_another_name_is_no_channel(tmp_path: Path) -> None:
+    rows = "".join(f"{0.2167 * k:.4f},{k % 3},1\n" for k in range(20))
+    record = read_text("epoch,acc_x_g,disp_y_mm\n" + rows, tmp_path)
+    assert record.channel_names == ("acc_x_g", "disp_y_mm")
+    assert record.sample_rate_hz == pytest.approx(1.0 / 0.2167, rel=1e-3)
+    assert record.data[0, 1] == pytest.approx(9.80665)
+    assert record.data[1, 1] == pytest.approx(1e-3)
+    remarks = " ".join(record.metadata["remarks"])
+    assert "column epoch climbs evenly" in remarks
+    assert "in g (acc_x_g)" in remarks
+    counted = read_text(
+        "# fs: 5\nSample,acc_x_g\n" + "".join(f"{k},{k % 3}\n" for k in range(1, 9)), tmp_path
+    )
+    assert counted.channel_names == ("acc_x_g",)
+    assert "column Sample counts rows" in counted.metadata["remarks"][0]
+
+
 def test_words_with_numbers_among_them_are_no_record(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds no"):
         read_text("Measured by Bob on turbine 7. Call 0800.\nLogger 3, all fine.\n", tmp_path)

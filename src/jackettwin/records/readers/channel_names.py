@@ -71,6 +71,8 @@ class Reading:
         ``"LAT"`` if the name counts from lowest astronomical tide.
     level : str
         The part of the structure, ``"tower top"``; empty without one.
+    unit : str
+        Of the stored numbers; filled in by who knows the quantity.
     """
 
     direction: Vector | None = None
@@ -78,6 +80,7 @@ class Reading:
     height_m: float | None = None
     datum: str = ""
     level: str = ""
+    unit: str = ""
 
 
 def read_name(name: str) -> Reading:
@@ -86,7 +89,7 @@ def read_name(name: str) -> Reading:
     Examples
     --------
     >>> read_name("ACC_088m_E")
-    Reading(direction=(1.0, 0.0, 0.0), direction_word='east', height_m=88.0, datum='', level='')
+    Reading(direction=(1.0, 0.0, 0.0), direction_word='east', height_m=88.0, datum='', level='', unit='')
     >>> read_name("LAT097_SS").height_m, read_name("acc_x_77m").direction, read_name("TT_FA").level
     (97.0, (1.0, 0.0, 0.0), 'tower top')
     >>> read_name("ss_x").direction is None  # two different things
@@ -125,17 +128,22 @@ def told(used: Mapping[str, Reading]) -> tuple[str, ...]:
     """
     heights: dict[str, list[str]] = {}
     directions: dict[str, list[str]] = {}
+    units: dict[str, list[str]] = {}
     for name, reading in used.items():
+        if reading.unit:
+            units.setdefault(f"in {reading.unit}", []).append(name)
         if reading.height_m is not None:
             above = " above lowest astronomical tide, taken as mean sea level" if reading.datum == LAT else ""
             heights.setdefault(f"{reading.height_m:g} m{above}", []).append(name)
         if reading.direction is not None and reading.direction_word not in ("x", "y", "z"):
             axis = _axis(reading.direction)
             directions.setdefault(f"{reading.direction_word} is {axis}", []).append(name)
-    parts = [f"{what} ({_list(names)})" for what, names in (*heights.items(), *directions.items())]
+    parts = [
+        f"{what} ({_list(names)})" for what, names in (*heights.items(), *directions.items(), *units.items())
+    ]
     if not parts:
         return ()
-    overrule = "height_m and direction in the JSON beside the file overrule this"
+    overrule = "height_m, direction and unit in the JSON beside the file overrule this"
     return (f"read from the channel names: {'; '.join(parts)}; {overrule}",)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from jackettwin.quantities import (
     plain_unit,
     quantity,
     to_si,
+    unit_in_name,
     vibration_of,
 )
 from jackettwin.records.readers.channel_names import Reading, read_name
@@ -77,8 +78,9 @@ def described_channel(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> De
     """
     try:
         kind, unit, gain = _measures(name, entry, unsaid)
-        factor, si_unit = _factor(kind, unit)
-        read = _from_name(name, entry, kind)
+        named = unit_in_name(name, kind) if kind in VIBRATIONS and not unit else ""
+        factor, si_unit = _factor(kind, unit or named)
+        read = replace(_from_name(name, entry, kind), unit=named)
         direction = _unit_vector(entry.get("direction") or read.direction or (0.0, 0.0, 0.0))
     except InputError as error:
         raise error.at(field=f"channels.{name}") from None

@@ -23,7 +23,7 @@ import numpy.typing as npt
 from jackettwin.errors import InputError
 from jackettwin.records.readers.description import parse_time
 from jackettwin.records.readers.stamps import has_zone, is_stamp, stamps, with_one_stamp
-from jackettwin.records.readers.table import ReadTable, table_from_columns
+from jackettwin.records.readers.table import ReadTable, climbs_evenly, table_from_columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -147,7 +147,7 @@ def _table(lines: list[str], above: int = 0) -> ReadTable:
     _refuse_further_cells(names, body, delimiter, first_line)
     names, body = with_one_stamp(names, body)
     columns = [_column(i, name, body, delimiter, first_line) for i, name in enumerate(names)]
-    if bare and _climbs_evenly(columns[0]):
+    if bare and climbs_evenly(columns[0]):
         names[0] = ""  # a count or a time, as an index without a name is
     known = _known(comments)
     if "start_utc" not in known and any(has_zone(cell) for cell in (body[0] if body else ())):
@@ -214,13 +214,6 @@ def _without_toa5(lines: list[str]) -> list[str]:
     if not lines or not lines[0].lstrip('"').startswith("TOA5"):
         return lines
     return [*lines[1:3], *lines[4:]]
-
-
-def _climbs_evenly(column: npt.NDArray[Any]) -> bool:
-    if column.dtype.kind != "f" or len(column) < 3:
-        return False
-    steps = np.diff(column)
-    return bool(np.all(np.abs(steps - np.median(steps)) < 0.5 * np.median(steps)))
 
 
 def _numbered(row: list[str]) -> tuple[list[str], dict[str, str]]:

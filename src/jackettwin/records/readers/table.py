@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
+from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clock import regularise
 from jackettwin.records.readers.channel_names import told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
@@ -74,9 +75,9 @@ def table_from_columns(
 ) -> ReadTable:
     """Return a table of equally long columns.
 
-    The first column is the time if its name says so, or if it has no name and does not just count
-    rows; a column of datetimes or of times of day is the time wherever it stands. Columns without
-    numbers are left out and named in a remark.
+    The first column is the time if its name says so, or if it climbs evenly or has no name and does not
+    just count rows; a column of datetimes or of times of day is the time wherever it stands. Columns
+    without numbers, or that count rows, are left out and named in a remark.
 
     Raises
     ------
@@ -84,19 +85,26 @@ def table_from_columns(
         If there is no column left or a name is given twice.
     """
     channels = {name: ChannelEntry(unit=unit) for name, unit in (units or {}).items() if unit}
-    time = _time_column(names, columns)
+    time = _time_column(names, columns, channels)
     if time is not None:
         unit = channels.pop(names[time], ChannelEntry()).unit or time_unit(names[time])
         times_s, start_utc = seconds(columns[time], unit)
         dated = columns[time].dtype.kind == "M" and "start_utc" not in known
         known = {"start_utc": start_utc, "zone_said": not dated, **known, "times_s": times_s}
-    kept = [i for i in range(len(names)) if i != time and names[i] and columns[i].dtype.kind == "f"]
-    left_out = [name for i, name in enumerate(names) if name and i != time and i not in kept]
+    counts = names and _counts_rows(columns[0]) and not _is_channel(names[0], channels)
+    counted = 0 if time is None and counts else None
+    kept = [i for i in range(len(names)) if i not in (time, counted) and names[i]]
+    kept = [i for i in kept if columns[i].dtype.kind == "f"]
+    left_out = [name for i, name in enumerate(names) if name and i not in (time, counted, *kept)]
+    remarks = []
     if left_out:
-        known["remarks"] = (
-            *known.get("remarks", ()),
-            f"columns without numbers are left out: {', '.join(left_out)}",
-        )
+        remarks.append(f"columns without numbers are left out: {', '.join(left_out)}")
+    if counted is not None and names[counted]:
+        remarks.append(f"column {names[counted]} counts rows and is left out")
+    if time is not None and names[time] and columns[time].dtype.kind == "f" and not is_time(names[time]):
+        remarks.append(f"column {names[time]} climbs evenly and is taken for the time in s")
+    if remarks:
+        known["remarks"] = (*known.get("remarks", ()), *remarks)
     if not kept:
         raise InputError(
             "holds no channels",
@@ -108,7 +116,9 @@ def table_from_columns(
     return ReadTable(tuple(names[i] for i in kept), np.vstack([columns[i] for i in kept]), channels, **known)
 
 
-def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> int | None:
+def _time_column(
+    names: Sequence[str], columns: Sequence[npt.NDArray[Any]], channels: Mapping[str, ChannelEntry]
+) -> int | None:
     dated = [i for i, column in enumerate(columns) if column.dtype.kind in "Mm"]
     if dated:
         return dated[0]
@@ -123,8 +133,34 @@ def _time_column(names: Sequence[str], columns: Sequence[npt.NDArray[Any]]) -> i
             allowed="seconds, or 2025-01-01T13:00:00Z",
             remedy="write times in seconds or as ISO 8601",
         )
-    counts_rows = numeric and np.array_equal(columns[0], np.arange(len(columns[0])))
-    return 0 if called_time or (numeric and not names[0] and not counts_rows) else None
+    clock = not names[0] or (climbs_evenly(columns[0]) and not _is_channel(names[0], channels))
+    return 0 if called_time or (numeric and clock and not _counts_rows(columns[0])) else None
+
+
+def _is_channel(name: str, channels: Mapping[str, ChannelEntry]) -> bool:
+    """Tell whether a unit or its name says that a column is no clock nor count."""
+    return name in channels or guess_quantity(name, "") != "other" or names_other(name)
+
+
+def climbs_evenly(column: npt.NDArray[Any]) -> bool:
+    """Tell whether numbers climb by steps that are alike, as those of a clock or a count do.
+
+    >>> climbs_evenly(np.array([0.0, 0.1, 0.2, 0.31])), climbs_evenly(np.array([0.0, 0.1, 0.1, 0.3]))
+    (True, False)
+    """
+    if column.dtype.kind != "f" or len(column) < 3:
+        return False
+    steps = np.diff(column)
+    return bool(np.all(np.abs(steps - np.median(steps)) < 0.5 * np.median(steps)))
+
+
+def _counts_rows(column: npt.NDArray[Any]) -> bool:
+    first = column[0] if len(column) else 0.0
+    return (
+        column.dtype.kind == "f"
+        and np.array_equal(column, first + np.arange(len(column)))
+        and first in (0, 1)
+    )
 
 
 def is_time(name: str) -> bool:
