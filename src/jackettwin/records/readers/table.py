@@ -148,14 +148,16 @@ def climbs_evenly(column: npt.NDArray[Any]) -> bool:
     >>> climbs_evenly(np.array([0.0, 0.1, 0.2, 0.31])), climbs_evenly(np.array([0.0, 0.1, 0.1, 0.3]))
     (True, False)
     """
-    if column.dtype.kind != "f" or len(column) < 3:
+    if column.dtype.kind != "f" or len(column) < 3 or not np.isfinite(column).all():
         return False
     steps = np.diff(column)
     return bool(np.all(np.abs(steps - np.median(steps)) < 0.5 * np.median(steps)))
 
 
 def _counts_rows(column: npt.NDArray[Any]) -> bool:
-    first = column[0] if len(column) else 0.0
+    if not (len(column) and np.isfinite(column[0])):
+        return False
+    first = column[0]
     return (
         column.dtype.kind == "f"
         and np.array_equal(column, first + np.arange(len(column)))
