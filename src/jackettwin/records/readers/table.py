@@ -155,14 +155,9 @@ def climbs_evenly(column: npt.NDArray[Any]) -> bool:
 
 
 def _counts_rows(column: npt.NDArray[Any]) -> bool:
-    if not (len(column) and np.isfinite(column[0])):
+    if column.dtype.kind != "f" or not len(column) or column[0] not in (0.0, 1.0):
         return False
-    first = column[0]
-    return (
-        column.dtype.kind == "f"
-        and np.array_equal(column, first + np.arange(len(column)))
-        and first in (0, 1)
-    )
+    return bool(np.array_equal(column, column[0] + np.arange(len(column))))
 
 
 def is_time(name: str) -> bool:
