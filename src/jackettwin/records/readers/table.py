@@ -15,7 +15,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clock import regularise
-from jackettwin.records.readers.channel_names import told
+from jackettwin.records.readers.channel_names import Reading, read_name, told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.sentinels import without_sentinels
@@ -138,8 +138,9 @@ def _time_column(
 
 
 def _is_channel(name: str, channels: Mapping[str, ChannelEntry]) -> bool:
-    """Tell whether a unit or its name says that a column is no clock nor count."""
-    return name in channels or guess_quantity(name, "") != "other" or names_other(name)
+    """Tell whether its unit, quantity, place or direction says that a column is no clock nor count."""
+    measured = guess_quantity(name, "") != "other" or names_other(name)
+    return name in channels or measured or read_name(name) != Reading()
 
 
 def climbs_evenly(column: npt.NDArray[Any]) -> bool:
