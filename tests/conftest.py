@@ -30,3 +30,12 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(20250117)
+
+
+@pytest.fixture(scope="session")
+def postgresql_url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """URL of a PostgreSQL of Debian's packages; skips the test where there is none."""
+    from tests.service.servers import postgresql
+
+    with postgresql(tmp_path_factory.mktemp("postgresql")) as url:
+        yield url

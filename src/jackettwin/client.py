@@ -126,14 +126,17 @@ class Client:
     def events(self, last_event_id: int | None = None) -> Iterator[dict[str, Any]]:
         """Yield what happens, for ever: ``{"id", "event", "data"}``."""
         headers = {} if last_event_id is None else {"Last-Event-ID": str(last_event_id)}
-        with self._http.stream("GET", "/events", headers=headers, timeout=None) as answer:
-            _refuse(answer)
-            event: dict[str, Any] = {}
-            for line in answer.iter_lines():
-                name, _, value = line.partition(": ")
-                if not line and "data" in event:
-                    yield {**event, "data": json.loads(event["data"])}
-                event = {} if not line else {**event, name: value}
+        while True:  # the server ends each stream after some minutes
+            with self._http.stream("GET", "/events", headers=headers, timeout=None) as answer:
+                _refuse(answer)
+                event: dict[str, Any] = {}
+                for line in answer.iter_lines():
+                    name, _, value = line.partition(": ")
+                    if name == "id":
+                        headers = {"Last-Event-ID": value}
+                    if not line and "data" in event:
+                        yield {**event, "data": json.loads(event["data"])}
+                    event = {} if not line else {**event, name: value}
 
     def _asked(self, method: str, path: str, **more: Any) -> dict[str, Any]:
         answer = self._http.request(method, path, **more)

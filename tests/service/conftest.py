@@ -18,15 +18,16 @@ from fastapi.testclient import TestClient
 from scipy.signal import lfilter
 from tests.support.observations import estimate, observation
 
-from jackettwin.service import ServiceSettings, engine, verdict
+from jackettwin.service import ServiceSettings, auth, engine, verdict
 from jackettwin.service.app import create_app
 from jackettwin.service.catalogue import add_text_version
 from jackettwin.service.context import Service
 from jackettwin.service.dispatch import Dispatcher
-from jackettwin.store import open_database, read_waveform, work, writing
+from jackettwin.store import open_database, people, read_waveform, work, writing
 from jackettwin.twin import OBSERVATION
 
 TWIN = "structure: jacket15\n"
+PASSWORD = "three small words"
 NOON = datetime(2025, 3, 1, 12, tzinfo=UTC)
 
 
@@ -176,6 +177,25 @@ def make_service(
 @pytest.fixture
 def client(service: Service) -> Iterator[TestClient]:
     with TestClient(create_app(service), base_url="http://127.0.0.1:8470") as client:
+        yield client
+
+
+@pytest.fixture(scope="session")
+def password_hash() -> str:
+    return auth.hashed(PASSWORD)
+
+
+@pytest.fixture
+def users(service: Service, password_hash: str) -> Service:
+    with writing(service.database) as connection:
+        for role in people.ROLES:
+            people.add_user(connection, people.User(role, role, password_hash, NOON))
+    return service
+
+
+@pytest.fixture
+def stranger(users: Service) -> Iterator[TestClient]:
+    with TestClient(create_app(users), base_url="http://127.0.0.1:8470", follow_redirects=False) as client:
         yield client
 
 

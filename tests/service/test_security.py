@@ -3,7 +3,6 @@
 import gzip
 import re
 import resource
-from collections.abc import Iterator
 from datetime import timedelta
 from pathlib import Path
 from urllib.parse import quote
@@ -14,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
-from tests.service.conftest import NOON, Done, make_service, upload
+from tests.service.conftest import PASSWORD, Done, make_service, upload
 
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, auth, pages
@@ -24,7 +23,6 @@ from jackettwin.service.settings import refuse_exposed
 from jackettwin.service.tasks import read_file
 from jackettwin.store import people, results, writing
 
-PASSWORD = "three small words"
 OPEN = {
     "/api/v1/login",
     "/api/v1/health",
@@ -35,25 +33,6 @@ OPEN = {
     "/library/plotly.js",
 }
 """What needs no login; ``/`` sends strangers to ``/login``."""
-
-
-@pytest.fixture(scope="module")
-def password_hash() -> str:
-    return auth.hashed(PASSWORD)
-
-
-@pytest.fixture
-def users(service: Service, password_hash: str) -> Service:
-    with writing(service.database) as connection:
-        for role in people.ROLES:
-            people.add_user(connection, people.User(role, role, password_hash, NOON))
-    return service
-
-
-@pytest.fixture
-def stranger(users: Service) -> Iterator[TestClient]:
-    with TestClient(create_app(users), base_url="http://127.0.0.1:8470", follow_redirects=False) as client:
-        yield client
 
 
 def token(service: Service, user: str, **lasts: float) -> dict[str, str]:

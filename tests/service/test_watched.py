@@ -1,6 +1,7 @@
 """Watching a turbine's days: alarms found in them, told once, taken back where a late record undoes them."""
 
 import json
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +40,7 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Which cause it is, is judged elsewhere, at the price of a thousand eigenvalue problems."""
-    monkeypatch.setattr("jackettwin.twin.judge._causes", lambda *_: None)
+    monkeypatch.setattr(import_module("jackettwin.twin.judge"), "_causes", lambda *_: None)
     kept, findings = watched(folder, days(95, -0.008), None)
     assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
     assert findings[1]["day"] > "2025-03-16"

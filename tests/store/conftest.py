@@ -5,15 +5,8 @@ from pathlib import Path
 
 import pytest
 from sqlalchemy import Engine
-from tests.service.servers import postgresql
 
 from jackettwin.store import open_database
-
-
-@pytest.fixture(scope="session")
-def postgresql_url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with postgresql(tmp_path_factory.mktemp("postgresql")) as url:
-        yield url
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

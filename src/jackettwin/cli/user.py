@@ -30,7 +30,7 @@ def add_user(
     engine = opened(store, database, make=True)
     from jackettwin.service.auth import hashed
     from jackettwin.store import writing
-    from jackettwin.store.people import User
+    from jackettwin.store.people import User, note_down
     from jackettwin.store.people import add_user as keep
 
     password = (
@@ -41,7 +41,29 @@ def add_user(
     user = User(name, role, hashed(password), datetime.now(UTC))
     with writing(engine) as connection:
         keep(connection, user)
+        note_down(connection, "command line", "user add", name, role, user.created_utc)
     if as_json:
         print_json({"user": name, "role": role})
     else:
         output.print(f"{name} is {role}; from now on everybody logs in")
+
+
+@user_command.command("remove")
+@click.argument("name")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def remove_user(name: str, as_json: bool, store: Path, database: str | None) -> None:
+    """Remove the user NAME; sessions and tokens end at once."""
+    engine = opened(store, database)
+    from jackettwin.store import people, writing
+
+    with writing(engine) as connection:
+        people.known_user(connection, name)
+        people.remove_user(connection, name)
+        people.note_down(connection, "command line", "user remove", name, "ok", datetime.now(UTC))
+        left = people.any_user(connection)
+    if as_json:
+        print_json({"user": name, "removed": True})
+    else:
+        nobody = "; nobody is left: who is on this machine may do everything"
+        output.print(f"{name} is removed{'' if left else nobody}")

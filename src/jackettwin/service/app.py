@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, HTTPException, Request
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.datastructures import MutableHeaders
 from starlette.middleware.gzip import GZipMiddleware
@@ -31,6 +31,10 @@ _HEADERS = {
 """Scripts come from files of ours alone; Plotly writes styles into the page."""
 _FIELDS_BYTES = 2**20
 """Room for what comes beside a file in a form."""
+_TEXT_BYTES = 32 * 2**20
+"""Of a request that is no form: twins with their files, years of conditions."""
+_FEW_BYTES = 2**16
+"""Of a request of somebody who sends no files: a name and a password."""
 
 
 def create_app(service: Service) -> FastAPI:
@@ -86,18 +90,43 @@ class Guard:
             await send(message)
 
         try:
-            self._refuse_large(request)
             request.state.who = await _who(self._service, request)
             auth.refuse_forged(request, request.state.who)
+            bounded = self._bounded(request, receive)
         except problems.ApiError as error:
             return await problems.answered(error)(scope, receive, with_headers)
-        await self._app(scope, receive, with_headers)
+        await self._app(scope, bounded, with_headers)
 
-    def _refuse_large(self, request: Request) -> None:
+    def _bounded(self, request: Request, receive: Receive) -> Receive:
+        """Return the request's body as far as who asks may send it: it is read before a route is asked.
+
+        Raises
+        ------
+        ApiError
+            If it says itself that it is larger, or nobody may send anything there without login.
+        """
+        who = request.state.who
+        if who is None and request.method not in auth.SAFE_METHODS and request.url.path != f"{API}/login":
+            raise auth.unknown()
+        most = _TEXT_BYTES
+        if who is None or not who.may("engineer"):
+            most = _FEW_BYTES
+        elif request.headers.get("content-type", "").startswith("multipart/"):
+            most = self._service.settings.upload_limit_bytes + _FIELDS_BYTES
         length = request.headers.get("content-length", "0")
-        most = self._service.settings.upload_limit_bytes + _FIELDS_BYTES
         if not length.isdecimal() or int(length) > most:
             raise problems.ApiError(413, "the request is too large", allowed=f"up to {most} bytes")
+        came = 0
+
+        async def counted() -> Message:
+            nonlocal came
+            message = await receive()
+            came += len(message.get("body", b""))
+            if came > most:
+                raise HTTPException(413, f"the request is too large; allowed: up to {most} bytes")
+            return message
+
+        return counted
 
 
 async def _who(service: Service, request: Request) -> auth.Who | None:

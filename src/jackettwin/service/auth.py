@@ -7,6 +7,7 @@ import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from math import ceil
 from threading import Lock
 from urllib.parse import urlsplit
 
@@ -24,6 +25,8 @@ COOKIE = "jackettwin_session"
 SESSION = timedelta(hours=12)
 TOKEN = timedelta(days=365)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
+GUESSES, GUESSES_FROM = 5, 30
+"""Failed logins a minute: of one name from one address, and of any from it."""
 SHORTEST_PASSWORD = 12
 """Characters; NIST SP 800-63B asks for 8 and advises more."""
 
@@ -48,30 +51,32 @@ class Who:
 
 @dataclass
 class Guesses:
-    """Failed logins of late, by who was tried from where: too many are refused for a while."""
+    """Logins of late that have not succeeded, by who was tried and from where."""
 
-    most: int = 5
     within_s: float = 60.0
-    _failed: dict[str, list[float]] = field(default_factory=dict)
+    _tried: dict[str, list[float]] = field(default_factory=dict)
     _lock: Lock = field(default_factory=Lock)
 
-    def wait_s(self, key: str) -> float:
-        """Return how long to wait before the next try, 0 if it may be tried now."""
+    def wait_s(self, key: str, most: int) -> float:
+        """Count a try and return 0 if it may be made, else how long to wait: ``most`` in ``within_s`` may.
+
+        It is counted before it is made, so that many at once are not more.
+        """
         with self._lock:
             now = time.monotonic()
-            recent = [t for t in self._failed.get(key, []) if now - t < self.within_s]
-            if recent:
-                self._failed[key] = recent
-            else:
-                self._failed.pop(key, None)
-            return recent[-self.most] + self.within_s - now if len(recent) >= self.most else 0.0
+            if len(self._tried) > 10_000:  # a flood of names must not fill the memory
+                self._tried.clear()
+            recent = self._tried[key] = [t for t in self._tried.get(key, []) if now - t < self.within_s]
+            if len(recent) >= most:
+                return recent[-most] + self.within_s - now
+            recent.append(now)
+            return 0.0
 
-    def failed(self, key: str) -> None:
-        """Count a failure."""
+    def succeeded(self, key: str) -> None:
+        """Take a try back."""
         with self._lock:
-            if len(self._failed) > 10_000:  # a flood of names must not fill the memory
-                self._failed.clear()
-            self._failed.setdefault(key, []).append(time.monotonic())
+            if self._tried.get(key):
+                self._tried[key].pop()
 
 
 def hashed(password: str) -> str:
@@ -103,13 +108,28 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
 
 
 def opened_session(
-    database: Engine, name: str, password: str, key: str, now: datetime
-) -> tuple[people.User | None, str, str]:
-    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down."""
-    with writing(database) as connection:
+    database: Engine, guesses: Guesses, name: str, password: str, place: str, now: datetime
+) -> tuple[people.User, str, str]:
+    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
+
+    Raises
+    ------
+    ApiError
+        401 if it is nobody's, 429 after too many tries.
+    """
+    key = f"{place}/{name}"
+    wait = max(guesses.wait_s(place, GUESSES_FROM), guesses.wait_s(key, GUESSES))
+    if wait > 0.0:
+        raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
+    with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
         user = checked_login(connection, name, password)
+    with writing(database) as connection:
         people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
         grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
+    if user is None:
+        raise ApiError(401, "name or password is wrong")
+    guesses.succeeded(place)
+    guesses.succeeded(key)
     return user, *grant
 
 
@@ -150,13 +170,18 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
     return None
 
 
+def unknown() -> ApiError:
+    """Return the answer to somebody of whom it is not known who it is."""
+    return ApiError(401, "log in, or send a token", headers={"WWW-Authenticate": "Bearer"})
+
+
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
     """Return the dependency of a route that asks for a role."""
 
     async def check(request: Request) -> Who:
         who: Who | None = request.state.who
         if who is None:
-            raise ApiError(401, "log in, or send a token", headers={"WWW-Authenticate": "Bearer"})
+            raise unknown()
         if not who.may(role):
             raise ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
         return who

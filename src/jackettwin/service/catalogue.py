@@ -12,6 +12,7 @@ from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.service import engine
+from jackettwin.service.confined import only_files_in
 from jackettwin.service.consequences import ask_known
 from jackettwin.service.intake.files import queue
 from jackettwin.service.schemas import AssetOut, VersionOut
@@ -103,7 +104,8 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
         try:
-            return engine.identity(engine.load_twin.__wrapped__(Path(folder)).model)
+            with only_files_in(Path(folder)):
+                return engine.identity(engine.load_twin.__wrapped__(Path(folder)).model)
         except InputError as error:
             error.file = engine.TWIN_FILE
             raise

@@ -43,14 +43,16 @@ _DASK = {
     "distributed.scheduler.work-stealing": False,
     "distributed.admin.tick.limit": "60s",
     "distributed.worker.daemon": True,
+    "distributed.deploy.lost-worker-timeout": "1h",
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.log-length": 100,
     "distributed.worker.preload": [_START],
 }
 """A worker over its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try. Dask's profiler and monitor keep
-what every thread did for an hour, and let workers grow meanwhile: off, and short.
+A task that ended a worker comes back to us at once, and counts a try. The timeout of a lost worker is when
+Dask ends whoever took its place, if that one is just starting: after its own 15 s that happened. Dask's
+profiler and monitor keep what every thread did for an hour, and let workers grow meanwhile: off, and short.
 """
 
 _REMEMBERED = 10_000
@@ -79,12 +81,21 @@ class Compute:
             self._cluster.scale(settings.workers)
         self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
         self.client.subscribe_topic(self._topic, self._note)
-        self.restarts = 0
+        self._ever, self._ended = set[str](), 0
 
     @property
     def workers(self) -> int:
         """How many workers there are now."""
-        return len(self.client.scheduler_info(n_workers=-1).get("workers", {}))
+        return len(self._addresses())
+
+    @property
+    def restarts(self) -> int:
+        """How many workers were replaced: our own, whatever they ended of; of others', those we ended."""
+        return self._ended if self._cluster is None else max(len(self._ever) - self._wanted, 0)
+
+    def _addresses(self) -> set[str]:
+        """Where workers are; one that is started anew is elsewhere."""
+        return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
 
     def mend(self) -> None:
         """Start workers of our own that are gone for good.
@@ -92,6 +103,7 @@ class Compute:
         Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
         """
         if self._cluster is not None:
+            self._ever |= self._addresses()
             self._cluster.loop.add_callback(self._replace_lost, self._cluster)
 
     def _replace_lost(self, cluster: LocalCluster) -> None:
@@ -145,7 +157,7 @@ class Compute:
         with self._lock, suppress(Exception):
             busy = [address for address, keys in self.client.processing().items() if future.key in keys]
             future.cancel()
-            self.restarts += len(busy)
+            self._ended += len(busy)
             if self._cluster is None:
                 self.client.restart_workers(busy, timeout=30, raise_for_error=False)
             else:  # a nanny starts a worker anew that died, sooner than one that it must end itself

@@ -6,6 +6,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -146,4 +147,6 @@ def _utc(time: Any, clock: Any) -> datetime:
 def _value(value: Any) -> Value:
     if value is None or isinstance(value, str):
         return value
-    return str(value) if isinstance(value, bool) else float(value)
+    if isinstance(value, bool):
+        return str(value)
+    return float(value) if isfinite(value) else None

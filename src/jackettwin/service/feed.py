@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections import deque
 from collections.abc import AsyncIterator
 
@@ -42,9 +43,14 @@ class Feed:
                     self._news.notify_all()
             await asyncio.sleep(_TURN_S)
 
-    async def follow(self, last: int | None = None) -> AsyncIterator[Event]:
-        """Yield events after a number, by default those to come, for ever."""
-        at = self._last if last is None else last
+    @property
+    def last(self) -> int:
+        """The number of the newest event."""
+        return self._last
+
+    async def follow(self, last: int, seconds: float) -> AsyncIterator[Event]:
+        """Yield the events after a number, for so long."""
+        at, end = last, time.monotonic() + seconds
         while True:
             if at < self._last:
                 oldest = self._recent[0].id if self._recent else self._last + 1
@@ -55,11 +61,16 @@ class Feed:
                 )
                 for event in ahead:
                     yield event
+                if time.monotonic() > end:
+                    return
                 at = ahead[-1].id if ahead else self._last
             else:
                 async with self._news:
                     while self._last <= at:
-                        await self._news.wait()
+                        try:
+                            await asyncio.wait_for(self._news.wait(), end - time.monotonic())
+                        except TimeoutError:
+                            return
 
     def _newest(self) -> int:
         with reading(self._database) as connection:

@@ -56,7 +56,9 @@ def exposition(service: Service) -> bytes:
     gauge("queue_age_seconds", "Time since the oldest queued work was asked for", waited)
     gauge("workers", "Workers there are", service.compute.workers)
     gauge(
-        "worker_restarts_total", "Workers ended by this server for taking too long", service.compute.restarts
+        "worker_restarts_total",
+        "Workers that were replaced, whatever they ended of",
+        service.compute.restarts,
     )
     gauge("disk_free_bytes", "Room left where the store is", service.free_bytes())
     broker = service.broker_connected()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import errno
+import json
 from typing import Any
 
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import JSONResponse
+from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
@@ -115,60 +116,67 @@ def register(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, _invalid_request)
     app.add_exception_handler(OperationalError, _database_away)
     app.add_exception_handler(DataError, _not_kept)
+    app.add_exception_handler(UnicodeEncodeError, _not_kept)
     app.add_exception_handler(NoWorker, _no_worker)
     app.add_exception_handler(OSError, _disk_full)
+    app.add_exception_handler(Exception, _our_fault)
 
 
-def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> JSONResponse:
-    content = problem.model_dump(exclude_none=True)
-    return JSONResponse(content, problem.status, headers, media_type=MEDIA_TYPE)
+def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> Response:
+    content = json.dumps(problem.model_dump(exclude_none=True))  # in ASCII: half a character is quoted, too
+    return Response(content, problem.status, headers, media_type=MEDIA_TYPE)
 
 
-def answered(error: ApiError) -> JSONResponse:
+def answered(error: ApiError) -> Response:
     """Return the answer that an error is."""
     return _answer(error.problem, error.headers)
 
 
-async def _api_error(_: Request, error: Exception) -> JSONResponse:
+async def _api_error(_: Request, error: Exception) -> Response:
     assert isinstance(error, ApiError)
     return answered(error)
 
 
-async def _input_error(_: Request, error: Exception) -> JSONResponse:
+async def _input_error(_: Request, error: Exception) -> Response:
     assert isinstance(error, InputError)
     return _answer(as_problem(error))
 
 
-async def _database_away(_: Request, error: Exception) -> JSONResponse:
+async def _database_away(_: Request, error: Exception) -> Response:
     assert isinstance(error, OperationalError)
     away = no_database()
     return _answer(away.problem, away.headers)
 
 
-async def _not_kept(_: Request, error: Exception) -> JSONResponse:
-    """Answer what PostgreSQL cannot keep, such as text with a NUL."""
+async def _not_kept(_: Request, error: Exception) -> Response:
+    """Answer what no database can keep: half a character; in PostgreSQL, a NUL."""
     return answered(ApiError(422, "a text holds characters that cannot be kept"))
 
 
-async def _no_worker(_: Request, error: Exception) -> JSONResponse:
+async def _no_worker(_: Request, error: Exception) -> Response:
     busy = "every worker is busy; nothing was kept, send it again"
     return answered(ApiError(503, busy, headers={"Retry-After": "30"}))
 
 
-async def _disk_full(_: Request, error: Exception) -> JSONResponse:
+async def _disk_full(_: Request, error: Exception) -> Response:
     if not isinstance(error, OSError) or error.errno != errno.ENOSPC:
         raise error
     return answered(disk_full())
 
 
-async def _http_error(_: Request, error: Exception) -> JSONResponse:
+async def _our_fault(_: Request, error: Exception) -> Response:
+    """Say no more than that; the log has the rest."""
+    return _answer(ProblemDocument(title="Internal Server Error", status=500, detail="a fault of ours"))
+
+
+async def _http_error(_: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException | StarletteHTTPException)
     title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
     return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 
 
-async def _invalid_request(_: Request, error: Exception) -> JSONResponse:
+async def _invalid_request(_: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     first = error.errors()[0]
     place = ".".join(str(part) for part in first["loc"] if part not in ("body", "query", "path", "header"))

@@ -71,10 +71,10 @@ class Rendered:
         with self._lock:
             self._forget(asked)
             self._answers[asked] = answer
-            self._bytes += answer.size
+            self._bytes += answer.size + len(asked)
             while self._bytes > _MOST_BYTES:
                 self._forget(next(iter(self._answers)))
 
     def _forget(self, asked: str) -> None:
         gone = self._answers.pop(asked, None)
-        self._bytes -= 0 if gone is None else gone.size
+        self._bytes -= 0 if gone is None else gone.size + len(asked)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
 
 T = TypeVar("T")
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(9000, 1, 1, tzinfo=UTC)
@@ -232,11 +232,17 @@ class JobOut(BaseModel):
     reason: dict[str, Any] | None
 
 
+Named = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,64}$")]
+"""What a condition may be called: anything that can be read."""
+
+
 class ConditionsIn(BaseModel):
     """Conditions of the site through time: names with units, as in records."""
 
     time_utc: list[Annotated[AwareDatetime, Field(ge=_FIRST, le=_LAST)]] = Field(max_length=100_000)
-    values: dict[str, list[float | str | None]] = Field(max_length=50)
+    values: dict[Named, list[FiniteFloat | Annotated[str, Field(max_length=64)] | None]] = Field(
+        max_length=50
+    )
 
 
 class Taken(BaseModel):

@@ -119,7 +119,7 @@ def _check(description: str) -> None:
     try:
         if not isinstance(json.loads(description), dict):
             raise ValueError("not an object")
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ApiError(
             422, "the description is not a JSON object", field="description", value=str(error)[:100]
         ) from None

@@ -8,6 +8,7 @@ from datetime import datetime
 
 from sqlalchemy import Connection, delete, func, insert, select
 
+from jackettwin.errors import InputError
 from jackettwin.store.tables import audit, tokens, users
 
 ROLES = ("viewer", "engineer", "admin")
@@ -48,8 +49,7 @@ def any_user(connection: Connection) -> bool:
 
 def add_user(connection: Connection, user: User) -> None:
     """Add a user, or replace who has the name; open sessions and tokens of the old one end."""
-    connection.execute(delete(tokens).where(tokens.c.user == user.name))
-    connection.execute(delete(users).where(users.c.name == user.name))
+    remove_user(connection, user.name)
     connection.execute(insert(users).values(**vars(user)))
 
 
@@ -57,6 +57,21 @@ def find_user(connection: Connection, name: str) -> User | None:
     """Return a user, or None."""
     row = connection.execute(select(users).where(users.c.name == name)).one_or_none()
     return None if row is None else User(**row._mapping)
+
+
+def known_user(connection: Connection, name: str) -> User:
+    """Return a user.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    found = find_user(connection, name)
+    if found is None:
+        known = ", ".join(user.name for user in list_users(connection)) or "none yet"
+        raise InputError("no such user", field="user", value=name, allowed=known)
+    return found
 
 
 def list_users(connection: Connection) -> list[User]:
@@ -105,6 +120,37 @@ def find_grant(connection: Connection, secret: str, now: datetime) -> Grant | No
 def revoke(connection: Connection, secret: str) -> None:
     """End a session or token."""
     connection.execute(delete(tokens).where(tokens.c.hash == secret_hash(secret)))
+
+
+@dataclass(frozen=True)
+class Token:
+    """What is known of a token besides its secret."""
+
+    user: str
+    label: str
+    created_utc: datetime
+    expires_utc: datetime
+
+
+def list_tokens(connection: Connection) -> list[Token]:
+    """Return the tokens of machines, oldest first."""
+    columns = (tokens.c.user, tokens.c.label, tokens.c.created_utc, tokens.c.expires_utc)
+    query = select(*columns).where(tokens.c.kind == "token").order_by(tokens.c.created_utc)
+    return [Token(*row) for row in connection.execute(query)]
+
+
+def revoke_tokens(connection: Connection, user: str, label: str | None = None) -> int:
+    """End a user's tokens, all or those of a label, and all sessions with the former; return how many."""
+    mine = [tokens.c.user == user]
+    if label is not None:
+        mine += [tokens.c.label == label, tokens.c.kind == "token"]
+    return connection.execute(delete(tokens).where(*mine)).rowcount
+
+
+def remove_user(connection: Connection, name: str) -> bool:
+    """Remove a user with all sessions and tokens; tell whether there was one."""
+    revoke_tokens(connection, name)
+    return connection.execute(delete(users).where(users.c.name == name)).rowcount == 1
 
 
 def note_down(

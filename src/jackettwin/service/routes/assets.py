@@ -92,8 +92,8 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
     known_asset(connection, asset)
     for name, values in body.values.items():
         if len(values) != len(body.time_utc):
-            raise ApiError(422, "times and values differ in number", field=f"values.{name}"[:200])
-    given = {n[:64]: dict(zip(body.time_utc, v, strict=True)) for n, v in body.values.items()}
+            raise ApiError(422, "times and values differ in number", field=f"values.{name}")
+    given = {name: dict(zip(body.time_utc, values, strict=True)) for name, values in body.values.items()}
     count, again = conditions.add(connection, parts, asset, given)
     return Taken(count=count, observed_again=again)
 

@@ -17,6 +17,9 @@ from jackettwin.service.routes.common import Parts, Transaction
 from jackettwin.service.schemas import Health, Ready
 from jackettwin.version import __version__
 
+_TOLD_S = 600.0
+"""How long one stream of events lasts."""
+
 router = APIRouter(tags=["operation"], route_class=Transaction)
 
 
@@ -56,12 +59,14 @@ async def events(
 ) -> EventSourceResponse:
     """Stream what happens: record, observation, state, finding, job.
 
-    A reader that comes back misses nothing.
+    A reader that comes back with the last number misses nothing. It must, now and then: the stream ends, so
+    that somebody whose session or token has ended is not told for ever.
     """
-    start = int(last_event_id) if last_event_id and last_event_id.isdecimal() else None
+    start = int(last_event_id) if last_event_id and last_event_id.isdecimal() else parts.feed.last
 
     async def stream() -> AsyncIterator[ServerSentEvent]:
-        async for event in parts.feed.follow(start):
+        yield ServerSentEvent(id=str(start))
+        async for event in parts.feed.follow(start, _TOLD_S):
             payload = {"asset": event.asset, "time_utc": event.time_utc.isoformat(), **event.payload}
             yield ServerSentEvent(json.dumps(payload), event=event.kind, id=str(event.id))
             if await request.is_disconnected():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from datetime import timedelta
-from math import ceil
 
 from fastapi import APIRouter, Request, Response
 
@@ -19,14 +18,9 @@ router = APIRouter(tags=["people"], route_class=Transaction)
 @router.post("/login", responses=answers(401, 403, 422, 429))
 def login(body: Login, request: Request, response: Response, parts: Parts) -> Me:
     """Open a session: its cookie is set, and the CSRF token of what it changes is answered."""
-    key = f"{request.client.host if request.client else '?'}/{body.name}"
-    wait = parts.guesses.wait_s(key)
-    if wait > 0.0:
-        raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
-    user, secret, csrf = auth.opened_session(parts.database, body.name, body.password, key, parts.now())
-    if user is None:
-        parts.guesses.failed(key)
-        raise ApiError(401, "name or password is wrong")
+    place = request.client.host if request.client else "?"
+    guesses, now = parts.guesses, parts.now()
+    user, secret, csrf = auth.opened_session(parts.database, guesses, body.name, body.password, place, now)
     lasts = int(auth.SESSION.total_seconds())
     secure = parts.settings.secure
     response.set_cookie(auth.COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)
