@@ -54,7 +54,7 @@ def compare_command(a: Path, b: Path, as_json: bool) -> None:
             f"{c.what}{unit and f' [{c.unit}]'}",
             number(c.before),
             number(c.after),
-            "–" if moved is None else f"{moved:+.2g}",
+            "–" if moved is None else f"{float(f'{moved:.2g}'):+g}",
             "–" if c.sigmas is None else f"{c.sigmas:+.1f}",
             c.verdict,
         )
@@ -66,7 +66,8 @@ def _summary(changes: tuple[ChangedNumber, ...]) -> str:
     changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
     if not changed:
         return "Nothing changed by more than two standard deviations of the difference."
-    texts = [f"{c.what} by {100.0 * expm1(c.log_change or 0.0):+.2g} % ({c.sigmas:+.1f} σ)" for c in changed]
+    shares = [float(f"{100.0 * expm1(c.log_change or 0.0):.2g}") for c in changed]
+    texts = [f"{c.what} by {by:+g} % ({c.sigmas:+.1f} σ)" for c, by in zip(changed, shares, strict=True)]
     return f"Changed: {', '.join(texts)}."
 
 
