@@ -37,6 +37,17 @@ def test_columns_of_standard_deviations_in_percent(tmp_path: Path) -> None:
     assert second == {"mode": "1st SS", "frequency_hz": 0.1835, "frequency_std_hz": 0.0009}
 
 
+def test_a_column_of_bare_deviations_is_of_the_quantity_before_it(tmp_path: Path) -> None:
+    """±15 % of a damping ratio's column was taken for 0.15 Hz of the frequency."""
+    path = table(tmp_path / "m.csv", "Mode;Freq. [Hz];+/-;Damping [%];+/-", "1st FA;0,2467;0,001;0,81;0,15")
+    (only,) = read_targets_table(path)
+    assert only["frequency_std_hz"] == 0.001
+    assert only["damping_ratio_std"] == pytest.approx(0.0015)
+    share = table(tmp_path / "s.csv", "Mode,Freq. [Hz],std [%]", "FA1,0.25,0.4")
+    with pytest.raises(InputError, match="is a share of the frequency.*Hz"):
+        read_targets_table(share)
+
+
 def test_plus_minus_behind_the_value(tmp_path: Path) -> None:
     path = table(
         tmp_path / "m.csv",

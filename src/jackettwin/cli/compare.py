@@ -46,6 +46,9 @@ def compare_command(a: Path, b: Path, as_json: bool) -> None:
         )
         return
     output.print(_summary(changes))
+    for name, run in ((a, before), (b, after)):
+        if not ((run.get("answers") or {}).get("fit") or {}).get("fits", True):
+            output.print(f"Beware, {name}: {run['headline'][0]}", markup=False)
     table = Table("what", "before", "after", "change [%]", "over its σ", "verdict")
     for c in changes:
         moved = None if c.log_change is None else 100.0 * expm1(c.log_change)

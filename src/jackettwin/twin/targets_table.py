@@ -20,9 +20,11 @@ from jackettwin.records.readers.delimited import MISSING, decoded
 log = logging.getLogger(__name__)
 NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
 SPREAD = re.compile(r"std|sigma|σ|±|\+/?-|uncert|error|dev|abw|streu", re.IGNORECASE)
-FREQUENCY = re.compile(r"^(?:f|fn|fre[qk]\w*|eigenfreq\w*|natural freq\w*)(?:[\s_\[(]|$)", re.IGNORECASE)
-DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_\[(]|$)", re.IGNORECASE)
+FREQUENCY = re.compile(r"^(?:f|fn|fre[qk]\w*|eigenfreq\w*|natural freq\w*)(?:[\s_.,:\[(]|$)", re.IGNORECASE)
+DAMPING = re.compile(r"^(?:ζ|zeta|xi|ξ|d[aä]e?mp\w*|d)(?:[\s_.,:\[(]|$)", re.IGNORECASE)
 PERCENT = re.compile(r"%|percent|pct", re.IGNORECASE)
+IN_PERCENT = re.compile(r"%\s*[\])]?\s*$")
+OF_FREQUENCY = re.compile(r"\bf|fre[qk]|hz", re.IGNORECASE)
 OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
 DECREMENT = re.compile(r"\blog|decrement|δ", re.IGNORECASE)
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
@@ -58,7 +60,8 @@ def _targets(text: str) -> list[dict[str, Any]]:
         raise InputError("holds no modes", field="targets", allowed="names of columns, then a row a mode")
     delimiter = max(";\t,|", key=lines[0].count)
     rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=delimiter)]
-    columns = {i: key for i, name in enumerate(rows[0]) if (key := _key(name)) is not None}
+    names = _with_owners(rows[0])
+    columns = {i: key for i, name in enumerate(names) if (key := _key(name)) is not None}
     strangers = len(columns) < len(rows[0])  # one of them may name the modes; without any, none is named
     for needed, what in (("mode", "name of the mode"), ("frequency_hz", "frequency")):
         if needed not in columns.values() and (needed != "mode" or strangers):
@@ -75,10 +78,21 @@ def _targets(text: str) -> list[dict[str, Any]]:
     targets = []
     for number, row in enumerate(rows[1:], start=2):
         with located(field=f"row {number}"):
-            target = _target(row, rows[0], columns, delimiter)
+            target = _target(row, names, columns, delimiter)
             if target.keys() - {"mode"}:  # a row without numbers is a mode that was not found
                 targets.append(target)
     return targets
+
+
+def _with_owners(names: list[str]) -> list[str]:
+    """Return the names of columns; one that says ± and not of what speaks of the quantity before it."""
+    owned, owner = [], ""
+    for name in names:
+        bare = SPREAD.search(name) and not OF_FREQUENCY.search(name) and not OF_DAMPING.search(name)
+        owned.append(f"{owner} {name}" if bare else name)
+        if not SPREAD.search(name) and _key(name) in ("frequency_hz", "damping_ratio"):
+            owner = name
+    return owned
 
 
 def _key(column: str) -> str | None:
@@ -119,6 +133,10 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
             remedy="correct the cell, or leave it empty",
         )
     damps = key.startswith("damping")
+    if key == "frequency_std_hz" and IN_PERCENT.search(column) and not INTERVAL_95.search(column):
+        raise InputError(
+            "is a share of the frequency", field=column, value=cell, allowed="Hz", remedy="give it in Hz"
+        )
     percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
     scale = 0.01 if percent else 1.0
     if damps and DECREMENT.search(column):
