@@ -61,6 +61,17 @@ def test_parts_that_names_speak_of_have_their_nodes(tmp_path: Path) -> None:
     assert "tower is at 86 m" in json.loads(text)["sensors"][3]["lacks"]
 
 
+def test_a_deck_that_ends_at_its_interface_has_no_tower_top(tmp_path: Path) -> None:
+    """Its top sensors were put on the interface, and no measured mode was like any of the model's."""
+    deck = tmp_path / "deck.dat"
+    assert CliRunner().invoke(main, ["export", "jacket15", "--out", str(deck)]).exit_code == 0
+    record = written(tmp_path / "A1.csv", "TT_AX [g],TP_AX [g]")
+    arguments = ["init", str(deck), str(record), "--out", str(tmp_path / "twin.yaml"), "--json"]
+    document = json.loads(CliRunner().invoke(main, arguments).stdout)
+    assert [bool(s["lacks"]) for s in document["sensors"]] == [True, False]
+    assert document["missing"][1].startswith("the tower: the structure ends at its interface, 28 m above")
+
+
 def test_what_nobody_says_is_missing(tmp_path: Path) -> None:
     record = written(tmp_path / "A1.csv", "ACC_088m_E [g],ACC_400m_N [g]")
     code, text, _ = run(str(record), "--out", str(tmp_path / "twin.yaml"))

@@ -144,16 +144,20 @@ def _place(channel: Channel, assembly: Assembly) -> SensorPlace:
 
 def _levels(structure: Structure) -> dict[str, str]:
     """Return the nodes that names of parts mean, where the structure leaves no choice."""
-    levels = {"tower top": structure.top_node}
+    levels = {"tower top": structure.top_node} if _has_tower(structure) else {}
     if len(structure.interface_nodes) == 1:  # where the transition piece ends and the tower begins
         levels |= dict.fromkeys(("transition piece", "tower bottom"), structure.interface_nodes[0])
     return levels
 
 
+def _has_tower(structure: Structure) -> bool:
+    return structure.top_node not in structure.interface_nodes
+
+
 def _middle(structure: Structure) -> float | None:
     """Return the height of the middle of the tower above the sea; None where nobody knows where it begins."""
     bottom = _levels(structure).get("tower bottom")
-    if bottom is None:
+    if bottom is None or not _has_tower(structure):
         return None
     ends = [structure.nodes[node][2] for node in (bottom, structure.top_node)]
     return sum(ends) / 2.0 - structure.sea_level_z_m
@@ -214,6 +218,12 @@ def _missing(
 ) -> tuple[str, ...]:
     """Return what nobody has said, most needed first."""
     missing = [f"{place.sensor.channel}: {place.lacks}" for place in places if place.lacks]
+    if not _has_tower(structure):
+        top = structure.nodes[structure.top_node][2] - structure.sea_level_z_m
+        missing.append(
+            f"the tower: the structure ends at its interface, {top:g} m above the sea, and its modes are not "
+            "the turbine's; add the tower's joints and members and the nacelle's mass to the deck"
+        )
     remarks = {text for record in records for text in record.metadata.get("remarks", ())}
     missing += _levels_missing(places, structure)
     missing += sorted(text for text in remarks if "zone" in text)
