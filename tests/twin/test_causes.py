@@ -14,14 +14,11 @@ from jackettwin.twin.causes import (
     ModelCauses,
     Modes,
     _kept,
-    _looks,
     model_causes,
-    next_measurements,
     seen_causes,
     standings,
 )
 from jackettwin.twin.changed_structures import Standing, braces
-from jackettwin.watching import CauseVerdict, Diagnosis
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
 
@@ -73,7 +70,7 @@ def test_watched_quantities_are_found_by_label(model: ModelCauses) -> None:
     assert seen.known.tolist() == [True, True, False]
     place = model.labels.index("side_side_1"), MODES + model.labels.index("fore_aft_1")
     np.testing.assert_array_equal(seen.causes[0].draws, model.causes[0].draws[:, place])
-    assert not any(what.endswith("side_side_1") and what.startswith("frequency") for what, _ in seen.further)
+    assert seen.columns == place
 
 
 def test_a_mode_among_members_own_ones_tells_nothing(model: ModelCauses) -> None:
@@ -106,24 +103,22 @@ def test_a_model_that_misses_frequencies_is_trusted_less() -> None:
     np.testing.assert_allclose(bad[2], np.sqrt((0.03**2 + 0.01**2) / 3.0), rtol=0.2)
 
 
+def test_the_sea_level_has_the_slope_of_the_added_water(model: ModelCauses) -> None:
+    """Water makes every mode slower, those that move at the surface most; only a level is known by name."""
+    (slope,) = model.slopes((*LABELS, "unheard_of"), ("hs_m", "sea_level_m", "air_temperature_c"))
+    assert slope.condition == "sea_level_m" and slope.per_unit[3] == 0.0
+    assert -3e-3 < slope.per_unit[2] < 2.0 * slope.per_unit[0] < 0.0
+    assert np.all(slope.std >= np.abs(slope.per_unit))
+
+
+def test_bending_shows_at_the_top_and_torsion_off_the_axis(model: ModelCauses) -> None:
+    named = dict(zip(model.labels, model.seen_best, strict=True))
+    assert "tower" in named["fore_aft_1"] and named["fore_aft_1"][-1] != named["side_side_1"][-1]
+    node = named["torsion_1"].split(" at ")[1].split(" along ")[0]
+    x, y, z = read_structure("jacket15").nodes[node]
+    assert np.hypot(x, y) > 1.0 and z > 72.0  # above the sea
+
+
 def test_labels_that_no_mode_has_are_refused() -> None:
     with pytest.raises(InputError, match="no mode of the model"):
         model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))
-
-
-def judged(shares: dict[str, float]) -> Diagnosis:
-    verdicts = [CauseVerdict(name, p, 1.0, (0.8, 1.2), "-") for name, p in shares.items()]
-    return Diagnosis(tuple(verdicts), ())
-
-
-def test_a_look_tells_what_it_can_show() -> None:
-    """Two equally likely causes: the survey settles them, ln 2 but for what a look may miss."""
-    (survey,) = _looks(list(judged({"scour at all feet": 0.5, "soil softening": 0.5}).verdicts))
-    assert survey.what == "a survey of the seabed at the feet"
-    assert 0.5 * np.log(2.0) < survey.gain_nats < np.log(2.0)
-
-
-def test_what_cannot_settle_anything_is_not_advised(model: ModelCauses) -> None:
-    shares = {c.name: 0.0 for c in model.causes} | {"soil softening": 1.0}
-    seen = seen_causes(model, (("frequency", 0),), ("fore_aft_1",))
-    assert next_measurements(seen, judged(shares)) == ()

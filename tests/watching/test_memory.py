@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jackettwin.watching.design import Coefficients
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
+
+PRIOR = Coefficients(np.zeros((2, 1)), np.full((2, 1), 5.0))
 
 
 def series(rng: np.random.Generator, days: tuple[float, ...]) -> Hours:
@@ -31,7 +34,7 @@ def slow_share(learnt: Learnt) -> float:
 
 
 def test_one_time_constant_is_found(rng: np.random.Generator) -> None:
-    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    learnt = learn(series(rng, (2.0,)), PRIOR)
     best = learnt.memories[0]
     assert best.days[0] in (1.0, 2.0, 4.0) and best.shares[0] > 0.8
     # two hundred independent values know a standard deviation to 5 %, the noise beside it to less
@@ -51,7 +54,7 @@ def test_hidden_weather_is_shared_by_what_is_slow_alone(rng: np.random.Generator
         y[i] = 0.5 * x[:2] + x[2] + 0.1 * rng.standard_normal(2)
     none = np.zeros((n, 2))
     hours = Hours(t, np.ones((n, 1)), y, np.full((n, 2), 0.01), none, none)
-    told, untold = (learn(hours, np.full((2, 1), 5.0), hidden=h).memories[0] for h in (False, True))
+    told, untold = (learn(hours, PRIOR, hidden=h).memories[0] for h in (False, True))
     fast, slow = untold.correlation[0, 0, 1], untold.correlation[-1, 0, 1]
     assert untold.days[0] < 1.0 < untold.days[-1]
     assert slow > 0.7 > 0.3 > fast  # spectra of the family are not this one, so that none is 1 or 0
@@ -59,12 +62,12 @@ def test_hidden_weather_is_shared_by_what_is_slow_alone(rng: np.random.Generator
 
 
 def test_memory_of_a_season_is_expected_where_there_is_some(rng: np.random.Generator) -> None:
-    flicker, short = (learn(series(rng, days), np.full((2, 1), 5.0)) for days in (OCTAVES, (1.0,)))
+    flicker, short = (learn(series(rng, days), PRIOR) for days in (OCTAVES, (1.0,)))
     assert slow_share(flicker) > 0.25 > 2.0 * slow_share(short)
 
 
 def test_weights_add_up_and_nothing_is_believed_alone(rng: np.random.Generator) -> None:
-    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    learnt = learn(series(rng, (2.0,)), PRIOR)
     assert np.exp(learnt.log_weights).sum() == pytest.approx(1.0)
     assert sum(weight > np.log(0.01) for weight in learnt.log_weights) >= 4
 
@@ -99,11 +102,11 @@ def test_quantities_that_drown_in_noise_are_taken_as_independent(rng: np.random.
     loud = replace(loud, values=loud.values + 15.0 * rng.standard_normal(loud.values.shape),
                    noise=loud.noise + 225.0)  # fmt: skip
     # their data tell nothing of 0.6: the prior's mean is 0, to the grid it is summed on
-    assert abs(learn(loud, np.full((2, 1), 5.0)).memories[0].correlation[0, 0, 1]) < 0.35
+    assert abs(learn(loud, PRIOR).memories[0].correlation[0, 0, 1]) < 0.35
 
 
 def test_one_quantity_may_be_larger_than_it_seemed(rng: np.random.Generator) -> None:
-    learnt = learn(series(rng, (2.0,)), np.full((2, 1), 5.0))
+    learnt = learn(series(rng, (2.0,)), PRIOR)
     raised = [memory.std / learnt.memories[0].std for memory in learnt.memories]
     for q in range(2):
         assert any(r[q] > 1.2 and r[1 - q] == pytest.approx(1.0) for r in raised)

@@ -64,7 +64,7 @@ def test_without_conditions_a_change_has_to_last(stepped: History) -> None:
     """An excursion of a day may be the weather, which nobody wrote down; a step is found later."""
     bare = replace(stepped, conditions=np.zeros((stepped.days.size, 0)), condition_names=())
     watch, _, (first, *_) = watched(bare)
-    assert watch.patience_days == pytest.approx(100.0 / 70.0, rel=0.01)  # of the baseline
+    assert watch.patience_days == pytest.approx(100.0 / 36.0, rel=0.01)  # of the baseline
     assert first.day >= 120.0 + watch.patience_days
     back = np.where((bare.days >= 121.25)[:, None], np.exp(0.006), 1.0)
     assert not watched(replace(bare, frequency=bare.frequency * back))[2]

@@ -8,29 +8,29 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
-from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.loads.coefficients import Coefficients
+from jackettwin.loads.water import Water, mass_per_level
 from jackettwin.response.labels import LOCAL, mode_kinds, mode_labels
 from jackettwin.response.modal import UndampedModes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.system import build_system
+from jackettwin.response.tide import tide_slopes
 from jackettwin.soil.support import Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
 from jackettwin.watching import (
     Cause,
-    CauseVerdict,
-    Diagnosis,
     Pattern,
-    expected_information,
+    Slope,
     lognormal_sizes,
     sensor_noise,
 )
@@ -54,30 +54,16 @@ _LOSS = (0.08, 0.4)
 """Loss factor of the ground: median and spread in ln."""
 _ALIKE = 0.995
 """Cosine between directions of one family from which they are one cause."""
-_RECORDS, _RECORD_S, _SHOWN = 144, 600.0, 5
-"""Ten-minute records of a further measurement, and how many are named."""
-_USUAL_ZETA, _TELLING, _LOOK_STD = 0.01, 0.01, 0.3
-"""Damping ratio of a further mode; nats below which nothing is worth measuring; and by how much of what there
-is to be seen a look may err: one in twenty does not tell."""
-LOOKS = (
-    (r"^scour", "a survey of the seabed at the feet"),
-    (r" (lost|weakened)( |$)", "a look at {0} and those alike"),
-    (r" flooded( |$)", "flooded-member detection at {0} and those alike"),
-    (r"^marine growth", "the thickness of the growth under water"),
-    (r"^mass of the RNA", "the log of what was changed on top of the tower"),
-    (r"^corrosion", "plate thickness in the splash zone"),
-    (r"^grouted", "a look at the grouted or bolted connection"),
-    (r"^sensor: clock", "the logger's clock beside a reference"),
-    (r"^sensor: yaw", "the yaw reading beside the nacelle's position"),
-    (r"^sensor: more scatter", "a second accelerometer beside the one in doubt"),
-)
-"""Where causes show to who looks, by their names; what is in the ground does not."""
 _ONE_SIZE = 0.1
 """Spread of ln size below which a cause is there or not."""
 _SHOWS = 3e-4
 """A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
 _KEPT = 0.7
 """A mode's shape has to stay by this share, in kinetic energy, among those of the whole structure."""
+_SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
+"""Names of a sea level in metres."""
+_LEAST_PER_M, _UNKNOWN_PER_M = 1e-4, 0.01
+"""Of d ln f per metre: what else than added water may make it, and of a mode that the model has not."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -92,6 +78,8 @@ class ModelCauses:
     frequency_hz : (n_modes,) of the fitted model
     causes : their draws are over ln f of all modes, then ln ζ of all modes
     traceless : names of what leaves no trace in frequencies and damping
+    level_per_m : (n_modes,) d ln f per metre of sea level
+    seen_best : of each mode, the accelerometer that would see most of it
     mixed : labels of modes that a cause may turn into members' own: which is which afterwards, nobody knows
     """
 
@@ -100,6 +88,18 @@ class ModelCauses:
     causes: tuple[Cause, ...]
     traceless: tuple[str, ...]
     mixed: tuple[str, ...] = ()
+    level_per_m: FloatArray = field(default_factory=lambda: np.zeros(MODES))
+    seen_best: tuple[str, ...] = ("",) * MODES
+
+    def slopes(self, labels: Sequence[str], conditions: Sequence[str]) -> tuple[Slope, ...]:
+        """Return what the model knows of conditions by their names: the sea level, by its added water.
+
+        How much water a structure carries along is known to a factor of two: coefficients, growth, flooding.
+        """
+        at = [self.labels.index(n) if n in self.labels else -1 for n in labels]
+        per_m = np.array([self.level_per_m[i] if i >= 0 else 0.0 for i in at])
+        unsure = np.where(np.array(at) >= 0, np.abs(per_m) + _LEAST_PER_M, _UNKNOWN_PER_M)
+        return tuple(Slope(name, per_m, unsure) for name in conditions if _SEA_LEVEL.search(name))
 
     def tells(self, label: str) -> bool:
         """Return whether a mode of this label tells of causes."""
@@ -147,7 +147,10 @@ def model_causes(
         )  # fmt: skip
     rng = np.random.default_rng((77, seed))
     stands, best, error = standings(typical, named, places, frequency_hz, assembly, rng)
-    fitted = Modes.of(best, assembly, like=named).modes.frequency_hz
+    fit = Modes.of(best, assembly, like=named).modes
+    fitted = fit.frequency_hz
+    water = mass_per_level(assembly, Coefficients(), Water())
+    level = tide_slopes(fitted, fit.shapes, assembly.mass, water).relative
     zeta = np.full(MODES, 0.01)
     for place, value in zip(places, damping_ratio, strict=True):
         if place >= 0 and np.isfinite(value):
@@ -176,7 +179,23 @@ def model_causes(
             found.append((event.family, cause))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
     mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
-    return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed)
+    best_seen = _seen_best(assembly, fit.shapes)
+    return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed, level, best_seen)
+
+
+def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
+    """Return for each mode where above the sea and along which horizontal axis it shows most, others less."""
+    stands = assembly.structure
+    named = [name for name in assembly.mesh.node_names if name in stands.nodes]
+    names = [name for name in named if stands.nodes[name][2] >= stands.sea_level_z_m] or named
+    places = [assembly.mesh.node_names.index(name) for name in names]
+    moved = np.abs((assembly.expand @ shapes).reshape(len(assembly.mesh.node_names), 6, -1)[places, :2])
+    own = moved**3 / np.maximum(np.sum(moved**2, axis=2, keepdims=True), 1e-300)
+    out = []
+    for shape in own.transpose(2, 0, 1):
+        node, axis = np.unravel_index(np.argmax(shape), shape.shape)
+        out.append(f"an accelerometer at {names[node]} along {'xy'[axis]}")
+    return tuple(out)
 
 
 @dataclass(frozen=True)
@@ -372,13 +391,13 @@ class SeenCauses:
     ----------
     causes : over the known quantities; the last is a failing sensor
     known : (m,) which watched quantities belong to modes of the model
-    further : what else could be measured: name, and index into the model's quantities
+    columns : of the known ones, their index among the model's quantities
     model : all that the causes do
     """
 
     causes: tuple[Cause, ...]
     known: BoolArray
-    further: tuple[tuple[str, int], ...]
+    columns: tuple[int, ...]
     model: ModelCauses
 
 
@@ -403,67 +422,4 @@ def seen_causes(
         replace(c, draws=c.draws[:, columns], bend=c.bend[columns] if c.bend.size else c.bend)
         for c in model.causes
     )
-    further = tuple(
-        (f"{what} of {label}", i + shift)
-        for what, shift in (("frequency", 0), ("damping", MODES))
-        for i, label in enumerate(model.labels)
-        if i + shift not in columns and model.tells(label) and not label.startswith(LOCAL)
-    )
-    return SeenCauses((*causes, sensor_noise(kept)), known, further, model)
-
-
-class Measurement(NamedTuple):
-    """What could be measured or looked at, and the information [nats] to expect on which cause it is."""
-
-    what: str
-    gain_nats: float
-
-
-def next_measurements(seen: SeenCauses, diagnosis: Diagnosis) -> tuple[Measurement, ...]:
-    """Return what could be measured or looked at to tell likely causes apart, the most telling first.
-
-    A further quantity is known as 144 ten-minute records before and after tell it at the precision no method
-    can beat (Au 2014). A look at a place tells whether the causes that show there are it.
-    """
-    by_name = {v.cause: v for v in diagnosis.verdicts}
-    likely = [c for c in seen.model.causes if by_name[c.name].probability > 0.01]
-    found = _looks([v for v in diagnosis.verdicts if v.probability > 0.01])
-    share = np.array([by_name[c.name].probability for c in likely])
-    limits = np.sqrt(2.0) * long_data_limits(seen.model.frequency_hz, _USUAL_ZETA, _RECORDS * _RECORD_S)
-    for what, column in seen.further if len(likely) > 1 else ():
-        noise = limits[0 if column < MODES else 1][column % MODES]
-        each = [_predicted(c, by_name[c.name], column, float(noise)) for c in likely]
-        mean, std = np.array(each).T
-        # what is left for other causes is not told by a further mode
-        gain = share.sum() * expected_information(share / share.sum(), mean, std)
-        found.append(Measurement(f"the {what}, of a day of records", float(gain)))
-    told = [m for m in found if m.gain_nats > _TELLING]
-    return tuple(sorted(told, key=lambda m: -m.gain_nats)[:_SHOWN])
-
-
-def _looks(verdicts: Sequence[CauseVerdict]) -> list[Measurement]:
-    """Return what looking somewhere tells: the entropy of whether the causes that show there are it."""
-    share = np.array([v.probability for v in verdicts])
-    places: dict[str, list[float]] = {}
-    for i, verdict in enumerate(verdicts):
-        place = next((text for start, text in LOOKS if re.search(start, verdict.cause)), None)
-        if place is not None:
-            text = place.format(verdict.cause.split(" ")[0])
-            places.setdefault(text, [0.0] * len(verdicts))[i] = 1.0
-    doubt = np.full(len(verdicts), _LOOK_STD)
-    return [
-        Measurement(text, expected_information(share / share.sum(), np.array(shows), doubt))
-        for text, shows in places.items()
-    ]
-
-
-def _predicted(cause: Cause, verdict: CauseVerdict, column: int, noise: float) -> tuple[float, float]:
-    """Return mean and standard deviation of what a cause does to one quantity, at the size it would have."""
-    per = cause.draws[:, column]
-    low, high = verdict.interval_90
-    size_std = (high - low) / 3.29
-    spread = np.hypot(np.std(per) * verdict.size, np.mean(per) * size_std)
-    kind = slice(0, MODES) if column < MODES else slice(MODES, None)
-    misfit = cause.misfit * np.sqrt(np.mean(cause.draws[:, kind] ** 2)) * abs(verdict.size)
-    mean = cause.steps(np.array([verdict.size]))[0, column]
-    return float(mean), float(np.sqrt(spread**2 + noise**2 + misfit**2))
+    return SeenCauses((*causes, sensor_noise(kept)), known, tuple(columns), model)

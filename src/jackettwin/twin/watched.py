@@ -10,8 +10,9 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure import Structure
-from jackettwin.twin.causes import ModelCauses, SeenCauses, model_causes, next_measurements, seen_causes
+from jackettwin.twin.causes import ModelCauses, SeenCauses, model_causes, seen_causes
 from jackettwin.twin.modal_table import ModalTable
+from jackettwin.twin.next_measurements import Circumstances, Measurement, next_measurements
 from jackettwin.watching import (
     Cause,
     Change,
@@ -46,7 +47,7 @@ class Alarm:
 
     change: Change
     diagnosis: Diagnosis
-    next_measurements: tuple[tuple[str, float], ...] = ()
+    next_measurements: tuple[Measurement, ...] = ()
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
@@ -147,7 +148,8 @@ def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenC
         )
     own = [kind for kind, good in zip(kinds, seen.known, strict=True) if good]
     diagnosis = diagnose(change.restricted(seen.known), seen.causes, own)
-    further = tuple((m.what, m.gain_nats) for m in next_measurements(seen, diagnosis))
+    around = Circumstances.of(watch, baseline, seen.model.labels)
+    further = next_measurements(seen, diagnosis, around)
     return Alarm(change, diagnosis, further, _patterns(diagnosis, seen.causes, seen.known))
 
 
@@ -172,8 +174,14 @@ def structure_causes(structure: Structure, gravity: bool, baseline: History) -> 
 
 def begun(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:
     """Return the watch at the end of a baseline; a structure's causes are among what it looks for."""
-    patterns = () if causes is None else causes.patterns(baseline.labels)
-    return start(baseline, arl_years=arl_years, patterns=patterns)
+    if causes is None:
+        return start(baseline, arl_years=arl_years)
+    return start(
+        baseline,
+        arl_years=arl_years,
+        patterns=causes.patterns(baseline.labels),
+        slopes=causes.slopes(baseline.labels, baseline.condition_names),
+    )
 
 
 def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:

@@ -66,8 +66,16 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
         "next_measurements": [
-            {"what": what, "gain_nats": gain, "share_of_doubt": min(gain / _doubt(alarm), 1.0)}
-            for what, gain in alarm.next_measurements
+            {
+                "what": m.what,
+                "gain_nats": m.gain_nats,
+                "share_of_doubt": min(m.gain_nats / _doubt(alarm), 1.0),
+                "mode": m.mode or None,
+                "quantity": m.quantity or None,
+                "state": m.state or None,
+                "sensor": m.sensor or None,
+            }
+            for m in alarm.next_measurements
         ],
         "ln_evidence": change.log_r,
     }

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         CauseVerdict as CauseVerdict,
         diagnose as diagnose,
     )
+    from jackettwin.watching.design import Slope as Slope
     from jackettwin.watching.directions import Pattern as Pattern
     from jackettwin.watching.history import History as History
     from jackettwin.watching.next_look import expected_information as expected_information

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
-from jackettwin.watching.design import Design
+from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, logarithms, std_power, typical
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
@@ -101,8 +101,9 @@ def begin(
     kind: Kind,
     directions: Directions,
     kept: IntArray,
+    slopes: Sequence[Slope] = (),
 ) -> tuple[Block, Hours]:
-    """Return what a baseline teaches of one kind of quantity, and its hours."""
+    """Return what a baseline teaches of one kind of quantity, and its hours; ``slopes`` are of those kept."""
     value = getattr(baseline, kind)[:, kept]
     middle = typical(value)
     # a frequency's noise is far too small for its power to matter
@@ -118,7 +119,7 @@ def begin(
     day = np.floor(baseline.days)
     beside = np.stack([_told(apart[day == d], rest[day == d]) for d in np.unique(day)])
     spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
-    learnt = learn(hours, np.outer(spread, design.priors), hidden=design.hidden)
+    learnt = learn(hours, design.coefficients(spread, slopes), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
     block = Block(
         kind=kind,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,10 +20,32 @@ _FEWEST_COLD = 0.02
 """Share of the baseline below freezing from which ice in soil or asphalt gets a slope of its own."""
 _FEWEST_OF_STATE = 50
 """Rows of an operating state from which it has slopes of its own, and an intercept at all."""
+_YEAR_DAYS, _WHOLE_YEAR_DAYS = 365.25, 330.0
+"""A baseline this long has seen a season's round, which stands for a temperature that is not told."""
 _CURVED, _LINEAR, _LEVEL = 0.5, 1.0, 20.0
 """Prior standard deviations of coefficients, in standard deviations of the quantity over the baseline: a
 line may
 explain all of it, a curve half; where the level lies is not known."""
+
+
+@dataclass(frozen=True)
+class Slope:
+    """What a model knows of a condition: d ln f per unit of it, and its standard deviation, (m,) each."""
+
+    condition: str
+    per_unit: FloatArray
+    std: FloatArray
+
+
+class Coefficients(NamedTuple):
+    """What is known of coefficients before the first row, (m, p): means and standard deviations."""
+
+    mean: FloatArray
+    std: FloatArray
+
+    def of(self, chosen: list[int]) -> Coefficients:
+        """Return those of some of the quantities."""
+        return Coefficients(self.mean[chosen], self.std[chosen])
 
 
 @dataclass(frozen=True)
@@ -34,8 +58,8 @@ class Column:
     source : its column
     lag_days : 0 for none
     shape : "line", "square" (of the standardised condition, less one) or "frost" (what it is below zero),
-        "sine" and "cosine" (of the time of day)
-    centre, scale : of the baseline
+        "sine" and "cosine" (of the time of day, or of the year)
+    centre, scale : of the baseline; the period [days], of times of day or year
     prior : standard deviation of the coefficient in those of the quantity
     """
 
@@ -84,6 +108,20 @@ class Design:
         slopes = [c.prior for _ in range(self.sloped) for c in self.columns]
         return np.array([_LEVEL] * len(self.states) + slopes)
 
+    def coefficients(self, spread: FloatArray, slopes: Sequence[Slope] = ()) -> Coefficients:
+        """Return what is known of the coefficients of quantities that vary so much, (m,) each.
+
+        A model's slope is that of the line in its condition.
+        """
+        std = np.outer(spread, self.priors)
+        mean = np.zeros_like(std)
+        for k, column in enumerate(self.columns * self.sloped, start=len(self.states)):
+            for slope in slopes:
+                if (column.name, column.shape, column.lag_days) == (slope.condition, "line", 0.0):
+                    mean[:, k] = column.scale * slope.per_unit
+                    std[:, k] = column.scale * slope.std
+        return Coefficients(mean, std)
+
 
 @dataclass(frozen=True)
 class Lagged:
@@ -112,8 +150,16 @@ def design_of(baseline: History) -> Design:
                 columns += [Column(name, k, lag, "frost", 0.0, scale, _LINEAR) for lag in lags]
         else:
             columns.append(Column(name, k, 0.0, "square", centre, scale, _CURVED))
-    if not warm and _whole_days(baseline):
-        columns += [Column("time of day", -1, 0.0, shape, 0.0, 1.0, _CURVED) for shape in ("sine", "cosine")]
+    if not warm:
+        columns += [
+            Column(name, -1, 0.0, shape, 0.0, period, _CURVED)
+            for name, period, seen in (
+                ("time of day", 1.0, _whole_days(baseline)),
+                ("time of year", _YEAR_DAYS, np.ptp(baseline.days) > _WHOLE_YEAR_DAYS),
+            )
+            if seen
+            for shape in ("sine", "cosine")
+        ]
     numbers, counts = np.unique(baseline.states, return_counts=True)
     by_size = [int(s) for s in numbers[np.argsort(-counts)] if counts[numbers == s] >= _FEWEST_OF_STATE]
     known = tuple(by_size) or (int(numbers[np.argmax(counts)]),)
@@ -157,7 +203,7 @@ def regressors(design: Design, history: History, lagged: Lagged) -> tuple[FloatA
 def _standard(column: Column, history: History) -> FloatArray:
     """Return a condition in standard units, bent but not yet late."""
     if column.shape in ("sine", "cosine"):
-        turn = 2.0 * np.pi * history.days
+        turn = 2.0 * np.pi * history.days / column.scale
         return np.asarray(np.sin(turn) if column.shape == "sine" else np.cos(turn))
     x = history.conditions[:, column.source]
     if column.shape == "frost":

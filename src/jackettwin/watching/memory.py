@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 from scipy.special import chdtr
 
 from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.watching.design import Coefficients
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.kernels import filter_rows
 
@@ -110,21 +111,18 @@ class Belief:
     cov: FloatArray
 
 
-def prior_belief(memory: Memory, coefficient_std: FloatArray) -> Belief:
-    """Return the state before the first row.
-
-    Parameters
-    ----------
-    coefficient_std : (m, p)
-    """
-    m, p = coefficient_std.shape
+def prior_belief(memory: Memory, prior: Coefficients) -> Belief:
+    """Return the state before the first row."""
+    m, p = prior.std.shape
     slow = memory.slow
     cov = np.zeros((m * (p + len(slow)), m * (p + len(slow))))
-    cov[range(m * p), range(m * p)] = coefficient_std.ravel() ** 2
+    cov[range(m * p), range(m * p)] = prior.std.ravel() ** 2
     for k, one in enumerate(slow):
         place = slice(m * (p + k), m * (p + k + 1))
         cov[place, place] = one
-    return Belief(np.zeros(len(cov)), cov)
+    mean = np.zeros(len(cov))
+    mean[: m * p] = prior.mean.ravel()
+    return Belief(mean, cov)
 
 
 @dataclass(frozen=True)
@@ -238,7 +236,7 @@ def _power_law(slope: float) -> Spectrum:
 
 
 def learn(
-    hours: Hours, coefficient_std: FloatArray, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
+    hours: Hours, prior: Coefficients, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
 ) -> Learnt:
     """Return the models that a baseline makes likely.
 
@@ -247,20 +245,18 @@ def learn(
 
     Parameters
     ----------
-    coefficient_std : (m, p) prior standard deviations
+    prior : what is known of the coefficients
     told : the spectra that it can be, if that is known
     hidden : whether no conditions are given, so that what they do is part of the unexplained
     """
-    m = coefficient_std.shape[0]
+    m = len(prior.std)
     single = [hours.of([q]) for q in range(m)]
     fits: dict[Spectrum, list[_Fit]] = {}
 
     def fit(spectra: list[Spectrum]) -> None:
         for spectrum in spectra:
             before = next(reversed(fits.values()), [None] * m)
-            fits[spectrum] = [
-                _alone(own, coefficient_std[q : q + 1], spectrum, before[q]) for q, own in enumerate(single)
-            ]
+            fits[spectrum] = [_alone(own, prior.of([q]), spectrum, before[q]) for q, own in enumerate(single)]
 
     def scores() -> dict[Spectrum, float]:
         return {spectrum: sum(one.score for one in found) for spectrum, found in fits.items()}
@@ -278,13 +274,13 @@ def learn(
         for spectrum in sorted(total, key=lambda one: -total[one])
         if total[spectrum] > max(total.values()) - _LIKELY
     ]  # fmt: skip
-    return _weighed(bases[:MOST_TRIED], hours, coefficient_std, hidden)
+    return _weighed(bases[:MOST_TRIED], hours, prior, hidden)
 
 
-def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, hidden: bool) -> Learnt:
+def _weighed(bases: list[Memory], hours: Hours, prior: Coefficients, hidden: bool) -> Learnt:
     """Return models with the quantities' correlation, weighed by all quantities together."""
-    m = coefficient_std.shape[0]
-    fast, slow = _correlations(hours, bases[0], coefficient_std, hidden)
+    m = len(prior.std)
+    fast, slow = _correlations(hours, bases[0], prior, hidden)
     scored: list[tuple[float, Memory]] = []
     for base in bases:
         correlation = np.where((base.days < SLOW_DAYS)[:, None, None], fast, slow)
@@ -292,10 +288,10 @@ def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, hid
             replace(base, correlation=share * correlation + (1.0 - share) * np.eye(m))
             for share in (AGREEMENT if m > 1 else (1.0,))
         ]
-        found = [_end(memory, coefficient_std, hours).log_likelihood for memory in each]
+        found = [_end(memory, prior, hours).log_likelihood for memory in each]
         scored.append((float(np.logaddexp.reduce(found)), each[int(np.argmax(found))]))
     kept = _different(scored)
-    freedom = np.array([_freedom(hours, q, kept[0][1], coefficient_std[q]) for q in range(m)])
+    freedom = np.array([_freedom(hours, q, kept[0][1], prior) for q in range(m)])
     shift, spread = _pooled(np.log(kept[0][1].std), 0.5 / np.maximum(freedom, _LEAST_FREEDOM))
     memories = [replace(memory, std=memory.std * np.exp(shift)) for _, memory in kept]
     first = memories[0]
@@ -308,7 +304,7 @@ def _weighed(bases: list[Memory], hours: Hours, coefficient_std: FloatArray, hid
     memories += [_one_larger(first, q, spread[q]) for q in apart]
     weights = np.exp([score - kept[0][0] for score, _ in kept])
     weights = weights / weights.sum() * (1.0 - one * len(apart)) * larger[0]
-    beliefs = tuple(_end(memory, coefficient_std, hours).belief for memory in memories)
+    beliefs = tuple(_end(memory, prior, hours).belief for memory in memories)
     return Learnt(
         tuple(memories), beliefs, np.log([*weights, *larger[1:], *[one * larger[0] for _ in apart]])
     )
@@ -361,23 +357,23 @@ def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
     return np.asarray(np.maximum(share, 1e-12))
 
 
-def _freedom(hours: Hours, q: int, memory: Memory, coefficient_std: FloatArray) -> float:
+def _freedom(hours: Hours, q: int, memory: Memory, prior: Coefficients) -> float:
     """Return how many independent values of the slow processes of a quantity the baseline holds.
 
     ln of a standard deviation that is known by ν values has the variance 1/(2ν).
     """
     own, of = hours.of([q]), memory.of([q])
     at = [
-        _end(replace(of, std=of.std * np.exp(x)), coefficient_std[None], own).log_likelihood
+        _end(replace(of, std=of.std * np.exp(x)), prior.of([q]), own).log_likelihood
         for x in (-_APART, 0.0, _APART)
     ]
     return float(0.5 * (2.0 * at[1] - at[0] - at[2]) / _APART**2)
 
 
-def _end(memory: Memory, coefficient_std: FloatArray, hours: Hours) -> Filtered:
+def _end(memory: Memory, prior: Coefficients, hours: Hours) -> Filtered:
     """Return what a model knows after the baseline."""
-    prior = prior_belief(memory, coefficient_std)
-    return filtered(memory, prior, empty_bank(len(coefficient_std), prior.mean.size), hours, -np.inf)
+    belief = prior_belief(memory, prior)
+    return filtered(memory, belief, empty_bank(len(prior.std), belief.mean.size), hours, -np.inf)
 
 
 @dataclass(frozen=True)
@@ -389,7 +385,7 @@ class _Fit:
     score: float
 
 
-def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _Fit | None) -> _Fit:
+def _alone(own: Hours, prior: Coefficients, spectrum: Spectrum, near: _Fit | None) -> _Fit:
     """Return the most likely scale and size of one quantity; ``near`` is where to start from."""
     spread = float(np.std(own.values))
     typical = float(np.sqrt(np.median(own.noise)))
@@ -403,7 +399,7 @@ def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _F
         memory = Memory(np.exp(y[:1]), np.exp(y[1:]), days, shares, np.ones((days.size, 1, 1)))
         penalty = ((y - usual) / [_SCALE_STD, _SLOW_STD]) ** 2
         outside = np.sum((x - y) ** 2)
-        return float(0.5 * penalty.sum() + outside - _end(memory, coefficient_std, own).log_likelihood)
+        return float(0.5 * penalty.sum() + outside - _end(memory, prior, own).log_likelihood)
 
     steps = np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.3]])
     found = minimize(
@@ -418,7 +414,7 @@ def _alone(own: Hours, coefficient_std: FloatArray, spectrum: Spectrum, near: _F
 
 
 def _correlations(
-    hours: Hours, memory: Memory, coefficient_std: FloatArray, hidden: bool
+    hours: Hours, memory: Memory, prior: Coefficients, hidden: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the correlation between quantities of fast and of slow processes, alike unless ``hidden``.
 
@@ -429,18 +425,19 @@ def _correlations(
     result = np.stack([np.eye(m)] * 2)
     for i in range(m):
         for j in range(i):
-            own, pair, std = hours.of([j, i]), memory.of([j, i]), coefficient_std[[j, i]]
-            each = _pair_mean(own, pair, std, np.zeros(slow.size), slow | ~slow, CORRELATIONS)
+            own, pair, two = hours.of([j, i]), memory.of([j, i]), prior.of([j, i])
+            each = _pair_mean(own, pair, two, np.zeros(slow.size), slow | ~slow, CORRELATIONS)
             for _ in range(2 if hidden and slow.any() else 0):
-                each = _pair_mean(own, pair, std, each, slow, SHARED)
-                each = _pair_mean(own, pair, std, each, ~slow, CORRELATIONS)
+                each = _pair_mean(own, pair, two, each, slow, SHARED)
+                each = _pair_mean(own, pair, two, each, ~slow, CORRELATIONS)
             result[:, i, j] = result[:, j, i] = [each[np.argmin(memory.days)], each[np.argmax(memory.days)]]
     return _positive(result[0], _LEAST_OWN), _positive(result[1], _LEAST_OWN_SHARED if hidden else _LEAST_OWN)
 
 
 def _pair_mean(
-    own: Hours, pair: Memory, std: FloatArray, correlation: FloatArray, chosen: BoolArray, tried: FloatArray
-) -> FloatArray:
+    own: Hours, pair: Memory, prior: Coefficients, correlation: FloatArray, chosen: BoolArray,
+    tried: FloatArray,
+) -> FloatArray:  # fmt: skip
     """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
 
     The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009): quantities whose processes drown in noise
@@ -451,7 +448,7 @@ def _pair_mean(
     each = np.where(chosen, tried[:, None], correlation)
     crossed = each[:, :, None, None] * (1.0 - np.eye(2)) + np.eye(2)
     likelihood = np.array([
-        _end(replace(pair, correlation=one), std, own).log_likelihood for one in crossed
+        _end(replace(pair, correlation=one), prior, own).log_likelihood for one in crossed
     ])  # fmt: skip
     weight = np.exp(likelihood - likelihood.max()) * np.gradient(tried) * (1.0 - tried**2)
     return np.where(chosen, weight @ tried / weight.sum(), correlation)

@@ -33,7 +33,7 @@ from jackettwin.watching.block import (
     thinned,
     watched,
 )
-from jackettwin.watching.design import Design, Lagged, design_of, fresh, regressors
+from jackettwin.watching.design import Design, Lagged, Slope, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.ramps import log_ramps
@@ -50,9 +50,10 @@ FEWEST_DAYS = 7
 """Days with records that a baseline needs."""
 _LOOSE = 1.0
 """Precision of what other quantities do while some are judged: they may change by anything."""
-PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 70.0, 5.0
+PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 36.0, 10.0
 """Share of the baseline that a change has to last where no conditions are given, and the most of it: what is
-shorter may be a storm. Leaving later begins out can only lower R, so that the promise is kept."""
+shorter may be storms that follow each other. Leaving later begins out can only lower R, so that the promise
+is kept."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping")
 
 
@@ -193,12 +194,14 @@ def start(
     *,
     arl_years: float = 10.0,
     patterns: Sequence[Pattern] = (),
+    slopes: Sequence[Slope] = (),
 ) -> Watch:
     """Return the watch at the end of a baseline.
 
     Parameters
     ----------
     patterns : by which a model's causes would show in the frequencies; they are bet on beside the others
+    slopes : of the frequencies with conditions, as far as a model knows them
 
     Raises
     ------
@@ -226,7 +229,9 @@ def start(
         shown = [replace(p, change=p.change[columns]) for p in patterns if p.change[columns].any()]
         given = shown if kind == "frequency" else ()
         directions = directions_of(kind, labels, frequency[columns], given)
-        blocks.append(begin(baseline, design, rows, kind, directions, columns)[0])
+        known = [Slope(s.condition, s.per_unit[columns], s.std[columns]) for s in slopes]
+        known = known if kind == "frequency" else []
+        blocks.append(begin(baseline, design, rows, kind, directions, columns, known)[0])
     total = sum(len(block.kept) for block in blocks)
     last = float(baseline.days[-1])
     return Watch(
