@@ -1,4 +1,4 @@
-"""Input files of OpenFAST 5 for a turbine in ElastoDyn on a foundation of ours, without water.
+"""Input files of OpenFAST 5 for a turbine in ElastoDyn on a foundation of ours.
 
 The order of the items is that of the program's readers (FAST_ReadPrimaryFile, and ReadPrimaryFile,
 ReadTowerFile and ReadBladeFile of ElastoDyn_IO.f90, v5.0.0).
@@ -82,6 +82,8 @@ class Run:
     """Whether inflow.dat and aero.dat blow on it."""
     fixed: bool = False
     """Whether nothing of it moves."""
+    water: bool = False
+    """Whether it stands in the sea of seastate.dat, with the members of hydrodyn.dat."""
 
 
 def write_case(
@@ -123,7 +125,8 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     rows += [(1.0, "RhoInf"), (1e-4, "ConvTol"), (6, "MaxConvIter"), (99999, "DT_UJac"), (1e6, "UJacSclFact")]
     rows += ["FEATURE SWITCHES", (1, "NRotors"), (1, "CompElast")]
     rows += [(int(run.wind), "CompInflow"), (2 * run.wind, "CompAero")]
-    rows += [(0, "CompServo"), (0, "CompSeaSt"), (0, "CompHydro"), (run.sub, "CompSub"), (0, "CompMooring")]
+    rows += [(0, "CompServo"), (int(run.water), "CompSeaSt"), (int(run.water), "CompHydro")]
+    rows += [(run.sub, "CompSub"), (0, "CompMooring")]
     rows += [(0, "CompIce"), (0, "CompSoil"), (0, "MHK"), ("F", "MirrorRotor")]
     rows += [
         "ENVIRONMENT",
@@ -142,7 +145,7 @@ def _primary(run: Run, foundation: str, depth_m: float) -> str:
     rows += ["INPUT FILES", ('"elastodyn.dat"', "EDFile")]
     rows += [(unused, f"BDBldFile({k})") for k in (1, 2, 3)]
     rows += [('"inflow.dat"', "InflowFile"), ('"aero.dat"', "AeroFile")]
-    rows += [(unused, key) for key in ("ServoFile", "SeaStFile", "HydroFile")]
+    rows += [(unused, "ServoFile"), ('"seastate.dat"', "SeaStFile"), ('"hydrodyn.dat"', "HydroFile")]
     rows += [(f'"{foundation}"', "SubFile")]
     rows += [(unused, key) for key in ("MooringFile", "IceFile", "SoilFile")]
     rows += [
