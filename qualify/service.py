@@ -71,9 +71,11 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
             for k in range(given.records):
                 one = (f"r{k}.parquet", record_file(k, samples=TEN_MINUTES), description(hour(30 + k // 100)))
                 server.send(*one, asset=f"wtg_{k % 100:02d}")
-                while server.records()["received"] > 3:
+                while server.records()["received"] > 3 or time.monotonic() < begin + k * given.pace_s:
                     time.sleep(0.1)
                 memory.append(server.resident_bytes())
+                if k % 50 == 0:
+                    print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
 
@@ -81,17 +83,21 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
         took, spent = time.monotonic() - begin, server.cpu_s()
         return {
             "records": given.records,
+            "pace_s": given.pace_s,
             "seconds_a_record": took / given.records,
             "server_cpu_s": spent[0] - cpu[0],
             "worker_cpu_s_a_record": (spent[1] - cpu[1]) / given.records,
             "quiet": quiet,
             "busy": busy,
-            "memory_mb": next(iter(memory[-1].values())) / 2**20,
+            "minutes": took / 60.0,
+            **spread(memory),
         }
 
 
 def warm(server: Server) -> None:
-    """Have everything loaded that the first questions and records load."""
+    """Have everything loaded that the first questions and records load, and every worker there."""
+    while server.get("/api/v1/ready").json()["workers"] < 2:
+        time.sleep(0.2)
     for path in living.PATHS:
         server.get(f"/api/v1{path.format(k=0)}")
     server.send(
@@ -383,12 +389,13 @@ def page(kept: dict[str, Figures]) -> list[str]:
 
 def _load(f: Figures) -> list[str]:
     rate, busy, quiet = f["server_cpu_s"] / f["records"], f["busy"], f["quiet"]
+    pace = f"one every {f['pace_s']:g} s" if f["pace_s"] else "as fast as they were taken"
     return [
         "## A hundred turbines",
         "",
         f"A store that holds a hundred turbines' day (14,300 records), two workers, {READERS} readers who",
         f"each ask once a second. Of the next day's 14,400 records {f['records']} were sent,",
-        "of ten minutes and two channels, as fast as they were taken.",
+        f"of ten minutes and two channels, {pace}.",
         "",
         "| | figure | bar |",
         "|---|---|---|",
@@ -401,18 +408,26 @@ def _load(f: Figures) -> list[str]:
         f"{quiet['p95_ms']:.0f} ms | |",
         f"| CPU for an answer | {quiet['cpu_ms']:.1f} ms | |",
         f"| answers that were not 200 | {busy['wrong'] + quiet['wrong']} | 0 |",
-        f"| memory of the server | {f['memory_mb']:.0f} MB | |",
         "",
+        f"Their memory over these {f['minutes']:.0f} minutes, of which the first third is warm-up:",
+        "",
+        *_grown(f),
     ]
 
 
 def _memory(f: Figures) -> list[str]:
-    names = ["server", *(f"worker {i}" for i, _ in enumerate(f["spread_percent"][1:], start=1))]
     return [
         "## Memory",
         "",
         f"{f['records']} records of a minute, an hour apart, of one turbine; the first third is warm-up.",
         "",
+        *_grown(f),
+    ]
+
+
+def _grown(f: Figures) -> list[str]:
+    names = ["server", *(f"worker {i}" for i, _ in enumerate(f["spread_percent"][1:], start=1))]
+    return [
         "| MB | after the first record | after warm-up | in the end | from its middle, after warm-up | bar |",
         "|---|---|---|---|---|---|",
         *(
@@ -485,6 +500,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", choices=list(SCENES), default=list(SCENES))
     parser.add_argument("--records", type=int, default=150)
+    parser.add_argument("--pace-s", type=float, default=0.0, help="least time between two records of load")
     parser.add_argument("--long", type=int, default=1500)
     parser.add_argument("--kills", type=int, default=60)
     parser.add_argument("--kill-records", type=int, default=60)
