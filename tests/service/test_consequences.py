@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
+from sqlalchemy.exc import OperationalError
 from tests.service.conftest import description, hour, make_service, record_file, turn
 
 from jackettwin.service import consequences, dispatch, uploads
@@ -153,6 +154,41 @@ def test_a_record_that_waited_at_a_worker_that_died_was_not_tried(service: Servi
     turn(service, 12)
     with reading(service.database) as connection:
         assert {job.state for job in work.list_jobs(connection)} == {"done"}
+
+
+def test_work_on_samples_that_are_gone_ends_and_holds_nothing_up(service: Service) -> None:
+    """Pruned by policy after a new version had asked for them."""
+    send(service, 0)
+    with writing(service.database) as connection:
+        connection.execute(tables.records.update().values(waveform=None))
+    send(service, 1)
+    turn(service, 6)
+    with reading(service.database) as connection:
+        jobs = {job.id: job for job in work.list_jobs(connection) if job.kind == work.OBSERVE}
+    assert [jobs[k].state for k in sorted(jobs)] == ["failed", "done"]
+    assert "no samples" in jobs[min(jobs)].reason["detail"]
+
+
+def test_a_lease_that_was_taken_when_the_database_went_away_is_taken_back(
+    service: Service, monkeypatch
+) -> None:
+    send(service, 0)
+
+    def away(*_: object) -> None:
+        raise OperationalError("select", {}, Exception("gone"))
+
+    server = dispatch.Dispatcher(service)
+    with monkeypatch.context() as patch:
+        patch.setattr(consequences, "task_of", away)
+        with pytest.raises(OperationalError):
+            server._turn()
+    with reading(service.database) as connection:
+        assert work.list_jobs(connection, state="leased")
+    for _ in range(3):
+        server._last_beat = -60.0
+        server._turn()
+    with reading(service.database) as connection:
+        assert not work.list_jobs(connection, state="leased")
 
 
 def test_states_are_made_again_from_stored_observations(service: Service) -> None:

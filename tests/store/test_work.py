@@ -89,5 +89,5 @@ def test_leases_of_servers_nobody_knows_are_taken_back(database: Engine) -> None
     with writing(database) as c:
         asked(c, "a")
         work.lease(c, "gone", 1, NOW)
-        assert work.take_back_orphans(c) == 1
+        assert work.take_back_orphans(c, "me", ()) == 1
         assert work.queue_sizes(c) == {"queued": 1}

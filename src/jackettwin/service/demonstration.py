@@ -14,12 +14,11 @@ from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
 
-from jackettwin.records import Record, read_record
-from jackettwin.records.identity import record_id
+from jackettwin.records import read_record
 from jackettwin.service.desk import add_twin
-from jackettwin.service.intake.files import Accepted, accept
-from jackettwin.service.tasks import Parsed, about
-from jackettwin.store import assets, reading, waveform_path, write_waveform, writing
+from jackettwin.service.intake.files import accept
+from jackettwin.service.tasks import stored
+from jackettwin.store import assets, reading, writing
 from jackettwin.twin import read_twin
 
 if TYPE_CHECKING:
@@ -54,20 +53,10 @@ def _arrive(service: Service) -> None:
         paths = read_twin(source).records
         for i, path in enumerate(paths):
             record = replace(read_record(path), start_utc=hour - timedelta(hours=len(paths) - i))
-            take_record(service, ASSET, record)
+            parsed = stored(record, ASSET, service.settings.store)
+            with writing(service.database) as connection:
+                accept(service.now(), connection, ASSET, parsed, record.name)
             service.wake()
             time.sleep(_EVERY_S)
     except Exception:
         log.exception("the demonstration stops")
-
-
-def take_record(service: Service, asset: str, record: Record) -> Accepted:
-    """Keep a record that is in memory, and queue it."""
-    assert record.start_utc is not None
-    number = record_id(record)
-    place = waveform_path(asset, record.start_utc, number)
-    size = write_waveform(record, service.settings.store / place)
-    with writing(service.database) as connection:
-        return accept(
-            service.now(), connection, asset, Parsed(number, place, size, about(record)), record.name
-        )

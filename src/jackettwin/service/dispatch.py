@@ -111,7 +111,7 @@ class Dispatcher(Thread):
             for server in [name for name in beats if name != me and self._dead(name, *beats[name])]:
                 freed = work.bury(connection, server, beats[server][0])
                 log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
-            work.take_back_orphans(connection)
+            work.take_back_orphans(connection, me, self._running)
 
     def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
         """Tell whether a server's process is gone from this machine, or its beat stands still."""
@@ -133,11 +133,23 @@ class Dispatcher(Thread):
         with writing(self.service.database) as connection:
             most = free if kind == work.OBSERVE else 1
             jobs = work.lease(connection, self.service.server_id, most, self.service.now(), kind=kind)
-            tasks = [self._task(connection, job) for job in jobs]
-        for job, (function, argument) in zip(jobs, tasks, strict=True):
-            future = self.service.compute.submit(function, argument, priority=job.priority)
-            future.add_done_callback(lambda _: self.wake.set())
-            self._running[job.id] = _Running(job, future, time.monotonic())
+            for job in jobs if kind == work.OBSERVE else ():
+                consequences.observing(connection, self.service, job)
+        for job in jobs:
+            self._start(job)
+
+    def _start(self, job: work.Job) -> None:
+        """Have a worker do a piece of work, unless what it needs is not there any more."""
+        try:
+            with reading(self.service.database) as connection:  # years of days: no writer waits
+                function, argument = self._task(connection, job)
+        except LookupError as gone:
+            with writing(self.service.database) as connection:
+                consequences.keep(connection, self.service, job, Outcome(None, problem={"detail": str(gone)}))
+            return
+        future = self.service.compute.submit(function, argument, priority=job.priority)
+        future.add_done_callback(lambda _: self.wake.set())
+        self._running[job.id] = _Running(job, future, time.monotonic())
 
     def _next_kind(self) -> str | None:
         """Return what to lease: records first; what a state says only when it was rested for long enough."""
@@ -152,7 +164,6 @@ class Dispatcher(Thread):
     def _task(self, connection: Connection, job: work.Job) -> tuple[Callable[..., Outcome], Task | Question]:
         if job.kind == work.KNOW:
             return know, consequences.question_of(connection, self.service, job)
-        consequences.observing(connection, self.service, job)
         return observe_stored, consequences.task_of(connection, self.service, job)
 
     def _collect(self) -> None:

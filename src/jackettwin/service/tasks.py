@@ -115,9 +115,7 @@ def read_file(path: str, asset: str, store: str, samples_limit: int, memory_byte
     samples in the end.
     """
     from jackettwin.records import read_record
-    from jackettwin.records.identity import record_id
     from jackettwin.service.room import at_most
-    from jackettwin.store import waveform_path, write_waveform
 
     source = Path(path)
     try:
@@ -137,9 +135,7 @@ def read_file(path: str, asset: str, store: str, samples_limit: int, memory_byte
                 field="start_utc",
                 remedy="give start_utc in the description beside it, or a time column with a date",
             )
-        number = record_id(record)
-        place = waveform_path(asset, record.start_utc, number)
-        size = write_waveform(record, Path(store) / place)
+        return stored(record, asset, Path(store))
     except InputError as error:
         return Parsed(file_hash(source), problem=problem_of(error))
     except MemoryError:
@@ -151,6 +147,17 @@ def read_file(path: str, asset: str, store: str, samples_limit: int, memory_byte
                 "remedy": "send it in pieces of an hour",
             },
         )
+
+
+def stored(record: Record, asset: str, store: Path) -> Parsed:
+    """Keep the samples of a record in the store, by their content."""
+    from jackettwin.records.identity import record_id
+    from jackettwin.store import waveform_path, write_waveform
+
+    assert record.start_utc is not None
+    number = record_id(record)
+    place = waveform_path(asset, record.start_utc, number)
+    size = write_waveform(record, store / place)
     return Parsed(number, place, size, about(record))
 
 

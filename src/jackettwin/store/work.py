@@ -7,7 +7,7 @@ the lease.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
@@ -240,8 +240,14 @@ def bury(connection: Connection, server: str, at_beat: int | None = None) -> Seq
     return held
 
 
-def take_back_orphans(connection: Connection) -> int:
-    """Queue leases whose server is not on the list, as after the restore of a backup."""
+def take_back_orphans(connection: Connection, me: str, mine: Collection[int]) -> int:
+    """Queue leases that nobody is at.
+
+    Those whose server is not on the list, as after the restore of a backup, and our own that we do not know
+    of, as after the database went away when we had them.
+    """
     alive = select(servers.c.id)
-    orphan = (work.c.state == "leased", work.c.owner.not_in(alive))
-    return connection.execute(update(work).where(*orphan).values(state="queued", owner=None)).rowcount
+    forgotten = (work.c.owner == me) & work.c.id.not_in(mine)
+    orphan = (work.c.state == "leased", work.c.owner.not_in(alive) | forgotten)
+    given_back = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
+    return connection.execute(update(work).where(*orphan).values(**given_back)).rowcount

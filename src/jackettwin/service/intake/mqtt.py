@@ -9,7 +9,6 @@ import ssl
 import time
 from collections.abc import Iterable
 from datetime import datetime, timedelta
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
@@ -19,11 +18,10 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 
 from jackettwin.errors import InputError
-from jackettwin.records.identity import record_id
 from jackettwin.service.intake.files import accept
 from jackettwin.service.intake.packets import assembled
-from jackettwin.service.tasks import Parsed, about
-from jackettwin.store import assets, reading, streams, waveform_path, write_waveform, writing
+from jackettwin.service.tasks import stored
+from jackettwin.store import assets, reading, streams, writing
 from jackettwin.store.streams import KEPT, LONGEST, WINDOW, Packet
 
 if TYPE_CHECKING:
@@ -211,11 +209,8 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
         with writing(service.database) as connection:
             streams.close_window(connection, window, None)
         return
-    number = record_id(record)
-    place = waveform_path(window.asset, window.window_utc, number)
-    size = write_waveform(record, Path(service.settings.store) / place)
-    now = service.now()
-    parsed = Parsed(number, place, size, about(record))
+    parsed, now = stored(record, window.asset, service.settings.store), service.now()
+    number = parsed.record_id
     with writing(service.database) as connection:
         if window.record_id is not None and window.record_id != number:
             consequences.supersede(connection, service, window.asset, window.record_id, number)
