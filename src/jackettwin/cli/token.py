@@ -57,7 +57,9 @@ def list_tokens(as_json: bool, store: Path, database: str | None) -> None:
     with reading(engine) as connection:
         found = people.list_tokens(connection)
     if as_json:
-        print_json({"tokens": [vars(token) for token in found]})
+        times = ("created_utc", "expires_utc")
+        rows = [{**vars(t), **{name: getattr(t, name).isoformat() for name in times}} for t in found]
+        print_json({"tokens": rows})
         return
     for token in found:
         output.print(f"{token.user}  {token.label or '-'}  until {token.expires_utc:%Y-%m-%d}")
