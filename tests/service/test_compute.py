@@ -8,8 +8,8 @@ import pytest
 from distributed.scheduler import KilledWorker
 
 from jackettwin.service import ServiceSettings
+from jackettwin.service.begun import NoWorker
 from jackettwin.service.compute import Compute
-from jackettwin.service.tasks import NoWorker
 
 
 @pytest.fixture(scope="module")

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 from tests.service.conftest import Done, description, record_file
 
+from jackettwin.service.begun import NoWorker
 from jackettwin.service.context import Service
 from jackettwin.service.intake import folder
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
-from jackettwin.service.tasks import NoWorker
 from jackettwin.store import reading
 from jackettwin.store.records import find_record
 

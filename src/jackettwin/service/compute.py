@@ -20,8 +20,8 @@ import dask
 from distributed import Client, Future, LocalCluster
 from distributed.core import Status
 
+from jackettwin.service.begun import NoWorker, begun
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.service.tasks import NoWorker, begun
 
 log = logging.getLogger(__name__)
 

@@ -18,7 +18,8 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service import consequences
-from jackettwin.service.tasks import LOST_WORKER, Outcome, Question, Task, know, observe_stored
+from jackettwin.service.begun import LOST_WORKER
+from jackettwin.service.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
-from jackettwin.service.tasks import NoWorker
+from jackettwin.service.begun import NoWorker
 
 MEDIA_TYPE = "application/problem+json"
 

@@ -14,6 +14,7 @@ import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.app import create_app
+from jackettwin.service.begun import NoWorker
 from jackettwin.service.chores import Housekeeping
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.dispatch import Dispatcher
@@ -21,7 +22,6 @@ from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.intake.mqtt import MqttIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
-from jackettwin.service.tasks import NoWorker
 from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)

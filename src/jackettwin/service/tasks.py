@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,28 +13,6 @@ from jackettwin.errors import InputError, JackettwinError
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
-
-
-LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
-"""Errors that say that a worker ended over a task, whatever of."""
-
-
-_SAID_S = 0.01
-"""Until what a worker says is on its way, even if it dies of the task at once: Dask collects for 2 ms."""
-
-
-class NoWorker(Exception):
-    """No worker came to a task in time; nothing is wrong with it."""
-
-
-def begun(topic: str, task: Callable[..., Any], *args: Any) -> Any:
-    """Say that a worker begins with a task, and do it."""
-    from distributed import get_worker
-
-    worker = get_worker()
-    worker.log_event(topic, worker.get_current_task())
-    time.sleep(_SAID_S)
-    return task(*args)
 
 
 @dataclass(frozen=True)

@@ -123,7 +123,7 @@ def revoke(connection: Connection, secret: str) -> None:
 
 
 @dataclass(frozen=True)
-class Token:
+class KnownToken:
     """What is known of a token besides its secret."""
 
     user: str
@@ -132,11 +132,11 @@ class Token:
     expires_utc: datetime
 
 
-def list_tokens(connection: Connection) -> list[Token]:
+def list_tokens(connection: Connection) -> list[KnownToken]:
     """Return the tokens of machines, oldest first."""
     columns = (tokens.c.user, tokens.c.label, tokens.c.created_utc, tokens.c.expires_utc)
     query = select(*columns).where(tokens.c.kind == "token").order_by(tokens.c.created_utc)
-    return [Token(*row) for row in connection.execute(query)]
+    return [KnownToken(*row) for row in connection.execute(query)]
 
 
 def revoke_tokens(connection: Connection, user: str, label: str | None = None) -> int:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.tasks import LOST_WORKER, NoWorker, Parsed, read_file
+from jackettwin.service.begun import LOST_WORKER, NoWorker
+from jackettwin.service.tasks import Parsed, read_file
 from jackettwin.store import assets, journal, records, work, writing
 from jackettwin.version import __version__
 

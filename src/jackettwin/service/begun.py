@@ -1,0 +1,26 @@
+"""What a worker and its server know of a task: that it began, that its worker ended, that none came."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
+"""Errors that say that a worker ended over a task, whatever of."""
+_SAID_S = 0.01
+"""Until what a worker says is on its way, even if it dies of the task at once: Dask collects for 2 ms."""
+
+
+class NoWorker(Exception):
+    """No worker came to a task in time; nothing is wrong with it."""
+
+
+def begun(topic: str, task: Callable[..., Any], *args: Any) -> Any:
+    """Say that a worker begins with a task, and do it."""
+    from distributed import get_worker  # the command line reads files without workers
+
+    worker = get_worker()
+    worker.log_event(topic, worker.get_current_task())
+    time.sleep(_SAID_S)
+    return task(*args)
