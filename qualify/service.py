@@ -35,7 +35,6 @@ from jackettwin.store import assets, backup, reading, sqlite_url, work, writing
 from jackettwin.store.backup import restore
 
 KEPT = Path("out/qualify/service")
-READERS = 50
 TEN_MINUTES = 12_000
 """Samples of ten minutes at 20 Hz."""
 CHEAP = 1200
@@ -56,7 +55,7 @@ def records(n: int, samples: int) -> list[Sent]:
 
 
 def load(folder: Path, given: argparse.Namespace) -> Figures:
-    """Send records of a hundred turbines as fast as two workers take them while fifty readers ask.
+    """Send records of a hundred turbines as fast as two workers take them while many readers ask.
 
     The store holds the hundred turbines' day already, so that questions cost what they cost by evening.
     """
@@ -64,7 +63,7 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
     living.fill(store, turbines=100)
     with Server(store) as server:
         warm(server)
-        quiet = asked(server, lambda: time.sleep(given.quiet_s))
+        quiet = asked(server, given.readers, lambda: time.sleep(given.quiet_s))
         begin, cpu, memory = time.monotonic(), server.cpu_s(), list[dict[int, int]]()
 
         def send() -> None:
@@ -79,11 +78,12 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
 
-        busy = asked(server, send)
+        busy = asked(server, given.readers, send)
         took, spent = time.monotonic() - begin, server.cpu_s()
         return {
             "records": given.records,
             "pace_s": given.pace_s,
+            "readers": given.readers,
             "seconds_a_record": took / given.records,
             "server_cpu_s": spent[0] - cpu[0],
             "worker_cpu_s_a_record": (spent[1] - cpu[1]) / given.records,
@@ -107,8 +107,8 @@ def warm(server: Server) -> None:
         time.sleep(0.2)
 
 
-def asked(server: Server, during: Callable[[], None]) -> Figures:
-    """Have fifty readers ask, each once a second, while something happens; return what answers took."""
+def asked(server: Server, n: int, during: Callable[[], None]) -> Figures:
+    """Have ``n`` readers ask, each once a second, while something happens; return what answers took."""
     delays: list[float] = []
     wrong: list[int] = []
     stop = threading.Event()
@@ -128,7 +128,7 @@ def asked(server: Server, during: Callable[[], None]) -> Figures:
             stop.wait(max(1.0 - delays[-1], 0.0))
         connection.close()
 
-    readers = [threading.Thread(target=read, args=(i,), daemon=True) for i in range(READERS)]
+    readers = [threading.Thread(target=read, args=(i,), daemon=True) for i in range(n)]
     cpu = server.cpu_s()[0]
     for reader in readers:
         reader.start()
@@ -393,7 +393,7 @@ def _load(f: Figures) -> list[str]:
     return [
         "## A hundred turbines",
         "",
-        f"A store that holds a hundred turbines' day (14,300 records), two workers, {READERS} readers who",
+        f"A store that holds a hundred turbines' day (14,300 records), two workers, {f['readers']} readers who",
         f"each ask once a second. Of the next day's 14,400 records {f['records']} were sent,",
         f"of ten minutes and two channels, {pace}.",
         "",
@@ -500,6 +500,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", choices=list(SCENES), default=list(SCENES))
     parser.add_argument("--records", type=int, default=150)
+    parser.add_argument("--readers", type=int, default=50)
     parser.add_argument("--pace-s", type=float, default=0.0, help="least time between two records of load")
     parser.add_argument("--long", type=int, default=1500)
     parser.add_argument("--kills", type=int, default=60)
