@@ -393,8 +393,8 @@ def _load(f: Figures) -> list[str]:
     return [
         "## A hundred turbines",
         "",
-        f"A store that holds a hundred turbines' day (14,300 records), two workers, {f['readers']} readers who",
-        f"each ask once a second. Of the next day's 14,400 records {f['records']} were sent,",
+        f"A store that holds a hundred turbines' day (14,300 records), two workers, {f['readers']} readers,",
+        f"who each ask once a second. Of the next day's 14,400 records {f['records']} were sent,",
         f"of ten minutes and two channels, {pace}.",
         "",
         "| | figure | bar |",
