@@ -106,11 +106,12 @@ def test_iso_stamps_give_rate_start_and_gap(tmp_path: Path) -> None:
     assert record.metadata["clock"]["missing"] == 2
 
 
-@pytest.mark.parametrize("day", ["2025-02-01T", "2025/02/01 ", "01.02.2025 "])
+@pytest.mark.parametrize("day", ["2025-02-14T", "2025/02/14 ", "14.02.2025 ", "14/02/2025 ", "02/14/2025 "])
 def test_dates_of_loggers_are_read(day: str, tmp_path: Path) -> None:
+    """With strokes where only one of the two numbers can be a month."""
     rows = [f"{day}13:00:00,{250 + 50 * k};{k},5" for k in range(5)]
     record = read_text("\n".join(["Zeit;acc_x [g]", *rows]), tmp_path)
-    assert record.start_utc is not None and record.start_utc.isoformat() == "2025-02-01T13:00:00.250000+00:00"
+    assert record.start_utc is not None and record.start_utc.isoformat() == "2025-02-14T13:00:00.250000+00:00"
     assert record.sample_rate_hz == 20.0
     np.testing.assert_allclose(record.data[0] / 9.80665, np.arange(5) + 0.5, rtol=1e-15)
 
@@ -150,6 +151,12 @@ def test_plain_times_and_others_are_the_same_times(tmp_path: Path) -> None:
         rows = [*(f"2025-06-01 12:00:{s};1" for s in seconds[:4]), f"{wrong};1"]
         with pytest.raises(InputError, match="line 6"):
             read_text("\n".join(["time;acc_x [g]", *rows]), tmp_path)
+
+
+def test_the_first_day_settles_the_order_of_the_next(tmp_path: Path) -> None:
+    rows = ["31/01/2025 23:59:59.95,1", "01/02/2025 00:00:00.00,2", "01/02/2025 00:00:00.05,3"]
+    record = read_text("\n".join(["time,acc_x [g]", *rows]), tmp_path)
+    assert record.sample_rate_hz == 20.0 and record.data.shape == (1, 3)
 
 
 def test_ambiguous_dates_are_refused(tmp_path: Path) -> None:

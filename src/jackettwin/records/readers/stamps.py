@@ -16,15 +16,20 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-# Days and months with strokes between them have no agreed order: 01/02/2025 is not read.
-_DAY = r"(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})"
+# Days and months with strokes between them have no agreed order: 31/01/2025 has one, 01/02/2025 is not read.
+_NO_MONTH = r"(?:1[3-9]|2\d|3[01])"
+_DAY = (
+    r"(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4}|"
+    rf"{_NO_MONTH}/\d\d/\d{{4}}|\d\d/{_NO_MONTH}/\d{{4}})"
+)
 _CLOCK = r"\d\d?:\d\d:\d\d(?:[.,]\d{1,9})?"
 _DATE = re.compile(rf"\s*{_DAY}")
 _DATE_ALONE = re.compile(rf"\s*{_DAY}\s*")
 _CLOCK_ALONE = re.compile(rf"\s*{_CLOCK}\s*")
 _CLOCK_OF_A_DATE = re.compile(rf"\s*{_CLOCK}\s*(?:Z|[+-]\d\d:?\d\d)?\s*", re.IGNORECASE)
 _ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
-_DAY_FIRST = re.compile(r"^(\d\d)\.(\d\d)\.(\d{4})")
+_YEAR_LAST = re.compile(r"^(\d\d)[./](\d\d)[./](\d{4})")
+_MONTH_FIRST = re.compile(rf"\d\d/{_NO_MONTH}/")
 _PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
 _DAY_S = 86_400.0
 
@@ -68,11 +73,12 @@ def stamps(cells: Sequence[str], line: int) -> npt.NDArray[Any]:
     """
     if _CLOCK_ALONE.fullmatch(cells[0]):
         return _of_day(cells, line)
-    texts = [_iso(cell) for cell in cells]
+    order = r"\3-\1-\2" if _MONTH_FIRST.match(cells[0].strip()) else r"\3-\2-\1"
+    texts = [_YEAR_LAST.sub(order, cell.strip()).replace("/", "-") for cell in cells]
     if all(map(_PLAIN_STAMP.fullmatch, texts)):
         with suppress(ValueError):  # a 31st of June: the slow way names its line
             return np.array([text.rstrip("Zz").replace(",", ".") for text in texts], "datetime64[ns]")
-    return np.array([_stamp(cell, line + k) for k, cell in enumerate(cells)])
+    return np.array([_stamp(text, line + k) for k, text in enumerate(texts)])
 
 
 def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
@@ -92,12 +98,8 @@ def _of_day(cells: Sequence[str], line: int) -> npt.NDArray[np.timedelta64]:
     return np.round(1e9 * (seconds + _DAY_S * nights)).astype("timedelta64[ns]")
 
 
-def _iso(cell: str) -> str:
-    return _DAY_FIRST.sub(r"\3-\2-\1", cell.strip()).replace("/", "-")
-
-
-def _stamp(cell: str, line: int) -> np.datetime64:
+def _stamp(text: str, line: int) -> np.datetime64:
     try:
-        return np.datetime64(parse_time(_iso(cell)).replace(tzinfo=None), "ns")
+        return np.datetime64(parse_time(text).replace(tzinfo=None), "ns")
     except InputError as error:
         raise error.at(field=f"line {line}") from None
