@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
@@ -9,25 +11,39 @@ from plotly.subplots import make_subplots
 from jackettwin.report import style
 from jackettwin.report.numbers import words
 from jackettwin.twin.watched import Alarm, Watched
+from jackettwin.watching import CauseVerdict
 
 _BAND = 1.645
 _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
 _COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
 
-def unexplained_through_time(watched: Watched) -> go.Figure:
-    """Draw the day's mean of each frequency less what conditions explain, with band and alarms."""
-    chosen = [i for i, (kind, _) in enumerate(watched.watch.quantities) if kind == "frequency"]
-    chosen = chosen or list(range(len(watched.watch.quantities)))
+def leading(watched: Watched) -> int:
+    """Return the quantity that the first alarm shows most clearly in, or the first one."""
+    if not watched.alarms:
+        return 0
+    change = watched.alarms[0].change
+    return int(np.argmax(np.where(change.members, change.by_mode, -1.0)))
+
+
+def frequencies(watched: Watched) -> tuple[int, ...]:
+    """Return which quantities are frequencies; all, if none is."""
+    chosen = tuple(i for i, (kind, _) in enumerate(watched.watch.quantities) if kind == "frequency")
+    return chosen or tuple(range(len(watched.watch.quantities)))
+
+
+def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figure:
+    """Draw the day's mean of some quantities less what conditions explain, with band and alarms."""
     figure = make_subplots(rows=len(chosen), cols=1, shared_xaxes=True, vertical_spacing=0.03)
     for row, i in enumerate(chosen, start=1):
         _line(figure, watched, i, row)
         for number, alarm in enumerate(watched.alarms):
             _mark(figure, watched, alarm, i, row, named=row == 1 and number == 0)
-        label = words(watched.watch.labels[watched.watch.quantities[i][1]])
+        kind, mode = watched.watch.quantities[i]
+        label = words(watched.watch.labels[mode]) + ("" if kind == "frequency" else ", damping")
         figure.update_yaxes(title=style.title(label, "%"), row=row, col=1)
     figure.update_xaxes(title="time (UTC)", row=len(chosen), col=1)
-    return style.finish(figure, height=max(380, 150 * len(chosen) + 80))
+    return style.finish(figure, height=max(340, 150 * len(chosen) + 80))
 
 
 def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
@@ -44,7 +60,7 @@ def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
     )  # fmt: skip
     figure.add_scatter(
         x=kept, y=rest[seen], mode="markers", marker={"size": 4, "color": style.BLUE},
-        name="day's mean, unexplained", legendgroup="days", **place,
+        name="day's mean", legendgroup="days", **place,
     )  # fmt: skip
 
 
@@ -59,7 +75,7 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
         figure.add_annotation(
             x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,
             bgcolor="white",
-            text=f"{best.cause}, {100.0 * best.probability:.0f} %", row=row, col=1,
+            text=_cause(best), row=row, col=1,
         )  # fmt: skip
     if change.kind == "scatter" or not change.members[i]:
         return
@@ -69,6 +85,11 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
         line={"color": style.VERMILLION, "width": 2}, name="change found", legendgroup="change",
         showlegend=named, row=row, col=1,
     )  # fmt: skip
+
+
+def _cause(best: CauseVerdict) -> str:
+    clear = best.probability >= 0.5
+    return f"{best.cause}, {100.0 * best.probability:.0f} %" if clear else "cause not clear"
 
 
 def evidence_through_time(watched: Watched) -> go.Figure:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from jackettwin.report.figures_watch import (
     change_pattern,
     evidence_through_time,
     explained_shares,
+    frequencies,
+    leading,
     unexplained_through_time,
 )
 from jackettwin.report.numbers import count
@@ -19,6 +19,8 @@ from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.twin.watched_document import alarm_document, next_sentence, statement
 from jackettwin.version import __version__
 
+_LISTED = 0.01
+"""Probability from which a cause stands in the table; all stand in ``watched.json``."""
 _PATTERN = (
     "Change of each quantity, 90 %; beside it what the likeliest causes would have done, at their sizes."
 )
@@ -36,12 +38,11 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
     sections = []
     if watched.looks:
         caption = (
-            "What conditions do not explain of each frequency, day by day. Grey: where nine days of ten "
-            "lie if nothing has changed. Orange: when the change began, 90 %; red: the alarm, and its size."
+            "What conditions do not explain, day by day. Grey: where nine days of ten lie if nothing has "
+            "changed. Orange: when the change began, 90 %; red: the alarm, and its size."
         )
-        outcome.append(
-            Plot("unexplained_through_time", caption, unexplained_through_time(watched), fits=True)
-        )
+        figure = unexplained_through_time(watched, [leading(watched)])
+        outcome.append(Plot("leading_through_time", caption, figure, fits=True))
     sections.append(PageSection("Has it changed?", tuple(outcome)))
     sections += [
         PageSection(
@@ -50,6 +51,11 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
         for i, alarm in enumerate(watched.alarms, start=1)
     ]
     if watched.looks:
+        figure = unexplained_through_time(watched, frequencies(watched))
+        caption = "The same of every frequency."
+        sections.append(
+            PageSection("Every mode", (Plot("unexplained_through_time", caption, figure, fits=True),))
+        )
         caption = (
             f"Evidence of all changes that are looked for, summed over when they began. While nothing "
             f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
@@ -78,10 +84,12 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
 
 def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     document = alarm_document(watched.watch, watched.table.time, alarm)
-    rows = []
-    for cause in document["causes"]:
-        size = ("–", "–") if np.isnan(cause["size"]) else _size(cause)
-        rows.append((cause["cause"], f"{100.0 * cause['probability']:.1f}", *size))
+    shown = [cause for cause in document["causes"] if cause["probability"] >= _LISTED]
+    rows = [(c["cause"], f"{100.0 * c['probability']:.0f}", *_size(c)) for c in shown]
+    others = len(document["causes"]) - len(shown)
+    if others:
+        rest = 1.0 - sum(cause["probability"] for cause in shown)
+        rows.append((count(others, "other cause"), f"{100.0 * rest:.0f}", "–", "–"))
     caption = "Causes, after the data of the change."
     blocks: list[Block] = [
         PageTable(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
@@ -96,8 +104,12 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
 
 
 def _size(cause: dict[str, Any]) -> tuple[str, str]:
-    """Return size and interval in words."""
-    low, high = cause["interval_90"]
-    if cause["unit"] == "-":
-        return f"{100.0 * cause['size']:+.2f} %", f"{100.0 * low:+.2f} to {100.0 * high:+.2f} %"
-    return f"{cause['size']:.3g} {cause['unit']}", f"{low:.3g} to {high:.3g}"
+    """Return size and interval in words; what is there or not has no size."""
+    if cause["interval_90"] is None or cause["cause"].partition(" (or ")[0].endswith((" lost", " flooded")):
+        return "–", "–"
+    (low, high), unit = cause["interval_90"], cause["unit"]
+    scale, unit = {"-": (100.0, "%"), "m": (1000.0, "mm"), "kg": (1e-3, "t")}.get(unit, (1.0, unit))
+    if unit == "mm" and abs(cause["size"]) >= 0.1:
+        scale, unit = 1.0, "m"
+    size, *ends = (f"{scale * x:.2g}" for x in (cause["size"], low, high))
+    return f"{size} {unit}", f"{ends[0]} to {ends[1]}"

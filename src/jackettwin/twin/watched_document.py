@@ -13,8 +13,8 @@ from jackettwin.watching import Watch
 from jackettwin.watching.diagnosis import CauseVerdict
 
 _Z90 = 1.645
-_LIKELY = 0.001
-"""Causes below this probability are not listed."""
+_NAMED, _LIKELY = 3, 0.001
+"""Causes that a sentence names where none is clear, and the probability below which none is listed."""
 
 
 def watched_document(watched: Watched) -> dict[str, Any]:
@@ -117,6 +117,13 @@ def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
     return label if kind == "frequency" else f"{label} damping"
 
 
+def _likeliest(alarm: Alarm) -> str:
+    """Return the cause if one is likelier than not, else the first few."""
+    named = [f"{v.cause} ({100.0 * v.probability:.0f} %)" for v in alarm.diagnosis.verdicts[:_NAMED]]
+    clear = alarm.diagnosis.verdicts[0].probability >= 0.5
+    return f"most likely {named[0]}" if clear else f"cause not clear: {', '.join(named)}"
+
+
 def statement(watched: Watched) -> str:
     """Return the outcome in a sentence."""
     table = watched.table
@@ -130,7 +137,7 @@ def statement(watched: Watched) -> str:
         )
     parts = []
     for alarm in watched.alarms:
-        change, best = alarm.change, alarm.diagnosis.verdicts[0]
+        change = alarm.change
         doc = alarm_document(watched.watch, table.time, alarm)
         low, high = (100.0 * x for x in doc["size_interval_90"])
         what = "scatter of" if change.kind == "scatter" else "change of"
@@ -139,6 +146,6 @@ def statement(watched: Watched) -> str:
         parts.append(
             f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {100.0 * doc['size']:+.2f} % "
             f"({low:+.2f} to {high:+.2f} %), began {began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to "
-            f"{began[2]:%Y-%m-%d}); most likely {best.cause} ({100.0 * best.probability:.0f} %)."
+            f"{began[2]:%Y-%m-%d}); {_likeliest(alarm)}."
         )
     return " ".join(parts)
