@@ -37,7 +37,7 @@ DECKS = {
     "three-leg jacket": "examples/three_leg_jacket.yaml",
     "jacket15": "jacket15",
 }
-LAWS = {"kelvin-voigt": 4, "zener": 4, "springpot": 1}
+LAWS = {"kelvin-voigt": 16, "zener": 16, "springpot": 1}
 """Laws, and how many sets of each where a springpot, whose full model takes a second, has one."""
 WALKS, STEPS = 4, 1000
 """Random walks that say how many evaluations start warm, and the sets of each."""
