@@ -3,6 +3,7 @@
 import os
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from distributed.scheduler import KilledWorker
@@ -71,3 +72,17 @@ def test_a_task_that_its_worker_dies_of_was_tried(compute: Compute) -> None:
         fatal.result(timeout=60)
     assert compute.has_begun(fatal)
     assert compute.submit(os.getpid).result(timeout=60)  # its nanny has another one
+
+
+def test_a_file_does_not_wait_at_a_busy_worker_while_another_is_free(tmp_path: Path) -> None:
+    two = Compute(ServiceSettings(tmp_path, workers=2))
+    try:
+        while two.workers < 2:
+            time.sleep(0.1)
+        long = two.submit(time.sleep, 600.0)
+        two.submit(time.sleep, 1.0)
+        asked = [two.submit(os.getpid, priority=100) for _ in range(2)]  # one is put behind each
+        assert all(one.result(timeout=60) for one in asked)
+        assert not long.done()
+    finally:
+        two.close()

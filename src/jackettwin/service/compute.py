@@ -40,7 +40,7 @@ _DASK = {
     "distributed.worker.memory.pause": False,
     "distributed.worker.memory.terminate": 0.95,
     "distributed.scheduler.allowed-failures": 0,
-    "distributed.scheduler.work-stealing": False,
+    "distributed.scheduler.work-stealing": True,
     "distributed.admin.tick.limit": "60s",
     "distributed.worker.daemon": True,
     "distributed.deploy.lost-worker-timeout": "1h",
@@ -50,7 +50,8 @@ _DASK = {
 }
 """A worker over its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try. The timeout of a lost worker is when
+A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a busy
+one: an upload does not wait for a posterior. The timeout of a lost worker is when
 Dask ends whoever took its place, if that one is just starting: after its own 15 s that happened. Dask's
 profiler and monitor keep what every thread did for an hour, and let workers grow meanwhile: off, and short.
 """
@@ -113,8 +114,13 @@ class Compute:
         cluster.scale(self._wanted)
 
     def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
-        """Start a task; urgent ones overtake."""
-        return self.client.submit(begun, self._topic, task, *args, pure=False, priority=priority, retries=0)
+        """Start a task; urgent ones overtake.
+
+        Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
+        """
+        name = getattr(task, "func", task).__name__
+        key = f"{name}-{secrets.token_hex(16)}"
+        return self.client.submit(begun, self._topic, task, *args, key=key, priority=priority, retries=0)
 
     def _note(self, event: tuple[float, str]) -> None:
         self._began[event[1]] = time.monotonic()
