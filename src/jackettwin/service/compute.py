@@ -50,10 +50,10 @@ _DASK = {
 }
 """A worker over its memory is ended, not paused.
 
-A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a busy
-one: an upload does not wait for a posterior. The timeout of a lost worker is when
-Dask ends whoever took its place, if that one is just starting: after its own 15 s that happened. Dask's
-profiler and monitor keep what every thread did for an hour, and let workers grow meanwhile: off, and short.
+A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
+busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
+its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor keep
+what every thread did for an hour, and let workers grow meanwhile: off, and short.
 """
 
 _REMEMBERED = 10_000
