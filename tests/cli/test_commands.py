@@ -38,8 +38,8 @@ def test_a_help_text_loads_no_numerics() -> None:
     """A help text took 1767 modules and 3 CPU-seconds, SciPy's and Numba's among them."""
     code = (
         "import sys; sys.argv = ['jackettwin', '--help']\n"
-        "from jackettwin.__main__ import main\n"
-        "try: main()\n"
+        "from jackettwin.__main__ import run\n"
+        "try: run()\n"
         "except SystemExit: print(*sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
