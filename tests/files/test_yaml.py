@@ -30,7 +30,8 @@ def test_numbers_with_exponents_are_numbers(tmp_path: Path) -> None:
         ("", "must be a mapping"),
         ("a: !!python/object:os.system {}\n", "could not determine a constructor"),
         ("? [1, 2]\n: 3\n", "key is not a word"),
-        ("a: " + "[" * 3000 + "]" * 3000, "nested too deeply|line"),
+        ("a: " + "[" * 3000 + "]" * 3000, "nested too deeply"),
+        ("a: " + "[" * 300_000 + "]" * 300_000, "nested too deeply"),
     ],
 )
 def test_what_is_no_mapping_is_refused(tmp_path: Path, text: str, message: str) -> None:

@@ -11,8 +11,16 @@ import yaml
 
 from jackettwin.errors import InputError
 
+try:
+    from yaml import CSafeLoader as _SafeLoader
+except ImportError:  # PyYAML was built without libyaml
+    from yaml import SafeLoader as _SafeLoader  # type: ignore[assignment]
 
-class _Loader(yaml.SafeLoader):
+_DEEPEST = 100
+"""Levels of nesting. Loading recurses, in libyaml down to the end of the stack; parsing does not."""
+
+
+class _Loader(_SafeLoader):
     """SafeLoader with YAML 1.2 numbers and unique keys."""
 
 
@@ -92,7 +100,9 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
     """
     try:
         # _Loader derives from SafeLoader: it builds plain data only.
-        data = yaml.load(read_text(path, what=what), Loader=_Loader)
+        text = read_text(path, what=what)
+        _bounded(text)
+        data = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark is not None else ""
@@ -110,6 +120,15 @@ def read_yaml(path: Path | str, *, what: str = "file") -> dict[str, Any]:
             remedy="start from an example in the documentation",
         )
     return {str(key): value for key, value in data.items()}
+
+
+def _bounded(text: str) -> None:
+    """Raise RecursionError at the first place that is nested too deeply."""
+    level = 0
+    for event in yaml.parse(text, Loader=_Loader):
+        level += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if level > _DEEPEST:
+            raise RecursionError
 
 
 def read_mapping(path: Path | str, *, what: str = "file") -> dict[str, Any]:
