@@ -1,4 +1,4 @@
-"""The modes that a scenario states against those of its whole model, on structures of many kinds, in water."""
+"""The modes that a scenario states against those of its whole model, on five structures in water."""
 
 from pathlib import Path
 
