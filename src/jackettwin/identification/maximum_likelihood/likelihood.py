@@ -56,6 +56,8 @@ EXPECTED_GAIN = 1.0
 """… and would gain less log-likelihood than this: forces and noise have settled as well …"""
 NO_LIFT = 1e-4
 """Share of the information that is added to call a step undamped: some directions have next to none."""
+MOST_LIFT = 1e7
+"""The same, from which a step goes nowhere."""
 LEAST_GAIN = 0.001
 """… or where a step gains less than this, if it was damped by no more than …"""
 FREE = 0.1
@@ -115,21 +117,29 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
         left, expected_gain = _left(at.parameters, score, fisher)
         if left < TOLERANCE and expected_gain < EXPECTED_GAIN:
             return Climb(at.parameters, at.value, True)
-        trial = None
-        while (trial is None or trial.value < at.value) and lift < 1e7:
-            used, step = lift, _solved(fisher, score, lift)
-            trial = (
-                point(data, prior, at.parameters.moved(step)) if _far(at.parameters, step) <= 1.0 else None
-            )
-            lift *= 6.0
-        if trial is None or trial.value < at.value:
+        trial, used = _ascended(data, prior, at, score, fisher, lift)
+        if trial is None:
             return Climb(at.parameters, at.value, False)
         gain = trial.value - at.value
         idle = idle + 1 if gain < (LITTLE_GAIN if expected_gain < EXPECTED_GAIN else LEAST_GAIN) else 0
-        at, lift = trial, max(lift / 60.0, 1e-6)
+        at, lift = trial, max(used / 10.0, 1e-6)
         if idle == MOST_IDLE or (used <= FREE and gain < LEAST_GAIN):
             return Climb(at.parameters, at.value, True)
     return Climb(at.parameters, at.value, False)
+
+
+def _ascended(
+    data: Periodogram, prior: ParameterPrior, at: Point, score: FloatArray, fisher: FloatArray, lift: float
+) -> tuple[Point | None, float]:
+    """Return the first point no lower that a step, damped more and more, reaches, and how much it was."""
+    while lift < MOST_LIFT:
+        step = _solved(fisher, score, lift)
+        if _far(at.parameters, step) <= 1.0:
+            trial = point(data, prior, at.parameters.moved(step))
+            if trial is not None and trial.value >= at.value:
+                return trial, lift
+        lift *= 6.0
+    return None, lift
 
 
 def _left(p: Parameters, score: FloatArray, fisher: FloatArray) -> tuple[float, float]:
