@@ -82,7 +82,7 @@ class ParameterPrior:
 
 
 @dataclass(frozen=True)
-class Point:
+class Evaluation:
     """The log-posterior at one set of parameters, up to a constant, and what it was made of.
 
     Attributes
@@ -129,8 +129,13 @@ def climbed(data: Periodogram, p: Parameters, most: int = MAX_ITERATIONS) -> Cli
 
 
 def _ascended(
-    data: Periodogram, prior: ParameterPrior, at: Point, score: FloatArray, fisher: FloatArray, lift: float
-) -> tuple[Point | None, float]:
+    data: Periodogram,
+    prior: ParameterPrior,
+    at: Evaluation,
+    score: FloatArray,
+    fisher: FloatArray,
+    lift: float,
+) -> tuple[Evaluation | None, float]:
     """Return the first point no lower that a step, damped more and more, reaches, and how much it was."""
     while lift < MOST_LIFT:
         step = _solved(fisher, score, lift)
@@ -225,7 +230,7 @@ def objective(data: Periodogram, prior: ParameterPrior, p: Parameters) -> float:
     return -np.inf if at is None else at.value
 
 
-def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Point | None:
+def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Evaluation | None:
     """Return the log-posterior and what it is made of; None outside the admissible region."""
     low, high = np.log(ZETA_RANGE)
     if np.any(p.log_zeta > high) or np.any(p.log_zeta < low):
@@ -243,10 +248,10 @@ def point(data: Periodogram, prior: ParameterPrior, p: Parameters) -> Point | No
     value = -np.sum(data.count * (log_det + trace))
     value -= 0.5 * np.sum(prior.precision * (p.vector - prior.centre) ** 2)
     value += COHERENCE_PRIOR * 2.0 * np.sum(np.log(np.diag(root).real))
-    return Point(p, float(value), model, white) if np.isfinite(value) else None
+    return Evaluation(p, float(value), model, white) if np.isfinite(value) else None
 
 
-def scoring(data: Periodogram, prior: ParameterPrior, at: Point) -> tuple[FloatArray, FloatArray]:
+def scoring(data: Periodogram, prior: ParameterPrior, at: Evaluation) -> tuple[FloatArray, FloatArray]:
     """Return the score and the Fisher information, prior included."""
     p = at.parameters
     score, fisher = products(data, p, at.model, at.white, misfit_of(data, at.white))
