@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jackettwin.watching.design import Coefficients
+from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.memory import Memory, empty_bank, filtered, prior_belief
 
@@ -46,7 +46,7 @@ def test_innovations_are_those_of_the_cholesky_factor(rng: np.random.Generator) 
     lower = np.linalg.cholesky(sigma)
     known = rng.standard_normal(prior.shape)
     y = y - np.array([hours.rows[i] @ known[q] for i, q in at])
-    belief = prior_belief(memory, Coefficients(known, prior))
+    belief = prior_belief(memory, RegressionPrior(known, prior))
     done = filtered(memory, belief, empty_bank(M, belief.mean.size), hours, -np.inf)
     z = (done.innovation / np.sqrt(done.spread))[at[:, 0], at[:, 1]]
     np.testing.assert_allclose(z, np.linalg.solve(lower, y), atol=1e-8)
@@ -59,7 +59,7 @@ def test_what_is_said_of_steps_is_that_of_the_whole_series(rng: np.random.Genera
     hours, memory, prior = series(rng)
     sigma, y, at = covariance(hours, memory, prior)
     begins = (25, 40)
-    belief = prior_belief(memory, Coefficients(np.zeros_like(prior), prior))
+    belief = prior_belief(memory, RegressionPrior(np.zeros_like(prior), prior))
     bank, last = empty_bank(M, belief.mean.size, ramps=True), -np.inf
     for first, end in zip((0, *begins), (*begins, N), strict=True):
         part = Hours(*(getattr(hours, n)[first:end] for n in hours.__dataclass_fields__))
@@ -77,7 +77,7 @@ def test_what_is_said_of_steps_is_that_of_the_whole_series(rng: np.random.Genera
 
 def test_a_day_at_a_time_is_the_whole_at_once(rng: np.random.Generator) -> None:
     hours, memory, prior = series(rng)
-    belief = prior_belief(memory, Coefficients(np.zeros_like(prior), prior))
+    belief = prior_belief(memory, RegressionPrior(np.zeros_like(prior), prior))
     bank = empty_bank(M, belief.mean.size)
     whole = filtered(memory, belief, bank, hours, -np.inf)
     last = -np.inf

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.watching.design import Coefficients
+from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
 
-PRIOR = Coefficients(np.zeros((2, 1)), np.full((2, 1), 5.0))
+PRIOR = RegressionPrior(np.zeros((2, 1)), np.full((2, 1), 5.0))
 
 
 def series(rng: np.random.Generator, days: tuple[float, ...]) -> Hours:

@@ -37,15 +37,15 @@ class Slope:
     std: FloatArray
 
 
-class Coefficients(NamedTuple):
+class RegressionPrior(NamedTuple):
     """What is known of coefficients before the first row, (m, p): means and standard deviations."""
 
     mean: FloatArray
     std: FloatArray
 
-    def of(self, chosen: list[int]) -> Coefficients:
+    def of(self, chosen: list[int]) -> RegressionPrior:
         """Return those of some of the quantities."""
-        return Coefficients(self.mean[chosen], self.std[chosen])
+        return RegressionPrior(self.mean[chosen], self.std[chosen])
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class Design:
         slopes = [c.prior for _ in range(self.sloped) for c in self.columns]
         return np.array([_LEVEL] * len(self.states) + slopes)
 
-    def coefficients(self, spread: FloatArray, slopes: Sequence[Slope] = ()) -> Coefficients:
+    def coefficients(self, spread: FloatArray, slopes: Sequence[Slope] = ()) -> RegressionPrior:
         """Return what is known of the coefficients of quantities that vary so much, (m,) each.
 
         A model's slope is that of the line in its condition.
@@ -120,7 +120,7 @@ class Design:
                 if (column.name, column.shape, column.lag_days) == (slope.condition, "line", 0.0):
                     mean[:, k] = column.scale * slope.per_unit
                     std[:, k] = column.scale * slope.std
-        return Coefficients(mean, std)
+        return RegressionPrior(mean, std)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from scipy.optimize import minimize
 from scipy.special import chdtr
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.watching.design import Coefficients
+from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
 from jackettwin.watching.kernels import filter_rows
 
@@ -111,7 +111,7 @@ class Belief:
     cov: FloatArray
 
 
-def prior_belief(memory: Memory, prior: Coefficients) -> Belief:
+def prior_belief(memory: Memory, prior: RegressionPrior) -> Belief:
     """Return the state before the first row."""
     m, p = prior.std.shape
     slow = memory.slow
@@ -236,7 +236,7 @@ def _power_law(slope: float) -> Spectrum:
 
 
 def learn(
-    hours: Hours, prior: Coefficients, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
+    hours: Hours, prior: RegressionPrior, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
 ) -> Learnt:
     """Return the models that a baseline makes likely.
 
@@ -277,7 +277,7 @@ def learn(
     return _weighed(bases[:MOST_TRIED], hours, prior, hidden)
 
 
-def _weighed(bases: list[Memory], hours: Hours, prior: Coefficients, hidden: bool) -> Learnt:
+def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> Learnt:
     """Return models with the quantities' correlation, weighed by all quantities together."""
     m = len(prior.std)
     fast, slow = _correlations(hours, bases[0], prior, hidden)
@@ -357,7 +357,7 @@ def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
     return np.asarray(np.maximum(share, 1e-12))
 
 
-def _freedom(hours: Hours, q: int, memory: Memory, prior: Coefficients) -> float:
+def _freedom(hours: Hours, q: int, memory: Memory, prior: RegressionPrior) -> float:
     """Return how many independent values of the slow processes of a quantity the baseline holds.
 
     ln of a standard deviation that is known by ν values has the variance 1/(2ν).
@@ -370,7 +370,7 @@ def _freedom(hours: Hours, q: int, memory: Memory, prior: Coefficients) -> float
     return float(0.5 * (2.0 * at[1] - at[0] - at[2]) / _APART**2)
 
 
-def _end(memory: Memory, prior: Coefficients, hours: Hours) -> Filtered:
+def _end(memory: Memory, prior: RegressionPrior, hours: Hours) -> Filtered:
     """Return what a model knows after the baseline."""
     belief = prior_belief(memory, prior)
     return filtered(memory, belief, empty_bank(len(prior.std), belief.mean.size), hours, -np.inf)
@@ -385,7 +385,7 @@ class _Fit:
     score: float
 
 
-def _alone(own: Hours, prior: Coefficients, spectrum: Spectrum, near: _Fit | None) -> _Fit:
+def _alone(own: Hours, prior: RegressionPrior, spectrum: Spectrum, near: _Fit | None) -> _Fit:
     """Return the most likely scale and size of one quantity; ``near`` is where to start from."""
     spread = float(np.std(own.values))
     typical = float(np.sqrt(np.median(own.noise)))
@@ -414,7 +414,7 @@ def _alone(own: Hours, prior: Coefficients, spectrum: Spectrum, near: _Fit | Non
 
 
 def _correlations(
-    hours: Hours, memory: Memory, prior: Coefficients, hidden: bool
+    hours: Hours, memory: Memory, prior: RegressionPrior, hidden: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the correlation between quantities of fast and of slow processes, alike unless ``hidden``.
 
@@ -435,7 +435,7 @@ def _correlations(
 
 
 def _pair_mean(
-    own: Hours, pair: Memory, prior: Coefficients, correlation: FloatArray, chosen: BoolArray,
+    own: Hours, pair: Memory, prior: RegressionPrior, correlation: FloatArray, chosen: BoolArray,
     tried: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
