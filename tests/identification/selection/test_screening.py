@@ -14,6 +14,7 @@ import pytest
 from jackettwin.identification import IdentificationSettings, ModalEstimate, identify
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.selection.screening import (
+    PERIODS,
     Evidence,
     contrast,
     evidence,
@@ -23,6 +24,8 @@ from jackettwin.identification.selection.screening import (
 )
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record
+from jackettwin.simulate import read_scenario
+from jackettwin.simulate.record import conditions as simulated_conditions
 
 FREQUENCY_HZ = np.array([0.33, 0.345, 0.91, 1.9, 2.05])
 DAMPING_RATIO = np.array([0.012, 0.02, 0.02, 0.012, 0.015])
@@ -99,6 +102,40 @@ def test_a_peak_as_broad_as_a_sea_is_a_wave_where_the_sea_is_known(rng, tp_s):
         assert [r.status for r in found.rejected if abs(r.frequency_hz - PEAK_HZ) < 0.02][
             0
         ] == "not a mode: wave"
+
+
+def test_the_sea_of_a_simulated_record_is_what_modes_are_held_against():
+    """What ``simulate`` writes among the conditions is what is looked for there."""
+    written = simulated_conditions(read_scenario("parked"))
+    assert {key: written[key] for key in PERIODS if key in written} == {"wave_period_s": 8.0}
+
+
+HEIGHTS = np.array([1.0, 0.5, 0.15])
+PAIR = np.array([np.kron(HEIGHTS, [1.0, 0.05]), np.kron(HEIGHTS, [-0.05, 1.0])])
+SECOND = np.kron([-0.4, 0.7, 0.5], [1.0, 0.3])
+
+
+def broad(rng, frequency_hz, damping_ratio, shapes) -> list[str]:
+    """Return the statuses of what is broad in twenty minutes of first modes and a second bending."""
+    system = ModalSystem(
+        np.array([*frequency_hz, 1.1]),
+        np.array([*damping_ratio, 0.02]),
+        np.array([*shapes, SECOND]),
+        np.diag([*np.ones(len(shapes)), 0.05]),
+        0.01,
+    )
+    found = identify(simulate(system, rng, duration_s=1200.0, sample_rate_hz=10.0))
+    return [m.status for m in found.modes if m.frequency_hz < 0.27 and m.damping_ratio > 0.04]
+
+
+def test_a_pair_of_which_the_air_damps_one_is_a_pair(rng):
+    assert broad(rng, [0.2400, 0.2465], [0.06, 0.009], PAIR) == ["ok"]
+
+
+def test_a_broad_third_beside_a_light_pair_is_doubted(rng):
+    """It follows waves in another profile over the height than the pair has."""
+    follows = np.kron([1.0, 0.7, 0.5], [0.8, 0.6])
+    assert broad(rng, [0.21, 0.2455, 0.2465], [0.07, 0.009, 0.009], [follows, *PAIR]) == ["doubtful"]
 
 
 def test_contrast_is_one_in_noise_and_many_at_a_mode(tower, rng):

@@ -81,7 +81,7 @@ KEPT_CONTRAST, KEPT_CONTRAST_STD = 3.0, 8.0
 noise have 0.7 to 1.7 with up to 4 standard deviations, modes that were doubted for their damping 4 to 40."""
 UNKNOWN_DAMPING = 1.0
 """Standard deviation of ln ζ above which damping is called unknown."""
-PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp")
+PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp", "wave_period_s")
 """Names of the peak period of the sea among a record's conditions."""
 NARROW = 1.5
 """2πζfT below which a peak is hardly broader than a line."""
@@ -138,7 +138,7 @@ def evidence(
     y : (n_channels, n_samples)
         Without tones, divided by the channels' scale; NaN marks a missing sample.
     conditions : mapping
-        Of the record; ``wave_tp_s``, ``tp_s`` or ``peak_period_s`` is the peak period of the sea [s].
+        Of the record; ``wave_period_s`` or another of ``PERIODS`` is the peak period of the sea [s].
     bands : sequence of QuietBand
         Where modes were sought once more.
     sensors : bool
@@ -225,12 +225,13 @@ def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidenc
 def _forces(mode: ModalEstimate, close: Sequence[ModalEstimate], peak_hz: float | None) -> Iterator[Verdict]:
     f, zeta = mode.frequency_hz, mode.damping_ratio
     percent = {"damping_percent": 100.0 * zeta}
+    lighter = sum(m.damping_ratio < BROAD for m in close)
     if peak_hz is not None and abs(f / peak_hz - 1.0) < TOP_OF_SEA and zeta > BROAD:
-        lighter = any(m.damping_ratio < BROAD for m in close)
         status = ModeStatus.DOUBTFUL if lighter else ModeStatus.WAVE
         yield status, Finding("follows_the_sea", params={**percent, "period_s": 1.0 / peak_hz})
     elif peak_hz is None and WAVES_HZ[0] < f < WAVES_HZ[1] and zeta > BROAD:
-        if not any(m.damping_ratio < BROAD for m in close):
+        # the air may damp one of a pair so much more than the other, never a third beside two
+        if lighter != 1:
             yield ModeStatus.DOUBTFUL, Finding("broad_as_waves", params=percent)
     if zeta > TOO_BROAD:
         yield ModeStatus.DOUBTFUL, Finding("broad", params=percent)
