@@ -109,14 +109,15 @@ def checked(model: SupportModel, n: int, rng: np.random.Generator) -> Checked:
         if full.size == found.poles.size and full.size:
             error = np.abs(np.sort_complex(found.poles) / np.sort_complex(full) - 1.0)
             worst = max(worst, float(error.max()))
-    warm = float(np.mean([warm_share(model, STEPS, rng) for _ in range(WALKS)]))
-    return Checked(missed, surplus, uncertified, worst, warm)
+    warm, steps = np.sum([warm_steps(model, STEPS, rng) for _ in range(WALKS)], axis=0)
+    return Checked(missed, surplus, uncertified, worst, float(warm / steps))
 
 
-def warm_share(model: SupportModel, n: int, rng: np.random.Generator) -> float:
-    """Return the share of the steps of a random walk that start warm, of those whose ends have the modes.
+def warm_steps(model: SupportModel, n: int, rng: np.random.Generator) -> tuple[int, int]:
+    """Return how many steps of a random walk start warm, and how many there are whose ends have the modes.
 
-    Strong dashpots leave a mode no oscillation: a set without one is no start, and no end of a step.
+    Strong dashpots leave a mode no oscillation: a set without one is no start, and no end of a step. Nor is
+    one whose count is not confirmed a start.
     """
     low, high = bounds(model)
     near, steps, warm = None, 0, 0
@@ -127,9 +128,9 @@ def warm_share(model: SupportModel, n: int, rng: np.random.Generator) -> float:
         if near is not None and whole:
             steps += 1
             warm += int(found.status[0] == Status.NEIGHBOUR)
-        near = found if whole else None
+        near = found if whole and found.status[0] != Status.UNCERTIFIED else None
         z = np.clip(z + STEP * (high - low) * rng.standard_normal(low.size), low, high)
-    return warm / steps
+    return warm, steps
 
 
 def evaluation_us(models: list[SupportModel]) -> list[float]:
