@@ -1,4 +1,4 @@
-"""What a change was: causes planted in two jackets, told apart by the modes' changes.
+"""What a change was: causes planted in three jackets, told apart by the modes' changes.
 
 Usage: python qualify/diagnosis.py [draws a cause and size]
 
@@ -202,7 +202,7 @@ def calibration(found: list[Case], *, shared: bool = False) -> tuple[float, floa
 DRAWN = (
     "# Diagnosis",
     "",
-    "`python qualify/diagnosis.py {number}`: causes planted in two jackets of uncertain feet at three",
+    "`python qualify/diagnosis.py {number}`: causes planted in three jackets of uncertain feet at three",
     "sizes, {number} times each; five modes' frequencies and damping ratios, whose changes are known to",
     "0.03 % and 2 % (drawn, not identified: a month before and after in the seasons of",
     "[watching](watching.md)). Through the whole chain: [here](diagnosis_chain.md).",
