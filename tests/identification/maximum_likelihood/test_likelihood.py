@@ -11,6 +11,7 @@ from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.admission import gain_of, needed_gain
 from jackettwin.identification.maximum_likelihood.background import with_background
 from jackettwin.identification.maximum_likelihood.periodogram import periodogram
+from jackettwin.identification.maximum_likelihood.prior import prior_of
 from jackettwin.identification.maximum_likelihood.refinement import refine
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, linear_bend
 from jackettwin.identification.synthetic import ModalSystem, simulate
@@ -72,7 +73,7 @@ def central(function, p, k, step):
 @pytest.mark.parametrize("kind", ["fitted", "fitted_narrow"])
 def test_score_equals_finite_differences(kind, request):
     data, p = request.getfixturevalue(kind)
-    prior = likelihood.prior_of(data, p)
+    prior = prior_of(data, p)
     score, _ = likelihood.scoring(data, prior, likelihood.point(data, prior, p))
     for k in range(0, len(score), 7):
         slope = central(lambda q: likelihood.objective(data, prior, q), p, k, 1e-6)
@@ -84,7 +85,7 @@ def test_information_is_the_mean_curvature(fitted):
     """With the model itself as data, minus the slope of the score is the Fisher information."""
     data, p = fitted
     exact = replace(data, density=expected(data, p, 0.0).matrix)
-    prior = likelihood.prior_of(exact, p)
+    prior = prior_of(exact, p)
     _, fisher = likelihood.scoring(exact, prior, likelihood.point(exact, prior, p))
     size = np.sqrt(np.diag(fisher))
     for k in range(0, len(size), 11):
@@ -148,7 +149,7 @@ def test_curvature_biases_as_foretold():
     p = likelihood.climbed(data, likelihood.start(data, *at(system), shapes)).parameters
     p = replace(p, log_zeta=np.log(system.damping_ratio))
     data = replace(data, dither=np.full_like(data.dither, 1e-3 * data.floor.min()))
-    prior = replace(likelihood.prior_of(data, p), centre=p.vector)
+    prior = replace(prior_of(data, p), centre=p.vector)
     matrix = expected(data, p, 0.0).matrix
     root = np.linalg.cholesky(matrix)
     fisher = likelihood.scoring(data, prior, likelihood.point(data, prior, p))[1]

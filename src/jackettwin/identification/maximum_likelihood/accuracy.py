@@ -14,12 +14,11 @@ from scipy import linalg
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.likelihood import (
-    add_coherence_prior,
     inverse_root,
     misfit_of,
-    prior_of,
     products,
 )
+from jackettwin.identification.maximum_likelihood.prior import add_coherence_prior, prior_of
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
     derivative_factors,
@@ -29,9 +28,9 @@ from jackettwin.identification.maximum_likelihood.spectral_model import (
 )
 
 if TYPE_CHECKING:
-    from jackettwin.identification.maximum_likelihood.likelihood import ParameterPrior
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
+    from jackettwin.identification.maximum_likelihood.prior import ParameterPrior
 
 
 KEPT_SHARES = (1e-4, 1e-2, 1.0)

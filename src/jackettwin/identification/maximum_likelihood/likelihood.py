@@ -13,7 +13,7 @@ Whittle likelihood).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +22,13 @@ from scipy.linalg import lapack
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.maximum_likelihood.parameters import Parameters, coherent_pairs
+from jackettwin.identification.maximum_likelihood.prior import (
+    COHERENCE_PRIOR,
+    ParameterPrior,
+    add_coherence_prior,
+    noise_level,
+    prior_of,
+)
 from jackettwin.identification.maximum_likelihood.spectral_model import (
     Expected,
     derivative_factors,
@@ -36,16 +43,6 @@ if TYPE_CHECKING:
 
 QUIET = 0.3
 """Noise at the start, as a share of the lowest local median."""
-LIKELY_NOISE = 0.01
-"""Centre of its prior, as a share of the same: noise may be all of it, or next to nothing …"""
-COHERENCE_PRIOR = 1.0
-"""Weight of ln det Γ: coherences stay inside the unit circle."""
-COLOUR_PRIOR = 3.0
-"""Standard deviation of the exponents of the force spectra about the common one of the start."""
-NOISE_PRIOR = (2.7, 1.0)
-"""… the standard deviation of a logarithm spread evenly over four decades; and that of its exponent."""
-LAG_PRIOR = 0.05
-"""Standard deviation of the imaginary parts of a shape, as a share of its norm: 3° of all its channels."""
 COLOURS = (0.0, 1.0, 2.0, 3.0, 4.0)
 """Exponents tried at the start, of all force spectra together."""
 MAX_ITERATIONS = 80
@@ -69,16 +66,6 @@ MOST_IDLE = 3
 ZETA_RANGE = (1e-5, 0.5)
 ROUNDED_OFF = np.complex64(1e-4 + 1e-4j)
 """Derivatives below 1e-11 are taken for zero."""
-HELD = 1e-4
-"""Standard deviation of the prior on ln f and ln ζ of modes that are not sought."""
-
-
-@dataclass(frozen=True)
-class ParameterPrior:
-    """Centre and precision of the Gaussian prior of every parameter."""
-
-    centre: FloatArray
-    precision: FloatArray
 
 
 @dataclass(frozen=True)
@@ -177,7 +164,7 @@ def start(
     n = len(f)
     pairs = coherent_pairs(np.log(f))
     none = np.zeros(len(pairs), dtype=complex)
-    noise = np.stack([_noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
+    noise = np.stack([noise_level(data, QUIET), np.zeros(data.floor.shape[1])])
     first = [
         Parameters(
             np.log(f),
@@ -193,35 +180,6 @@ def start(
         for colour in COLOURS
     ]
     return max(first, key=lambda p: objective(data, prior_of(data, p), p))
-
-
-def _noise_level(data: Periodogram, share: float) -> FloatArray:
-    return np.asarray(np.log(share * data.floor.min(axis=0)))
-
-
-def prior_of(data: Periodogram, p: Parameters) -> ParameterPrior:
-    """Return the prior: weak on colours, noise and lags, none on the modes but those that are not sought."""
-    level = _noise_level(data, LIKELY_NOISE)
-    blank = p.moved(-p.vector)
-    mode = np.arange(len(p.log_f))
-    held, background = (mode < p.held).astype(float), (mode < p.background).astype(float)
-    centre = replace(
-        blank,
-        log_f=p.log_f * held,
-        log_zeta=p.log_zeta * held,
-        colour=p.exponent * (1.0 - background),
-        noise=np.stack([level, np.zeros_like(level)]),
-    )
-    std = np.repeat(np.array(NOISE_PRIOR)[:, None], len(level), axis=1)
-    precision = replace(
-        blank,
-        log_f=held * HELD**-2,
-        log_zeta=held * HELD**-2,
-        colour=np.full(len(p.colour), COLOUR_PRIOR**-2),
-        noise=std**-2.0,
-        lag=np.broadcast_to((LAG_PRIOR * p.lagging_size) ** -2.0, p.lag.shape),
-    )
-    return ParameterPrior(centre.vector, precision.vector)
 
 
 def objective(data: Periodogram, prior: ParameterPrior, p: Parameters) -> float:
@@ -277,26 +235,6 @@ def products(
         factor += ROUNDED_OFF
         factor -= ROUNDED_OFF
     return gram(u, w, misfit.transpose(1, 2, 0).astype(np.complex64) * weight)
-
-
-def add_coherence_prior(p: Parameters, score: FloatArray, fisher: FloatArray) -> None:
-    """Add slope and curvature of ln det Γ."""
-    i, j = p.pairs.T
-    if not len(i):
-        return
-    inverse = np.linalg.inv(p.gamma)
-    first = 3 * len(p.log_f) + p.shapes.size
-    at = slice(first, first + 2 * len(i))
-    slope = inverse[j, i]
-    score[at] += 2.0 * COHERENCE_PRIOR * np.concatenate([slope.real, -slope.imag])
-    # tr(Γ⁻¹ dΓ_p Γ⁻¹ dΓ_q), dΓ = e_i e_jᵀ d + h.c.
-    a = inverse[np.ix_(j, i)]
-    b = inverse[np.ix_(j, j)] * inverse[np.ix_(i, i)].T
-    direct, cross = a * a.T, b
-    rr = 2.0 * (direct + cross).real
-    ii = 2.0 * (cross - direct).real
-    ri = 2.0 * (-direct.imag + cross.imag)
-    fisher[at, at] += COHERENCE_PRIOR * np.block([[rr, ri], [ri.T, ii]])
 
 
 def misfit_of(data: Periodogram, white: ComplexArray) -> ComplexArray:
