@@ -242,7 +242,8 @@ CATALOGUE: dict[str, Kind] = {
     ),
     "no_peak": Kind(
         "warning",
-        "in the direction of its shape the spectrum has no clear peak ({ratio:.2g} times the level beside)",
+        "in the direction of its shape the spectrum has no clear peak: {ratio:.2g} times the level beside, a "
+        "mode alone 17 times",
     ),
     "steady_envelope": Kind(
         "warning", "its amplitude wanders less than that of a mode so light should: it may be a tone"
@@ -280,6 +281,7 @@ CATALOGUE: dict[str, Kind] = {
     "rotor_order_weak": Kind(
         "info", "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out"
     ),
+    "rotor_order_stated": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz by the stated rotor speed"),
     "places_unknown": Kind(
         "info",
         "the place is not known (height_m or node in the JSON beside the record): swapped signs and wrong "

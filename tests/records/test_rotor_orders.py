@@ -13,6 +13,7 @@ from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, write_record
 from jackettwin.records.rotor_orders import rotor_speed, without_orders
 from jackettwin.twin import examine_file
+from jackettwin.twin.examine import examine
 
 F = np.array([0.3, 0.7, 1.3])
 SHAPES = np.array([[1.0, 0.4, 0.2], [-0.4, 1.0, 0.6], [0.3, -0.7, 1.0]])
@@ -45,6 +46,18 @@ def test_what_is_left_is_the_record_without_the_tone(drift: float) -> None:
     assert orders[1].high_hz == pytest.approx(0.45 + 3.0 * drift, abs=0.001)
     assert orders[0].share < 0.01
     np.testing.assert_array_equal(left.data[3], record.data[3])
+
+
+@pytest.mark.parametrize(("rpm", "flagged"), [(None, []), (0.0, []), (14.0, [0.7, 1.3]), (6.0, [0.3])])
+def test_modes_at_the_orders_of_a_stated_speed_are_flagged(rpm: float | None, flagged: list[float]) -> None:
+    """3P and 6P of 14 turns a minute are 0.7 and 1.4 Hz, 3P of 6 turns 0.3 Hz; a rotor at rest has none."""
+    system = ModalSystem(F, np.full(3, 0.015), SHAPES, np.diag(F**-2.0))
+    record = simulate(system, np.random.default_rng(3), sample_rate_hz=10.0)
+    stated = replace(record, conditions={"rotor_speed_rpm": rpm})
+    found = examine(stated, IdentificationSettings(refine=False)).identification
+    passed = [m for m in found.modes if any(f.code == "rotor_order_passes" for f in m.reasons)]
+    assert [round(m.frequency_hz, 1) for m in passed] == flagged
+    assert len(found.modes) == 3
 
 
 def test_a_drifting_tone_is_no_mode_and_what_it_passes_is_flagged(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ its statistics to tell.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from jackettwin.records.filters import bridge
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from jackettwin.records.record import Record
 
 
@@ -27,6 +29,10 @@ ORDERS = (1, 3, 6)
 """Multiples of the rotor's speed at which three blades excite a tower."""
 FEWEST_TURNS = 20.0
 """Fewer turns in a record are a rotor at rest, or too few to tell a tone."""
+SPEED_KEYS = ("rotor_speed_rpm", "mean_rotor_speed_rpm", "rotor_rpm")
+"""Names of the mean speed of the rotor among a record's conditions."""
+SPREAD = 0.05
+"""Relative range of the speed about a mean that is stated, within ten minutes of operation."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +46,7 @@ class RotorOrder:
     low_hz, high_hz : float
         Where its frequency lay, 1st to 99th percentile.
     share : float
-        Largest share of a channel's power it had.
+        Largest share of a channel's power that was taken out.
     """
 
     order: int
@@ -57,6 +63,16 @@ def rotor_speed(record: Record) -> FloatArray | None:
     speed = np.abs(bridge(record.data[rows[0]]))
     turns = float(np.sum(speed)) / record.sample_rate_hz / (2.0 * np.pi)
     return speed if turns >= FEWEST_TURNS else None
+
+
+def stated_orders(conditions: Mapping[str, Any], duration_s: float) -> tuple[RotorOrder, ...]:
+    """Return where the orders lie by a mean speed that the conditions state; none for a rotor at rest."""
+    stated = [conditions[key] for key in SPEED_KEYS if isinstance(conditions.get(key), int | float)]
+    turns_a_second = abs(stated[0]) / 60.0 if stated else 0.0
+    if turns_a_second * duration_s < FEWEST_TURNS:
+        return ()
+    low, high = turns_a_second * (1.0 - SPREAD), turns_a_second * (1.0 + SPREAD)
+    return tuple(RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS)
 
 
 def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tuple[RotorOrder, ...]]:

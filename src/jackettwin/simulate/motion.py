@@ -40,6 +40,7 @@ class Motion:
     step_s : load step
     modes : the linear model's
     signals : channels of the environment at the load steps, (n_steps + 1,) each
+    rotor_speed_rad_s : zero where it stands, or there is none
     """
 
     model: Model
@@ -49,6 +50,7 @@ class Motion:
     step_s: float
     modes: tuple[TrueMode, ...]
     signals: dict[str, FloatArray] = field(default_factory=dict)
+    rotor_speed_rad_s: float = 0.0
 
 
 def simulate_motion(scenario: Scenario) -> Motion:
@@ -98,6 +100,7 @@ def _motion(scenario: Scenario) -> Motion:
         clock.load_step_s,
         true_modes(loads.model, below_hz=BAND_HZ),
         loads.signals,
+        0.0 if loads.rotor is None else float(loads.rotor.angle[1]) / clock.load_step_s,
     )
 
 

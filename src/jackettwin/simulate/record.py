@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
-from math import degrees
+from math import degrees, pi
 from time import perf_counter
 from typing import Any
 
@@ -72,7 +72,7 @@ def simulate(scenario: Scenario) -> Simulation:
         sample_rate_hz=1.0 / step,
         channels=(*_channels(scenario.instruments), *map(_signal_channel, signals)),
         start_utc=_START,
-        conditions=conditions(scenario),
+        conditions=conditions(scenario, motion.rotor_speed_rad_s),
         metadata={
             "source": f"jackettwin {__version__} simulate",
             "scenario": scenario.name,
@@ -100,8 +100,8 @@ def _axes(instruments: tuple[Instrument, ...]) -> dict[str, str]:
     return {"axes": "rotor"} if all(one.on_nacelle for one in instruments) else {}
 
 
-def conditions(scenario: Scenario) -> dict[str, Any]:
-    """Return wind, sea and state as a record states them; None is not there."""
+def conditions(scenario: Scenario, rotor_speed_rad_s: float) -> dict[str, Any]:
+    """Return wind, sea, state and the rotor's speed as a record states them; None is not there."""
     air, sea, turbine = scenario.air, scenario.sea, scenario.turbine
     return {
         "mean_wind_speed_m_s": None if air is None else air.wind.speed_m_s,
@@ -111,6 +111,7 @@ def conditions(scenario: Scenario) -> dict[str, Any]:
         "wind_seed": None if air is None else air.seed,
         "rotor": None if turbine is None else turbine.name,
         "state": None if turbine is None else turbine.state,
+        "rotor_speed_rpm": None if turbine is None else rotor_speed_rad_s * 30.0 / pi,
         "pitch_deg": None if turbine is None or turbine.state == "operating" else degrees(turbine.pitch),
         "waves": None if sea is None else sea.waves,
         "wave_height_m": None if sea is None or sea.waves is None else sea.height_m,

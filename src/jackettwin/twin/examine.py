@@ -19,14 +19,14 @@ from jackettwin.identification import Identification, IdentificationSettings, id
 from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
-from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.selection.candidates import beside_orders
 from jackettwin.quantities import known_units
 from jackettwin.records import Record, assess, detrend, read_record, repair
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.repair import common_time
-from jackettwin.records.rotor_orders import rotor_speed, without_orders
+from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, stated_orders, without_orders
 from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.doubts import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
@@ -34,6 +34,8 @@ from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identif
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""
+ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_stated")
+"""Findings that say where a multiple of the rotor's speed was."""
 FEWEST_TO_COMPARE = 3
 """Sensors without a place of which it is said that they cannot be compared."""
 MOTION = ("acceleration", "velocity", "displacement")
@@ -200,34 +202,30 @@ def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
 
 
 def without_rotor_orders(record: Record, *, source: Record) -> tuple[Record, Findings]:
-    """Take the tones of the rotor out, if ``source`` measures its speed."""
+    """Take out the tones of a rotor whose speed is measured; say where those of a stated speed are."""
     speed = rotor_speed(source)
     if speed is None:
-        return record, ()
+        stated = stated_orders(source.conditions, source.duration_s)
+        return record, tuple(_order("rotor_order_stated", order) for order in stated)
     left, orders = without_orders(record, speed)
     return left, tuple(
-        Finding(
-            "rotor_order_removed" if o.share > WORTH_SAYING else "rotor_order_weak",
-            f"{o.order}P",
-            {"order": o.order, "low_hz": o.low_hz, "high_hz": o.high_hz, "share": o.share},
-        )
-        for o in orders
+        _order("rotor_order_removed" if o.share > WORTH_SAYING else "rotor_order_weak", o) for o in orders
     )
+
+
+def _order(code: str, o: RotorOrder) -> Finding:
+    params = {"order": o.order, "low_hz": o.low_hz, "high_hz": o.high_hz, "share": o.share}
+    return Finding(code, f"{o.order}P", params)
 
 
 def _beside_orders(found: Identification, findings: Findings) -> Identification:
     """Flag the modes that a multiple of the rotor's speed passed."""
-    orders = [f.params for f in findings if f.code in ("rotor_order_removed", "rotor_order_weak")]
-    modes = []
-    for mode in found.modes:
-        half = mode.damping_ratio * mode.frequency_hz
-        low, high = mode.frequency_hz - half, mode.frequency_hz + half
-        passing = [o for o in orders if float(o["low_hz"] or 0.0) < high and float(o["high_hz"] or 0.0) > low]
-        if passing:
-            order = Finding("rotor_order_passes", params={"order": passing[0]["order"]})
-            mode = mode.flagged(ModeStatus.DOUBTFUL, order)
-        modes.append(mode)
-    return replace(found, modes=tuple(modes))
+    orders = [
+        (int(f.params["order"] or 0), float(f.params["low_hz"] or 0.0), float(f.params["high_hz"] or 0.0))
+        for f in findings
+        if f.code in ORDERS_FOUND
+    ]
+    return replace(found, modes=tuple(beside_orders(mode, orders) for mode in found.modes))
 
 
 def _unplaced(record: Record) -> Findings:
