@@ -141,3 +141,15 @@ def test_coupled_damping_is_that_of_every_mode_of_the_steel(parked) -> None:
     steel = [mode.damping_by_source["structure"] for mode in found]
     np.testing.assert_allclose(steel, 0.01, rtol=0.05)
     assert len(found) > 30
+
+
+def test_modes_are_named_by_the_axes_of_a_nacelle_that_is_turned(parked) -> None:
+    """A nacelle at 90° swaps what lies along x and y; fore-aft stays what lies along the rotor's axis."""
+    found = {}
+    for heading in (0.0, 0.5 * np.pi):
+        model = asset_model(replace(parked.asset, coupled_damping=None), yaw=heading)
+        modes = true_modes(model, below_hz=0.3, heading_rad=heading)
+        found[heading] = {m.label: m.frequency_hz for m in modes}
+    # the jacket is nearly the same in both directions, the turbine is not: it decides which is lower
+    assert found[0.0] == pytest.approx(found[0.5 * np.pi], rel=0.01)
+    assert found[0.0]["side_side_1"] < found[0.0]["fore_aft_1"]

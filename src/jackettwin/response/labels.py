@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response.mode_tracking import NEAR_DEGENERATE
-from jackettwin.response.multiple import axis_levels
+from jackettwin.response.multiple import axis_levels, seen_from
 from jackettwin.structure.assemble import Assembly
 
 KINDS = ("fore_aft", "side_side", "heave", "torsion")
@@ -25,20 +25,23 @@ _EVEN = 1e-3
 """Shares of motion along x that differ by less are the same; the lower of the two modes is then fore-aft."""
 
 
-def mode_kinds(assembly: Assembly, shapes: npt.NDArray[Any], frequency_hz: FloatArray) -> tuple[str, ...]:
+def mode_kinds(
+    assembly: Assembly, shapes: npt.NDArray[Any], frequency_hz: FloatArray, *, heading_rad: float = 0.0
+) -> tuple[str, ...]:
     """Return the kind of each mode by how the structure's axis moves, level by level.
 
     The axis is the nodes above and below the highest one; without a tower, the mean of the interface nodes.
     The two modes of a nearly symmetric structure that sway across each other may both lie between the global
-    axes; the one nearer to x is then the fore-aft one of the two.
+    axes; the one nearer to x is then the fore-aft one of the two. Fore-aft is along the nacelle's heading.
 
     Parameters
     ----------
     shapes : (assembly.n_dof, n_modes)
     frequency_hz : (n_modes,) ascending
+    heading_rad : of the nacelle, anticlockwise from x seen from above
     """
     u = (assembly.expand @ shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
-    axis = np.abs(np.tensordot(axis_levels(assembly), u, 1)[:, [0, 1, 2, 5]])
+    axis = np.abs(seen_from(heading_rad, np.tensordot(axis_levels(assembly), u, 1)[:, [0, 1, 2, 5]]))
     axis *= np.array([1.0, 1.0, 1.0, _TORSION_RADIUS_M])[:, None]
     energy = (axis**2).sum(axis=0)
     kinds = np.argmax(energy, axis=0)

@@ -1,7 +1,8 @@
-"""Modes of equal frequency: a symmetric structure has them in pairs, and any mixture of a pair is one, too.
+"""Modes of equal frequency: a symmetric structure has them in pairs, and any mixture of a pair is one.
 
-Which mixtures a solver returns is rounding's choice. Here they are turned to the global axes, so that the
-first of a pair is the one along x, fore-aft, whatever the mesh, the weight or the solver.
+Which mixtures a solver returns is rounding's choice. Here they are turned to the global axes, or to those of
+a nacelle whose heading is given, so that the first of a pair is the one along x, fore-aft, whatever the mesh,
+the weight or the solver.
 """
 
 from __future__ import annotations
@@ -47,13 +48,34 @@ def inseparable(values: npt.NDArray[Any], closer_than: float = INSEPARABLE) -> l
     return [group for group in np.split(np.arange(values.size), cuts) if group.size > 1]
 
 
-def aligned(assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def seen_from(heading_rad: float, motion: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return motion along the axes of a nacelle of this heading, anticlockwise from x seen from above.
+
+    Parameters
+    ----------
+    motion : (n_points, 2 or more, n_modes) along the global x, y and what is kept
+    """
+    c, s = np.cos(heading_rad), np.sin(heading_rad)
+    turned = motion.copy()
+    turned[:, 0] = c * motion[:, 0] + s * motion[:, 1]
+    turned[:, 1] = c * motion[:, 1] - s * motion[:, 0]
+    return turned
+
+
+def aligned(
+    assembly: Assembly,
+    values: npt.NDArray[Any],
+    shapes: npt.NDArray[Any],
+    *,
+    heading_rad: float = 0.0,
+) -> npt.NDArray[Any]:
     """Return the shapes with those of inseparable values turned to the axes: first what moves most along x.
 
     Parameters
     ----------
     values : (n_modes,) natural frequencies or poles, sorted
     shapes : (assembly.n_dof, n_modes)
+    heading_rad : of the nacelle, whose axes are meant; zero: the global ones
     """
     groups = inseparable(values)
     if not groups:
@@ -61,7 +83,8 @@ def aligned(assembly: Assembly, values: npt.NDArray[Any], shapes: npt.NDArray[An
     turned, levels = shapes.copy(), axis_levels(assembly)
     for group in groups:
         x = shapes[:, group]
-        turned[:, group] = x @ turning(assembly, levels, x, x.conj().T @ (assembly.mass @ x))
+        gram = x.conj().T @ (assembly.mass @ x)
+        turned[:, group] = x @ turning(assembly, levels, x, gram, heading_rad=heading_rad)
     return turned
 
 
@@ -87,7 +110,12 @@ def aligned_coordinates(
 
 
 def turning(
-    assembly: Assembly, levels: FloatArray, shapes: npt.NDArray[Any], gram: npt.NDArray[Any]
+    assembly: Assembly,
+    levels: FloatArray,
+    shapes: npt.NDArray[Any],
+    gram: npt.NDArray[Any],
+    *,
+    heading_rad: float = 0.0,
 ) -> npt.NDArray[Any]:
     """Return the mixtures (n_modes, n_modes) of shapes that stand apart along x and y, those along x first.
 
@@ -101,6 +129,7 @@ def turning(
     """
     u = (assembly.expand @ shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
     motion = np.concatenate([np.tensordot(levels, u[:, :2], 1), np.sqrt(_ELSEWHERE) * u[:, :2]])
+    motion = seen_from(heading_rad, motion)
     along_x, along_y = (part.conj().T @ part for part in (motion[:, 0], motion[:, 1]))
     difference, gram = (0.5 * (part + part.conj().T) for part in (along_x - along_y, gram))
     _, mixtures = la.eigh(difference, gram)

@@ -156,16 +156,17 @@ def with_aerodynamics(model: Model, mean: Linearised) -> Model:
     )
 
 
-def true_modes(model: Model, *, below_hz: float) -> tuple[TrueMode, ...]:
-    """Return the modes of the linear model, by frequency."""
+def true_modes(model: Model, *, below_hz: float, heading_rad: float = 0.0) -> tuple[TrueMode, ...]:
+    """Return the modes of the linear model, by frequency, named by the axes of a nacelle of this heading."""
     pencil = model.reduced.pencil
     values, states = np.linalg.eig(state_matrix(pencil))
     keep = (values.imag > 0.0) & (np.abs(values) < 2.0 * pi * below_hz)
     keep &= -values.real < _OVERDAMPED * np.abs(values)
     order = np.flatnonzero(keep)[np.argsort(np.abs(values[keep]))]
     shapes = model.reduced.basis @ states[: pencil.n, order]
-    shapes = aligned(model.assembly, values[order], shapes)
-    labels = mode_labels(mode_kinds(model.assembly, shapes, np.abs(values[order]) / (2.0 * pi)))
+    shapes = aligned(model.assembly, values[order], shapes, heading_rad=heading_rad)
+    frequency_hz = np.abs(values[order]) / (2.0 * pi)
+    labels = mode_labels(mode_kinds(model.assembly, shapes, frequency_hz, heading_rad=heading_rad))
     return tuple(
         TrueMode(
             label,

@@ -98,7 +98,11 @@ def _motion(scenario: Scenario) -> Motion:
         states,
         force,
         clock.load_step_s,
-        true_modes(loads.model, below_hz=BAND_HZ),
+        true_modes(
+            loads.model,
+            below_hz=BAND_HZ,
+            heading_rad=0.0 if scenario.air is None else scenario.air.yaw,
+        ),
         loads.signals,
         0.0 if loads.rotor is None else float(loads.rotor.angle[1]) / clock.load_step_s,
     )
