@@ -68,6 +68,8 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
 
         def send() -> None:
             for k in range(given.records):
+                if time.monotonic() > begin + 60.0 * given.minutes:
+                    return
                 one = (f"r{k}.parquet", record_file(k, samples=TEN_MINUTES), description(hour(30 + k // 100)))
                 server.send(*one, asset=f"wtg_{k % 100:02d}")
                 while server.records()["received"] > 3 or time.monotonic() < begin + k * given.pace_s:
@@ -75,18 +77,21 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
                 memory.append(server.resident_bytes())
                 if k % 50 == 0:
                     print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
+
+        def send_and_wait() -> None:
+            send()
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
 
-        busy = asked(server, given.readers, send)
-        took, spent = time.monotonic() - begin, server.cpu_s()
+        busy = asked(server, given.readers, send_and_wait)
+        took, spent, sent = time.monotonic() - begin, server.cpu_s(), len(memory)
         return {
-            "records": given.records,
+            "records": sent,
             "pace_s": given.pace_s,
             "readers": given.readers,
-            "seconds_a_record": took / given.records,
+            "seconds_a_record": took / sent,
             "server_cpu_s": spent[0] - cpu[0],
-            "worker_cpu_s_a_record": (spent[1] - cpu[1]) / given.records,
+            "worker_cpu_s_a_record": (spent[1] - cpu[1]) / sent,
             "quiet": quiet,
             "busy": busy,
             "minutes": took / 60.0,
@@ -150,6 +155,9 @@ def spread(memory: list[dict[int, int]]) -> Figures:
     lowest, highest = (np.array([part(m[pid] for m in late) for pid in late[0]]) for part in (min, max))
     return {
         "memory_mb": [[m[pid] / 2**20 for pid in memory[0]] for m in (memory[0], late[0], memory[-1])],
+        "memory_tenths_mb": [
+            [m[pid] / 2**20 for pid in memory[0]] for m in memory[:: max(len(memory) // 10, 1)]
+        ],
         "spread_percent": list(100.0 * (highest - lowest) / (highest + lowest)),
     }
 
@@ -502,6 +510,7 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=150)
     parser.add_argument("--readers", type=int, default=50)
     parser.add_argument("--pace-s", type=float, default=0.0, help="least time between two records of load")
+    parser.add_argument("--minutes", type=float, default=1e9, help="longest time of load")
     parser.add_argument("--long", type=int, default=1500)
     parser.add_argument("--kills", type=int, default=60)
     parser.add_argument("--kill-records", type=int, default=60)

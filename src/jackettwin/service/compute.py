@@ -47,6 +47,7 @@ _DASK = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.log-length": 100,
     "distributed.worker.preload": [_START],
+    "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
 """A worker over its memory is ended, not paused.
 
