@@ -142,14 +142,14 @@ def hour(k: int) -> datetime:
     return NOON + timedelta(hours=k)
 
 
-def known(twin: Any, seen: Any) -> tuple[dict[str, Any], None]:
+def known(twin: Any, sums: Any, newest: Any, in_all: tuple[int, float]) -> tuple[dict[str, Any], None]:
     """Stand in for the posterior."""
-    k = 1e9 * seen.in_all[0]
+    k = 1e9 * in_all[0]
     parameters = {"k": {"median": k, "interval_90": [0.9 * k, 1.1 * k], "unit": "N/m"}}
     budget = [
         {"label": "mode_1", "measured": None, "sources": {"soil": {"value": 0.01, "low": 0.0, "high": 0.02}}}
     ]
-    return {"status": "ok", "parameters": parameters, "records": seen.in_all[0], "budget": budget}, None
+    return {"status": "ok", "parameters": parameters, "records": in_all[0], "budget": budget}, None
 
 
 @pytest.fixture
@@ -166,7 +166,7 @@ def make_service(
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)
     monkeypatch.setattr(verdict, "known", known)
-    monkeypatch.setattr(verdict, "watched", lambda twin, state, kept: ({"days": len(state.days)}, ()))
+    monkeypatch.setattr(verdict, "watched", lambda twin, days, *_: ({"days": len(days)}, ()))
     made = Service(settings, open_database(settings.database_url), Here(), "test")  # type: ignore[arg-type]
     with writing(made.database) as connection:
         add_text_version(connection, made, "wtg", TWIN, {}, "test")

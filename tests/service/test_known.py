@@ -34,8 +34,9 @@ def asked_of(folder: Path, modes: dict) -> tuple[dict, str]:
         documents.append(json.dumps(OBSERVATION.dump(made)))
     folded = engine.advance_day(model, "2025-03-01", None, documents)
     asked = Question(
-        "wtg", 1, str(folder), {"2025-03-01": folded.document}, tuple(documents[:2]), (3, 1800.0), of="it"
-    )
+        "wtg", 1, str(folder), {"2025-03-01": "a"}, {"2025-03-01": folded.document}, tuple(documents[:2]),
+        (3, 1800.0), of="it",
+    )  # fmt: skip
     outcome = know(asked)
     assert outcome.page is not None and outcome.of == "it"
     return json.loads(outcome.document)["known"], gzip.decompress(outcome.page).decode()

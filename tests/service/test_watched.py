@@ -26,8 +26,8 @@ def days(n: int, step: float) -> dict[str, str]:
 
 
 def watched(folder: Path, days: dict[str, str], kept: Any) -> Any:
-    twin = engine.load_twin(folder)
-    return verdict.watched(twin, engine.state_of(twin.model, days), kept)
+    identities = {day: engine.digest(document) for day, document in days.items()}
+    return verdict.watched(engine.load_twin(folder), identities, days, kept)
 
 
 @pytest.fixture
@@ -51,6 +51,36 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
     assert [f["severity"] for f in quiet] == ["info"]
 
 
+def test_sums_of_past_days_are_kept_and_only_new_days_sent(folder: Path) -> None:
+    """Whatever is kept, the sums are those of all days; a day that changed makes what is kept be left."""
+    twin, documents = engine.load_twin(folder), days(9, 0.0)
+    identities = {day: engine.digest(document) for day, document in documents.items()}
+    whole, _ = engine.summed(twin, None, identities, documents)
+    early = dict(list(identities.items())[:6])
+    _, past = engine.summed(twin, None, early, documents)
+    assert engine.days_unsummed(past, identities) == (after := list(early)[-2])
+    new = {day: document for day, document in documents.items() if day > after}
+    assert engine.summed(twin, json.loads(json.dumps(past)), identities, new)[0] == whole
+    assert engine.days_unsummed(past, {**identities, list(early)[2]: "changed"}) is None
+    assert engine.days_unsummed(past, early) == after and engine.days_unsummed(past, {after: "x"}) is None
+
+
+def test_a_worker_that_needs_every_day_asks_for_them(
+    client: TestClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: list[int] = []
+
+    def needs(twin: Any, identities: Any, documents: Any, kept: Any) -> Any:
+        sent.append(len(documents))
+        return {"days": len([documents[day] for day in identities])}, ()
+
+    monkeypatch.setattr(verdict, "watched", needs)
+    for k in (1, 2, 3):
+        upload(client, 24 * k)
+        turn(service, times=4)
+    assert sent == [1, 2, 2, 3]  # of three days the first was in the sums, and was asked for
+
+
 def test_before_the_baseline_is_whole_it_is_said_how_much_is_there(folder: Path) -> None:
     _, (finding,) = watched(folder, days(40, 0.0), None)
     assert finding["code"] == "watch_learning" and "of 60 days" in finding["text"]
@@ -63,7 +93,7 @@ def test_an_alarm_reaches_the_api_once_and_stays_acknowledged(
         return list(client.get("/api/v1/assets/wtg/alarms").json()["items"])
 
     def record(k: int, *found: dict[str, Any]) -> None:
-        monkeypatch.setattr(verdict, "watched", lambda folder, days, kept: ({}, found))
+        monkeypatch.setattr(verdict, "watched", lambda *_: ({}, found))
         upload(client, k)
         turn(service)
 

@@ -70,18 +70,27 @@ def observing(connection: Connection, service: Service, job: work.Job) -> None:
         journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "leased"}, service.now())
 
 
-def question_of(connection: Connection, service: Place, job: work.Job) -> Question:
-    """Return what a worker must know to say what a turbine's state says of its supports."""
+def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
+    """Return what a worker must know to say what a turbine's state says of its supports.
+
+    It is sent the days after those that it has the sums of, or every day if it asked for them.
+    """
     key = (job.asset, job.model_hash)
+    identities = results.state_hashes(connection, *key)
+    kept = results.find_kept(connection, job.asset, job.version)
+    after = None if every_day else engine.days_unsummed(kept.get("past"), identities)
+    if after is None:
+        kept = {"judged": kept.get("judged")}
     return Question(
         job.asset,
         job.version,
         str(twin_folder(connection, service, job.asset, job.version)),
-        {state.day: state.document for state in results.states_until(connection, *key)},
+        identities,
+        {state.day: state.document for state in results.states_until(connection, *key, after=after)},
         tuple(seen.document for seen in results.newest_observations(connection, *key, NEWEST)),
         results.observed_time(connection, *key),
-        results.find_judged(connection, job.asset, job.version),
-        results.state_identity(connection, *key),
+        kept,
+        results.identity_of(identities),
     )
 
 

@@ -139,11 +139,11 @@ class Dispatcher(Thread):
         for job in jobs:
             self._start(job)
 
-    def _start(self, job: work.Job) -> None:
+    def _start(self, job: work.Job, *, every_day: bool = False) -> None:
         """Have a worker do a piece of work, unless what it needs is not there any more."""
         try:
             with reading(self.service.database) as connection:  # years of days: no writer waits
-                function, argument = self._task(connection, job)
+                function, argument = self._task(connection, job, every_day)
         except LookupError as gone:
             with writing(self.service.database) as connection:
                 consequences.keep(connection, self.service, job, Outcome(None, problem={"detail": str(gone)}))
@@ -162,34 +162,42 @@ class Dispatcher(Thread):
                 return None
             return work.KNOW
 
-    def _task(self, connection: Connection, job: work.Job) -> tuple[Callable[..., Outcome], Task | Question]:
+    def _task(
+        self, connection: Connection, job: work.Job, every_day: bool
+    ) -> tuple[Callable[..., Outcome | None], Task | Question]:
         if job.kind == work.KNOW:
-            return know, consequences.question_of(connection, self.service, job)
+            return know, consequences.question_of(connection, self.service, job, every_day=every_day)
         return observe_stored, consequences.task_of(connection, self.service, job)
 
     def _collect(self) -> None:
         for number, running in list(self._running.items()):
             if running.future.done():
-                self._keep(running)
+                enough = self._keep(running)
                 del self._running[number]
-                if running.job.kind == work.KNOW:
+                if not enough:
+                    self._start(running.job, every_day=True)
+                elif running.job.kind == work.KNOW:
                     took = time.monotonic() - running.since
                     self._rest_until = time.monotonic() + _RESTS * took
 
-    def _keep(self, running: _Running) -> None:
+    def _keep(self, running: _Running) -> bool:
+        """Keep what came of a piece of work; False if its worker must have every day to do it."""
         if running.future.status == "finished":
-            outcome: Outcome = running.future.result()
+            outcome: Outcome | None = running.future.result()
+            if outcome is None:
+                return False
             with writing(self.service.database) as connection:
                 asked = running.job.kind == work.KNOW
                 keep = consequences.keep_known if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
-            return
+            return True
         reason, tried = _reason(running.future), self.service.compute.has_begun(running.future)
         with writing(self.service.database) as connection:
             if tried:
                 consequences.failed(connection, self.service, running.job, reason)
             else:  # it waited at a worker that died of another task
                 work.release(connection, running.job, self.service.server_id)
+        return True
 
     def _end_overrun(self) -> None:
         limit = self.service.settings.observe_limit_s

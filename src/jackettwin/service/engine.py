@@ -6,7 +6,7 @@ Nothing below it knows of a store, nothing above it of a model.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import lru_cache
@@ -117,14 +117,6 @@ def advance_day(model: TwinModel, day: str, stored: str | None, observations: Se
     return FoldedDay(text, len(known.records), tuple(found))
 
 
-def state_of(model: TwinModel, days: Mapping[str, str]) -> TwinState:
-    """Return the state of a twin whose days are these documents."""
-    state = empty_state(model)
-    for day, document in days.items():
-        state = state.with_day(day, DAY.load(json.loads(document)))
-    return state
-
-
 def finding_row(finding: Finding) -> dict[str, Any]:
     """Return a finding as it is stored."""
     row = finding.document
@@ -147,13 +139,59 @@ def no_days(model: TwinModel) -> Sums:
     return Sums(empty_state(model))
 
 
-def with_day(sums: Sums, day: str, document: str) -> Sums:
-    """Return what some days and one more say together."""
-    new = DAY.load(json.loads(document))
+def with_day(
+    sums: Sums, day: str, document: str, chosen: Callable[[str], bool] = lambda operation: True
+) -> Sums:
+    """Return what some days and one more say together, of its records in some states of operation."""
+    new = DAY.load(json.loads(document)).of_operations(chosen)
     state = replace(sums.state.with_day(day, new), days={})
     times = [t for t in (sums.first_utc, sums.last_utc, new.first, new.last) if t is not None]
     first, last = (min(times), max(times)) if times else (None, None)
     return Sums(state, sums.records + len(new.records), first, last)
+
+
+@dataclass(frozen=True)
+class Past:
+    """What all days but the last one, which still grows, say together: kept from question to question.
+
+    ``through`` is the last of them, ``of`` their identity.
+    """
+
+    sums: Sums
+    through: str
+    of: str
+
+
+PAST = StoredSchema("twin_past", Past)
+"""How sums of past days are kept."""
+
+
+def days_unsummed(past: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
+    """Return the day after which days are not in sums that are kept; None if these do not hold any more."""
+    if past is None or past["through"] >= max(identities, default=""):
+        return None
+    return past["through"] if past["of"] == _identity(identities, past["through"]) else None
+
+
+def _identity(identities: Mapping[str, str], through: str) -> str:
+    return digest([item for item in identities.items() if item[0] <= through])
+
+
+def summed(
+    twin: Twin, past: Mapping[str, Any] | None, identities: Mapping[str, str], documents: Mapping[str, str]
+) -> tuple[Sums, Mapping[str, Any] | None]:
+    """Return what the records of all days say that may update the supports, and what to keep of it.
+
+    ``documents`` are those of the days that are not in ``past``, or of all days without it.
+    """
+    known = None if past is None else PAST.load(past)
+    sums, through = (no_days(twin.model), "") if known is None else (known.sums, known.through)
+    *before, last = [day for day in identities if day > through]
+    for day in before:
+        sums = with_day(sums, day, documents[day], twin.config.operation.may_update)
+    if before:
+        past = PAST.dump(Past(sums, before[-1], _identity(identities, before[-1])))
+    return with_day(sums, last, documents[last], twin.config.operation.may_update), past
 
 
 def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:

@@ -155,39 +155,53 @@ class Question:
 
     Attributes
     ----------
+    identities : {day: identity}
+        Of all days.
     days : {day: document}
+        Of those after what is kept, or of all.
     newest : documents of the newest observations, for the page
     in_all : how many records there are, and how long they are together [s]
-    judged : what is kept of watching the days
+    kept : what is kept of the sums of past days and of watching them, by name
     of : identity of the state
     """
 
     asset: str
     version: int
     twin_folder: str
+    identities: Mapping[str, str]
     days: Mapping[str, str]
     newest: tuple[str, ...] = ()
     in_all: tuple[int, float] = (0, 0.0)
-    judged: Mapping[str, Any] | None = None
+    kept: Mapping[str, Any] = field(default_factory=dict)
     of: str = ""
 
 
-def know(question: Question) -> Outcome:
-    """Answer a question about what a turbine's records showed, and write the page on it."""
+def know(question: Question) -> Outcome | None:
+    """Answer a question about what a turbine's records showed, and write the page on it.
+
+    None if it takes days that were not sent: after a change, and once a baseline is whole.
+    """
     from jackettwin.service import engine, verdict
 
+    if not question.identities:  # all its records were taken back
+        return Outcome(json.dumps({"known": {}, "judged": None, "past": None}), of=question.of)
     twin = engine.load_twin(Path(question.twin_folder))
-    state, page = engine.state_of(twin.model, question.days), None
     try:
-        known, sections = verdict.known(twin, verdict.seen(state, question.newest, question.in_all))
+        judged, findings = verdict.watched(
+            twin, question.identities, question.days, question.kept.get("judged")
+        )
+    except KeyError:
+        return None
+    sums, past = engine.summed(twin, question.kept.get("past"), question.identities, question.days)
+    page = None
+    try:
+        known, sections = verdict.known(twin, sums, question.newest, question.in_all)
         if sections is not None:
             page = verdict.report(sections, title=question.asset, subtitle=f"version {question.version}")
     except JackettwinError as error:
         known = {"status": str(error), "parameters": {}}
-    judged, findings = verdict.watched(twin, state, question.judged) if question.days else (None, ())
-    return Outcome(
-        json.dumps({"known": known, "judged": judged}), findings=findings, page=page, of=question.of
-    )
+    document = json.dumps({"known": known, "judged": judged, "past": past})
+    return Outcome(document, findings=findings, page=page, of=question.of)
 
 
 def observe_stored(task: Task) -> Outcome:

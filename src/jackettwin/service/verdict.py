@@ -8,7 +8,7 @@ from __future__ import annotations
 import gzip
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, replace
 from typing import Any
 
 from jackettwin.answers import answer
@@ -16,45 +16,40 @@ from jackettwin.answers.result import ModeAnswer
 from jackettwin.report.build import report_sections
 from jackettwin.report.page import PageSection, page_text
 from jackettwin.service import engine
-from jackettwin.twin import JUDGED, OBSERVATION, Observation, TwinState, finding_of, judge
-from jackettwin.twin.fitted import updating
+from jackettwin.twin import JUDGED, OBSERVATION, Days, finding_of, judge
 from jackettwin.twin.measure import Measured
+from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.run import updated_twin
 from jackettwin.twin.state import ALL
 from jackettwin.version import __version__
 
 CANNOT_MEET = "the model cannot meet what was measured on any ground: no interval; see the report"
 """What is said of parameters that come nearest to the data and do not explain them."""
+NO_MODE = "no mode of the model has been seen"
+NOT_TO_UPDATE = "no record is in a state of operation that may update the supports (operation.updates)"
 
 
-@dataclass(frozen=True)
-class Basis:
-    """What a turbine's records showed: their state, and the newest observations alone.
-
-    ``in_all`` is how many records there are, and how long they are together [s].
-    """
-
-    state: TwinState
-    newest: tuple[Observation, ...] = ()
-    in_all: tuple[int, float] = (0, 0.0)
-
-
-def seen(state: TwinState, newest: Sequence[str], in_all: tuple[int, float]) -> Basis:
-    """Return what records showed, the newest observations from their documents."""
-    return Basis(state, tuple(OBSERVATION.load(json.loads(document)) for document in newest), in_all)
-
-
-def known(twin: engine.Twin, seen: Basis) -> tuple[dict[str, Any], list[PageSection] | None]:
+def known(
+    twin: engine.Twin, sums: engine.Sums, newest: Sequence[str], in_all: tuple[int, float]
+) -> tuple[dict[str, Any], list[PageSection] | None]:
     """Return what records say of the supports under the twin's first law, and the page on it in sections.
 
     Of every parameter the median, its 90 % interval and unit; of every mode whose damping it is.
+
+    Parameters
+    ----------
+    sums : of the records that may update the supports
+    newest : documents of the newest observations
+    in_all : how many records there are, and how long they are together [s]
     """
-    state = updating(twin.config, seen.state)
-    if ALL not in state.totals or not state.totals[ALL].modes:
-        return {"status": "no mode of the model has been seen", "parameters": {}}, None
-    measured = Measured(seen.newest, seen.state, in_all=seen.in_all)
+    total = sums.state.totals.get(ALL)
+    if total is None or not total.modes:
+        return {"status": NO_MODE if total else NOT_TO_UPDATE, "parameters": {}}, None
+    shown = tuple(OBSERVATION.load(json.loads(document)) for document in newest)
+    measured = Measured(shown, sums.state, in_all=in_all)
     laws = twin.config.update.laws[:1]
-    result = updated_twin(twin.config, twin.model, measured, laws=laws, posteriors="likely")
+    config = replace(twin.config, operation=OperationRule())  # who may update was asked of each day
+    result = updated_twin(config, twin.model, measured, laws=laws, posteriors="likely")
     answers = answer(result)
     sections = report_sections(result, answers)
     if not result.updates:
@@ -68,8 +63,8 @@ def known(twin: engine.Twin, seen: Basis) -> tuple[dict[str, Any], list[PageSect
     return {
         "law": u.law,
         "status": status if meets else CANNOT_MEET,
-        "records": seen.in_all[0],
-        "until_utc": max(day.time_utc for day in state.days.values() if day.time_utc).isoformat(),
+        "records": in_all[0],
+        "until_utc": None if sums.last_utc is None else sums.last_utc.isoformat(),
         "parameters": {
             p.name: {"median": float(value), "interval_90": span, "unit": p.unit}
             for p, value, span in zip(u.problem.parameters, median, spans, strict=True)
@@ -95,19 +90,30 @@ def report(sections: Sequence[PageSection], *, title: str, subtitle: str) -> byt
 
 
 def watched(
-    twin: engine.Twin, state: TwinState, kept: Mapping[str, Any] | None
+    twin: engine.Twin,
+    identities: Mapping[str, str],
+    documents: Mapping[str, str],
+    kept: Mapping[str, Any] | None,
 ) -> tuple[dict[str, Any], tuple[dict[str, Any], ...]]:
     """Return what is kept of watching a turbine's days, and every finding of them that holds now, as rows.
 
     Parameters
     ----------
-    state : TwinState
-        With one day at least.
+    identities : {day: identity}
+        One day at least.
+    documents : {day: document}
+        Of those days that may be asked for.
     kept : mapping or None
         What an earlier call returned; it only saves time.
+
+    Raises
+    ------
+    KeyError
+        If a day is needed that has no document here.
     """
-    last = max(state.days)
-    judged, new = judge(twin.model, state, JUDGED.load(kept) if kept else None, twin.config.watch)
+    last = max(identities)
+    every = Days(identities, lambda day: engine.DAY.load(json.loads(documents[day])))
+    judged, new = judge(twin.model, every, JUDGED.load(kept) if kept else None, twin.config.watch)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
     return JUDGED.dump(judged), tuple(

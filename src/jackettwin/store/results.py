@@ -288,9 +288,10 @@ def put_knowledge(
     connection.execute(insert(knowledge).values(**key, document=dict(document), report=report))
 
 
-def find_judged(connection: Connection, asset: str, version: int) -> Mapping[str, Any] | None:
-    """Return what is kept of watching the days, or None."""
-    return connection.scalar(select(knowledge.c.document["judged"]).where(*_of_version(asset, version)))
+def find_kept(connection: Connection, asset: str, version: int) -> Mapping[str, Any]:
+    """Return what is kept from question to question besides the answer, by name."""
+    document = connection.scalar(select(knowledge.c.document).where(*_of_version(asset, version))) or {}
+    return {name: value for name, value in document.items() if name != "known"}
 
 
 def find_supports(connection: Connection, asset: str, version: int) -> dict[str, Any]:

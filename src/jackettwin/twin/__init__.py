@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from jackettwin.twin.files import read_twin as read_twin, shipped_twins as shipped_twins
     from jackettwin.twin.judge import (
         JUDGED as JUDGED,
+        Days as Days,
         Judged as Judged,
         finding_of as finding_of,
         judge as judge,

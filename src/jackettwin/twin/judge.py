@@ -2,12 +2,12 @@
 
 What is said of a day depends on the days up to it and nothing else: whatever order records came in, however
 the work was split, the same state gives the same judgement, bit for bit. What is kept between two calls only
-saves time: a day that a late record has changed since is judged anew, from the end of the baseline on.
+saves time: a day that a late record has changed since is judged anew, from the end of the baseline on. What
+days hold is asked for only where it is needed: after a quiet day, of that day alone, however many there are.
 """
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime, timedelta
@@ -22,7 +22,7 @@ from jackettwin.twin.causes import ModelCauses, seen_causes
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
-from jackettwin.twin.stored import StoredSchema
+from jackettwin.twin.stored import StoredSchema, digest
 from jackettwin.twin.sums import UNIT, ModeSums
 from jackettwin.twin.watched import begun, explained_alarm, structure_causes
 from jackettwin.twin.watched_document import alarm_document
@@ -40,11 +40,11 @@ class Judged:
     Attributes
     ----------
     baseline_days, arl_years, relearn : the promise it was made with
-    baseline, judged : fingerprints of the records of the baseline, and of the days after it up to
-        ``through``
+    baseline, judged : fingerprints of the days of the baseline, and of those after it up to ``through``
     through : the last day that was judged; empty before the first one
     learnt, watch : at the end of the baseline, and after ``through``
     alarms : as documents, in the order of time
+    columns : of the baseline
     """
 
     baseline_days: float
@@ -56,6 +56,7 @@ class Judged:
     watch: Watch | None = None
     alarms: tuple[Mapping[str, Any], ...] = ()
     relearn: str = UNDATED
+    columns: Columns | None = None
 
     @property
     def promise(self) -> tuple[float, float, str]:
@@ -67,9 +68,30 @@ JUDGED = StoredSchema("twin_judged", Judged)
 """How judgements are kept."""
 
 
+@dataclass(frozen=True)
+class Days:
+    """The days of a state.
+
+    Attributes
+    ----------
+    identities : {date: identity of its content}
+        Sorted.
+    load : callable
+        Returns the content of a day.
+    """
+
+    identities: Mapping[str, str]
+    load: Callable[[str], Day]
+
+    @classmethod
+    def of(cls, state: TwinState) -> Days:
+        """Return the days of a state that is here as a whole."""
+        return cls({date: digest(day) for date, day in state.days.items()}, state.days.__getitem__)
+
+
 def judge(
     model: TwinModel,
-    state: TwinState,
+    every: Days,
     kept: Judged | None = None,
     settings: WatchSettings = _USUAL,
 ) -> tuple[Judged, tuple[Finding, ...]]:
@@ -85,7 +107,7 @@ def judge(
     first = settings.relearn.isoformat() if settings.relearn else UNDATED
     fresh = Judged(settings.baseline_days, settings.arl_years, relearn=first)
     kept = kept or fresh
-    dates = [d for d in state.days if d != UNDATED and d >= first][:-1]
+    dates = [d for d in every.identities if d != UNDATED and d >= first][:-1]
     if not dates:
         return fresh if kept.promise != fresh.promise else kept, ()
     end = (date.fromisoformat(dates[0]) + timedelta(days=settings.baseline_days)).isoformat()
@@ -93,31 +115,31 @@ def judge(
     if not after or len(before) < FEWEST_DAYS:
         days = float(_number(dates[-1]) - _number(dates[0]) + 1)
         return fresh, (Finding("watch_learning", None, {"days": days, "needed": settings.baseline_days}),)
-    known = _known(kept, fresh, state, before, after)
+    known = _known(kept, fresh, every, before, after)
     findings = []
-    columns = Columns.of(model, state, before)
-    baseline = history_of(columns, state, before)
-    causes = cache(lambda: _causes(model, baseline))  # seconds, needed rarely
+    columns = known.columns or Columns.of(model, every, before)
+    baseline = cache(lambda: history_of(columns, every, before))  # a year of days, needed rarely
+    causes = cache(lambda: _causes(model, baseline()))  # seconds, needed rarely
     if known.learnt is None:
-        watch = begun(baseline, settings.arl_years, causes())
-        known = replace(known, baseline=_fingerprint(state, before), learnt=watch, watch=watch)
+        watch = begun(baseline(), settings.arl_years, causes())
+        known = replace(
+            known, baseline=_fingerprint(every, before), learnt=watch, watch=watch, columns=columns
+        )
         findings.append(Finding("watch_begins", None, {"from": end, "arl_years": settings.arl_years}))
     for day in (d for d in after if d > known.through):
-        known = _day(known, baseline, history_of(columns, state, [day]), day, causes)
-    known = replace(known, judged=_fingerprint(state, after))
+        known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
+    known = replace(known, judged=_fingerprint(every, after))
     told = {alarm["time_utc"] for alarm in kept.alarms}
     return known, (*findings, *(finding_of(a) for a in known.alarms if a["time_utc"] not in told))
 
 
-def _known(
-    kept: Judged, fresh: Judged, state: TwinState, before: Sequence[str], after: Sequence[str]
-) -> Judged:
+def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], after: Sequence[str]) -> Judged:
     """Return what still holds of what is kept."""
     if kept.promise != fresh.promise:
         return fresh
-    if kept.learnt is None or kept.baseline != _fingerprint(state, before):
+    if kept.learnt is None or kept.baseline != _fingerprint(every, before):
         return fresh
-    if kept.judged != _fingerprint(state, [d for d in after if d <= kept.through]):
+    if kept.judged != _fingerprint(every, [d for d in after if d <= kept.through]):
         return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=())
     return kept
 
@@ -133,7 +155,11 @@ def _causes(model: TwinModel, baseline: History) -> ModelCauses | None:
 
 
 def _day(
-    known: Judged, baseline: History, day: History, name: str, causes: Callable[[], ModelCauses | None]
+    known: Judged,
+    baseline: Callable[[], History],
+    day: History,
+    name: str,
+    causes: Callable[[], ModelCauses | None],
 ) -> Judged:
     """Return what is known after one more day."""
     if known.watch is None or not day.days.size:
@@ -143,7 +169,7 @@ def _day(
     if look.change is not None:
         of = causes()
         seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
-        found = explained_alarm(look.change, watch, baseline, seen)
+        found = explained_alarm(look.change, watch, baseline(), seen)
         alarms = (*alarms, alarm_document(watch, _time, found))
     return replace(known, watch=watch, through=name, alarms=alarms)
 
@@ -164,12 +190,9 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
     )
 
 
-def _fingerprint(state: TwinState, dates: Sequence[str]) -> str:
-    """Return the identity of the records of some days, which these days are a function of."""
-    total = hashlib.sha256()
-    for day in dates:
-        total.update(f"{day}:{','.join(state.days[day].records)};".encode())
-    return total.hexdigest()
+def _fingerprint(every: Days, dates: Sequence[str]) -> str:
+    """Return the identity of some days."""
+    return digest([(day, every.identities[day]) for day in dates])
 
 
 def _number(day: str) -> int:
@@ -193,9 +216,9 @@ class Columns:
     kinds: tuple[str, ...]
 
     @classmethod
-    def of(cls, model: TwinModel, state: TwinState, dates: Sequence[str]) -> Columns:
+    def of(cls, model: TwinModel, every: Days, dates: Sequence[str]) -> Columns:
         """Return the modes, conditions and states of operation of some days."""
-        operations = [item for d in dates for item in state.days[d].operations.items()]
+        operations = [item for d in dates for item in every.load(d).operations.items()]
         numbers = sorted({n for _, o in operations for n, sums in o.modes.items() if sums.known})
         named = dict(enumerate(model.labels, start=1))
         return cls(
@@ -206,12 +229,12 @@ class Columns:
         )
 
 
-def history_of(columns: Columns, state: TwinState, dates: Sequence[str]) -> History:
+def history_of(columns: Columns, every: Days, dates: Sequence[str]) -> History:
     """Return days as rows of modes: one for each day and state of operation."""
     rows = [
-        (_noon(_number(d), state.days[d]), _kind(name), operation)
-        for d in dates
-        for name, operation in state.days[d].operations.items()
+        (_noon(_number(d), day), _kind(name), operation)
+        for d, day in ((d, every.load(d)) for d in dates)
+        for name, operation in day.operations.items()
         if any(sums.known for sums in operation.modes.values())
     ]
     values = np.full((4, len(rows), len(columns.labels)), np.nan)

@@ -154,6 +154,10 @@ class Day:
             None if self.first is None or self.last is None else self.first + 0.5 * (self.last - self.first)
         )
 
+    def of_operations(self, chosen: Callable[[str], bool]) -> Day:
+        """Return the day with the records of some states of operation alone."""
+        return replace(self, operations={name: o for name, o in self.operations.items() if chosen(name)})
+
 
 @dataclass(frozen=True)
 class OperationTotal:
@@ -251,10 +255,7 @@ class TwinState:
 
     def of_operations(self, chosen: Callable[[str], bool]) -> TwinState:
         """Return what is known from the records of some states of operation alone."""
-        days = {
-            date: replace(day, operations={name: o for name, o in day.operations.items() if chosen(name)})
-            for date, day in self.days.items()
-        }
+        days = {date: day.of_operations(chosen) for date, day in self.days.items()}
         kept = {date: day for date, day in days.items() if day.operations}
         return replace(self, days=kept).until(max(kept, default=UNDATED))
 
