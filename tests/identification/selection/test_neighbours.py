@@ -31,6 +31,19 @@ def test_a_combination_of_the_modes_beside_it_is_theirs(part: float) -> None:
     assert of_neighbours([modes[0], own, modes[2]], np.ones(6), 2.0) == []
 
 
+@pytest.mark.parametrize(("zeta", "told"), [((0.05, 0.01), [1]), ((0.01, 0.05), [2])])
+def test_of_two_that_may_each_be_of_the_others_the_broader_is_told(
+    zeta: tuple[float, float], told: list[int]
+) -> None:
+    """A peak below a mode moves as that mode does: each lies between others that can make it."""
+    peak = 0.05 * SHAPES[0] + SHAPES[1] + 0.05 * SHAPES[2]
+    shapes = [SHAPES[0], peak, SHAPES[1], 0.05 * SHAPES[0] + 0.05 * SHAPES[2]]
+    modes = [
+        estimate(f, z, s) for f, z, s in zip([0.3, 0.6, 1.0, 3.0], [0.01, *zeta, 0.01], shapes, strict=True)
+    ]
+    assert of_neighbours(modes, np.ones(6), 2.0) == told
+
+
 def test_in_few_channels_nothing_is_said() -> None:
     shapes = SHAPES[:, :3]
     modes = [

@@ -29,7 +29,8 @@ LEFT = 2
 def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
     """Return the modes whose shapes are combinations of those of the modes below and above.
 
-    Modes that are doubted already are nobody's neighbours; one that is told takes no part in the others'.
+    Modes that are doubted already are nobody's neighbours; one that is told takes no part in the others'. Two
+    pairs may each lie in the plane of the other and a third: the broader is told first, as forces are broad.
 
     Parameters
     ----------
@@ -42,11 +43,10 @@ def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: floa
     found: list[int] = []
     while True:
         free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        out = {i: _outside(modes, free, i, scale, close) for i in free}
-        least = min(out, key=lambda i: out[i], default=None)
-        if least is None or out[least] > OUTSIDE:
+        theirs = [i for i in free if _outside(modes, free, i, scale, close) < OUTSIDE]
+        if not theirs:
             return found
-        found.append(least)
+        found.append(max(theirs, key=lambda i: modes[i].damping_ratio))
 
 
 def _outside(
