@@ -12,6 +12,7 @@ from schemathesis.checks import (
 )
 from tests.service.conftest import turn, upload
 
+from jackettwin.service import schemas
 from jackettwin.service.context import Service
 
 CHECKS = (
@@ -23,6 +24,27 @@ CHECKS = (
 EXAMPLES = 12
 """Requests a route: enough for every kind of value that a generator likes to try first."""
 ENDLESS = "/api/v1/events"
+
+
+def test_everything_sent_and_answered_has_an_example_that_holds(client: TestClient) -> None:
+    document = client.get("/api/v1/openapi.json").json()
+    contents = [
+        content["schema"]
+        for path in document["paths"].values()
+        for operation in path.values()
+        for said in (operation.get("requestBody", {}), *operation["responses"].values())
+        for kind, content in said.get("content", {}).items()
+        if kind == "application/json"
+    ]
+    names = {schema["$ref"].rpartition("/")[2] for schema in contents} - {"Page_dict_str__object__"}
+    assert len(names) > 30
+    for name in names:
+        example = document["components"]["schemas"][name]["example"]
+        of = name.removeprefix("Page_").removesuffix("_")
+        known = getattr(schemas, of) if of == name else schemas.Page[getattr(schemas, of)]
+        assert (
+            known.model_validate(example).model_dump(mode="json", exclude_unset=True).keys() == example.keys()
+        )
 
 
 def test_answers_are_declared_and_never_our_fault(client: TestClient, service: Service) -> None:

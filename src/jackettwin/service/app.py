@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from importlib.resources import files
+from typing import Any
 
 from fastapi import FastAPI, HTTPException, Request
 from sqlalchemy.exc import SQLAlchemyError
@@ -18,6 +21,8 @@ from jackettwin.service.routes import assets, health, jobs, modes, people, recor
 from jackettwin.version import __version__
 
 API = "/api/v1"
+EXAMPLES: dict[str, Any] = json.loads(files("jackettwin.service").joinpath("examples.json").read_bytes())
+"""Of every schema one, by its name."""
 ROUTERS = (people.router, assets.router, records.router, modes.router, jobs.router, health.router)
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -63,9 +68,21 @@ def create_app(service: Service) -> FastAPI:
     for router in ROUTERS:
         app.include_router(router, prefix=API)
     app.include_router(pages.router)
+    app.openapi = lambda: described(app)  # type: ignore[method-assign]
     app.add_middleware(Guard, service=service)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
     return app
+
+
+def described(app: FastAPI) -> dict[str, Any]:
+    """Return the OpenAPI document, with an example of everything that is sent or answered."""
+    document = FastAPI.openapi(app)
+    for name, schema in document["components"]["schemas"].items():
+        of = name.removeprefix("Page_").removesuffix("_")
+        if of in EXAMPLES:
+            one = EXAMPLES[of]
+            schema["example"] = one if of == name else {"items": [one], "next_cursor": None}
+    return document
 
 
 class Guard:

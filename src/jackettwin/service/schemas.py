@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import AwareDatetime, BaseModel, Field, FiniteFloat
 
 T = TypeVar("T")
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(9000, 1, 1, tzinfo=UTC)
@@ -21,10 +21,6 @@ class Page(BaseModel, Generic[T]):
 
 class Login(BaseModel):
     """Name and password."""
-
-    model_config = ConfigDict(
-        json_schema_extra={"example": {"name": "anna", "password": "correct horse battery"}}
-    )
 
     name: str = Field(max_length=64)
     password: str = Field(max_length=1024)
@@ -84,12 +80,6 @@ class AssetOut(BaseModel):
 
 class NewAsset(BaseModel):
     """A twin file and the files it names, as text."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "example": {"name": "wtg_01", "twin": "structure: jacket15\nrecords: []\n", "files": {}}
-        }
-    )
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
     twin: str = Field(max_length=1_000_000)
@@ -159,6 +149,16 @@ class Spectra(BaseModel):
     frequency_hz: list[float]
     channels: dict[str, list[float]]
     units: dict[str, str]
+
+
+class Stabilisation(BaseModel):
+    """Poles of every model order; ``mode`` numbers the modes that poles were gathered to, -1 where none."""
+
+    order: list[int]
+    frequency_hz: list[float]
+    damping_ratio: list[float]
+    stable: list[bool]
+    mode: list[int]
 
 
 class PickIn(BaseModel):

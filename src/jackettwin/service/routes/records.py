@@ -22,7 +22,15 @@ from jackettwin.service.routes.common import (
     known_record,
     waits,
 )
-from jackettwin.service.schemas import Page, PicksIn, RecordAccepted, RecordOut, Signal, Spectra
+from jackettwin.service.schemas import (
+    Page,
+    PicksIn,
+    RecordAccepted,
+    RecordOut,
+    Signal,
+    Spectra,
+    Stabilisation,
+)
 from jackettwin.store import records
 
 router = APIRouter(tags=["records"], route_class=Transaction)
@@ -126,7 +134,7 @@ def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
     "/records/{record_id}/stabilisation", dependencies=[auth.VIEWER], responses=answers(401, 404, 422, 503)
 )
 @waits
-def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> dict[str, Any]:
+def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> Stabilisation:
     """Return the poles of every model order, computed anew by a worker."""
     return uploads.stabilisation(connection, parts, known_record(connection, record_id))
 
