@@ -206,7 +206,8 @@ DRAWN = (
     "sizes, {number} times each; five modes' frequencies and damping ratios, whose changes are known to",
     "0.03 % and 2 % (drawn, not identified: a month before and after in the seasons of",
     "[watching](watching.md)). Through the whole chain: [here](diagnosis_chain.md).",
-    "The model's feet are fitted to the frequencies before; its frequencies miss by 0.5 %.",
+    "The model's feet are fitted to the frequencies before; its frequencies miss by 0.5 %. Members and feet",
+    "are called as in their models: brace_… and foot_… in the first two jackets, numbers in the OC4 jacket.",
     "",
 )
 

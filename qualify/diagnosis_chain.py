@@ -44,7 +44,8 @@ CHAINED = (
     f"that the rotor is parked: a year of baseline, then day by day until the alarm, {LONGEST:.0f} days at",
     f"most, in {SEASONS} turbines' seasons for each. What raised no alarm by then is not judged and not",
     "counted. The friction of the loose connection is damping in proportion to mass, by what the cause",
-    "states for the first mode; modes that may mix with members' own are left out of the causes.",
+    "states for the first mode; modes that may mix with members' own are left out of the causes. Members and",
+    "feet are called as in their models: numbers are those of the OC4 jacket.",
     "",
 )
 
