@@ -325,6 +325,11 @@ CATALOGUE: dict[str, Kind] = {
         "changed by {size:+.2%} ({low:+.2%} to {high:+.2%}), began {began} ({began_low} to {began_high}); "
         "most likely {cause} ({probability:.0%})",
     ),
+    "structure_turned": Kind(
+        "alarm",
+        "turned by {size:+.1f}° ({low:+.1f} to {high:+.1f}°), began {began} ({began_low} to {began_high}); "
+        "most likely {cause} ({probability:.0%})",
+    ),
     "sensor_changed": Kind(
         "warning",
         "not as before since {began} ({began_low} to {began_high}); most likely {cause} ({probability:.0%})",

@@ -235,3 +235,25 @@ def test_the_likeliest_pattern_is_what_was_seen(wide: Columns, tmp_path: Path) -
     step, seen = alarm.patterns[best], alarm.change
     np.testing.assert_array_less(np.abs(step - seen.size), 3.0 * seen.size_std)
     assert np.all(step < 0.0)  # a wrong sign would lie three standard deviations off
+
+
+def test_a_pair_that_turns_is_found_and_said_in_degrees(wide: Columns, tmp_path: Path) -> None:
+    """The lower mode's direction lies about 0°, read as −2° or 178°; from day 120 on it lies at 8°."""
+    rng = np.random.default_rng(5)
+    n = len(wide["time"])
+    turned = np.where(np.arange(n) >= 240, 8.0, 0.0) + 3.0 * rng.standard_normal(n)
+    quiet = {k: wide[k] for k in ("time", "temperature")}
+    quiet |= {f: wide[f] / np.where(np.arange(n) >= 240, 0.99, 1.0) for f in ("f1", "f2")}
+    table = quiet | {"f1_angle_deg": turned % 180.0, "f1_angle_std_deg": np.full(n, 3.0)}
+    options = ("--columns", "f1,f2", "--baseline-days", "90", "--json", "--out", str(tmp_path / "out"))
+    done = invoke(written(table, tmp_path / "a.csv"), *options)
+    assert done.exit_code == 0, done.stderr
+    document = json.loads(done.stdout)
+    (alarm,) = document["alarms"]
+    assert alarm["quantities"] == ["f1 direction"]
+    assert alarm["unit"] == "deg"
+    assert 0.0 < alarm["size_interval_90"][0] < 8.0 < alarm["size_interval_90"][1]
+    assert "2024-06-29" <= alarm["time_utc"][:10] <= "2024-07-09"
+    assert alarm["causes"][0]["cause"] == "direction of f1 alone"
+    assert "f1 direction by +" in document["statement"] and "°" in document["statement"]
+    assert json.loads(invoke(written(quiet, tmp_path / "b.csv"), *options[:5]).stdout)["alarms"] == []

@@ -17,6 +17,7 @@ from jackettwin.twin.causes import (
     model_causes,
     seen_causes,
     standings,
+    turned,
 )
 from jackettwin.twin.changed_structures import Standing, braces
 
@@ -60,7 +61,7 @@ def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -
 
 
 def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:
-    assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * MODES
+    assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * (2 * MODES)
     assert "sensor: gain" in model.traceless
 
 
@@ -84,7 +85,7 @@ def test_a_mode_among_members_own_ones_tells_nothing(model: ModelCauses) -> None
 
 def test_shapes_are_kept_by_their_part_in_those_of_the_whole() -> None:
     modes = UndampedModes(np.ones(2), np.eye(3)[:, :2])
-    like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2))
+    like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2), np.zeros(2))
     shapes = np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]])
     np.testing.assert_allclose(_kept(like, shapes), [1.0, 0.36, 0.0])
 
@@ -122,3 +123,38 @@ def test_bending_shows_at_the_top_and_torsion_off_the_axis(model: ModelCauses) -
 def test_labels_that_no_mode_has_are_refused() -> None:
     with pytest.raises(InputError, match="no mode of the model"):
         model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))
+
+
+def test_a_lost_brace_turns_a_pair_and_a_clock_does_not(model: ModelCauses) -> None:
+    at = [2 * MODES + model.labels.index(n) for n in ("fore_aft_1", "side_side_1")]
+    assert not direction(model, "sensor: clock")[at].any()
+    lost = [c.draws.mean(axis=0)[at] for c in model.causes if " lost" in c.name]
+    assert all(one[0] == one[1] for one in lost)  # a pair has one direction
+    assert max(abs(one[0]) for one in lost) > 0.05
+
+
+def test_a_yaw_misread_turns_every_pair_either_way(model: ModelCauses) -> None:
+    (yaw,) = [c for c in model.causes if c.name == "sensor: yaw misread"]
+    one, other = (draw[2 * MODES + model.labels.index("fore_aft_1")] for draw in yaw.draws)
+    assert one == -other
+    assert np.sin(0.05 * one) ** 2 == pytest.approx(0.05)  # at the median size, sin² of the angle
+
+
+def test_a_pair_turns_towards_the_softer_feet() -> None:
+    """Of a square jacket whose lower mode moves along y: towards either diagonal, by as much."""
+    structure = read_structure("jacket15")
+    assembly = assemble(structure, gravity=True)
+    even = Standing(structure, *(np.full(len(structure.reaction_nodes), 2.5e9) for _ in "hv"))
+    base = Modes.of(even, assembly)
+    i, j = base.labels.index("fore_aft_1"), base.labels.index("side_side_1")
+    assert np.degrees(abs(base.direction[j])) == pytest.approx(90.0, abs=1.0)
+    across = np.array([np.prod(np.sign(structure.nodes[n][:2])) for n in structure.reaction_nodes])
+    turns = []
+    for diagonal in (1.0, -1.0):  # the feet at ±(x, y), or at ±(x, −y)
+        softer = np.where(across == diagonal, 0.5, 1.0)
+        after = Modes.of(replace(even, vertical=even.vertical * softer), assembly, like=base)
+        one, other = turned(base, after)[[i, j]]
+        assert one == other  # a pair has one direction
+        turns.append(one)
+    assert turns[0] < -0.1  # from y towards x is negative
+    assert turns[1] == pytest.approx(-turns[0], rel=0.02)

@@ -4,6 +4,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -13,6 +14,7 @@ from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.model import asset_model, true_modes
 from jackettwin.structure import assemble
+from jackettwin.twin.modal_table import read_modal_table
 from jackettwin.twin.truth import TrueParameter
 
 SCENARIO = """
@@ -38,7 +40,9 @@ def test_the_loop_closes(tmp_path: Path) -> None:
     """Asset → records → modes → supports: frequencies within 1 %, k and c inside their own 90 % intervals."""
     (tmp_path / "base.yaml").write_text(SCENARIO, encoding="utf-8")
     (tmp_path / "set.yaml").write_text(
-        "{scenario: base.yaml, bins: [{speed_m_s: 12}], seeds: 2}", encoding="utf-8"
+        "{scenario: base.yaml, bins: [{speed_m_s: 12}], seeds: 2, start_utc: 2025-03-01T06:00:00Z, "
+        "every_hours: 12}",
+        encoding="utf-8",
     )
     result = CliRunner().invoke(
         main,
@@ -58,6 +62,10 @@ def test_the_loop_closes(tmp_path: Path) -> None:
         low, high = p["interval_90"]
         assert high / low < 20.0  # an interval over the whole prior would hold anything
     assert (tmp_path / "out" / "records" / "manifest.json").exists()
+    in_time = read_modal_table(tmp_path / "out" / "modes_in_time.csv").history
+    np.testing.assert_allclose(in_time.days, [0.25, 0.75], rtol=1e-12)
+    assert {"fore_aft_1", "side_side_1"} <= {*in_time.labels}
+    assert in_time.state_names == ("parked",)
     assert "What these records state of their asset" in (tmp_path / "out" / "report.html").read_text(
         encoding="utf-8"
     )

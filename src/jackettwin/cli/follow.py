@@ -16,6 +16,8 @@ from jackettwin.twin import read_twin
 from jackettwin.twin.follow import Each, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
 from jackettwin.twin.followed import Followed
+from jackettwin.twin.model import twin_model
+from jackettwin.twin.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
 
 
 @click.command("follow")
@@ -37,7 +39,7 @@ from jackettwin.twin.followed import Followed
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Folder for followed.json (the next run's prior) and report.html.",
+    help="Folder for followed.json (the next run's prior), report.html and modes_in_time.csv.",
 )
 @click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option("--json", "as_json", is_flag=True, help="Print what followed.json holds.")
@@ -74,6 +76,8 @@ def follow_command(
         with atomic_folder(out) as temporary:
             write_json(document, temporary / "followed.json")
             build_follow_page(followed, temporary / "report.html")
+            rows = rows_of_days(twin_model(config), followed.state)
+            write_modes_in_time(rows, temporary / MODES_IN_TIME)
     if as_json:
         print_json(document)
         return

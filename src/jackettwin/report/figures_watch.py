@@ -14,6 +14,8 @@ from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.watching import CauseVerdict
 
 _BAND = 1.645
+_SHOWN_IN = {"frequency": (100.0, "%"), "damping": (100.0, "%"), "angle": (180.0 / np.pi, "°")}
+"""What changes of each kind are drawn in."""
 _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
 _COLOURS = (style.BLUE, style.GREEN, style.ORANGE)
 
@@ -39,17 +41,26 @@ def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figu
         _line(figure, watched, i, row)
         for number, alarm in enumerate(watched.alarms):
             _mark(figure, watched, alarm, i, row, named=row == 1 and number == 0)
-        kind, mode = watched.watch.quantities[i]
-        label = words(watched.watch.labels[mode]) + ("" if kind == "frequency" else ", damping")
-        figure.update_yaxes(title=style.title(label, "%"), row=row, col=1)
+        kind = watched.watch.quantities[i][0]
+        figure.update_yaxes(title=style.title(_named(watched, i), _SHOWN_IN[kind][1]), row=row, col=1)
     figure.update_xaxes(title="time (UTC)", row=len(chosen), col=1)
     return style.finish(figure, height=max(340, 150 * len(chosen) + 80))
 
 
+def _named(watched: Watched, i: int) -> str:
+    """Return what a quantity is called in figures."""
+    kind, mode = watched.watch.quantities[i]
+    return (
+        words(watched.watch.labels[mode])
+        + {"frequency": "", "damping": ", damping", "angle": ", direction"}[kind]
+    )
+
+
 def _line(figure: go.Figure, watched: Watched, i: int, row: int) -> None:
     times = [watched.table.time(look.day) for look in watched.looks]
-    rest = 100.0 * np.array([look.rest[i] for look in watched.looks])
-    half = 100.0 * _BAND * np.array([look.rest_std[i] for look in watched.looks])
+    scale = _SHOWN_IN[watched.watch.quantities[i][0]][0]
+    rest = scale * np.array([look.rest[i] for look in watched.looks])
+    half = scale * _BAND * np.array([look.rest_std[i] for look in watched.looks])
     seen = np.isfinite(rest) & np.isfinite(half)
     kept = [t for t, good in zip(times, seen, strict=True) if good]
     place = {"row": row, "col": 1, "showlegend": row == 1}
@@ -80,8 +91,9 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
     if change.kind == "scatter" or not change.members[i]:
         return
     end = table.time(watched.looks[-1].day)
+    size = _SHOWN_IN[watched.watch.quantities[i][0]][0] * change.size[i]
     figure.add_scatter(
-        x=[table.time(change.began), end], y=[100.0 * change.size[i]] * 2, mode="lines",
+        x=[table.time(change.began), end], y=[size] * 2, mode="lines",
         line={"color": style.VERMILLION, "width": 2}, name="change found", legendgroup="change",
         showlegend=named, row=row, col=1,
     )  # fmt: skip
@@ -108,9 +120,7 @@ def evidence_through_time(watched: Watched) -> go.Figure:
 def explained_shares(watched: Watched) -> go.Figure:
     """Draw what explains how much of each quantity over the baseline."""
     keys = watched.watch.quantities
-    labels = [
-        f"{words(watched.watch.labels[q])}{'' if kind == 'frequency' else ', damping'}" for kind, q in keys
-    ]
+    labels = [_named(watched, i) for i in range(len(keys))]
     names = list(dict.fromkeys(name for key in keys for name in watched.explained[key]))
     figure = go.Figure()
     for name in names:
@@ -125,23 +135,24 @@ def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
     """Draw the change of each quantity with its 90 % interval, and what the likely causes would have done."""
     keys = watched.watch.quantities
     change = alarm.change
-    kinds = [kind for kind in ("frequency", "damping") if any(key[0] == kind for key in keys)]
+    kinds = [kind for kind in _SHOWN_IN if any(key[0] == kind for key in keys)]
     figure = make_subplots(rows=1, cols=len(kinds), horizontal_spacing=0.16)
     for column, kind in enumerate(kinds, start=1):
         chosen = [i for i, key in enumerate(keys) if key[0] == kind]
         names = [words(watched.watch.labels[keys[i][1]]) for i in chosen]
         place = {"row": 1, "col": column, "showlegend": column == 1}
+        scale, unit = (100.0, "%") if change.kind == "scatter" else _SHOWN_IN[kind]
         figure.add_scatter(
-            x=[100.0 * change.size[i] for i in chosen], y=names,
-            error_x={"type": "data", "array": [100.0 * _BAND * change.size_std[i] for i in chosen]},
+            x=[scale * change.size[i] for i in chosen], y=names,
+            error_x={"type": "data", "array": [scale * _BAND * change.size_std[i] for i in chosen]},
             mode="markers", marker={"size": 10, "color": style.VERMILLION}, name="seen, 90 %",
             legendgroup="seen", **place,
         )  # fmt: skip
         for (cause, step), symbol, colour in zip(alarm.patterns.items(), _SYMBOLS, _COLOURS, strict=False):
             figure.add_scatter(
-                x=100.0 * step[chosen], y=names, mode="markers", name=cause, legendgroup=cause,
+                x=scale * step[chosen], y=names, mode="markers", name=cause, legendgroup=cause,
                 marker={"size": 12, "symbol": symbol, "color": colour, "line": {"width": 2}}, **place,
             )  # fmt: skip
-        what = "noise" if change.kind == "scatter" else kind
-        figure.update_xaxes(title=style.title(f"change of {what}", "%"), row=1, col=column)
+        what = "noise" if change.kind == "scatter" else {"angle": "direction"}.get(kind, kind)
+        figure.update_xaxes(title=style.title(f"change of {what}", unit), row=1, col=column)
     return style.finish(figure, height=max(340, 40 * len(keys) // 2 + 200))

@@ -24,7 +24,9 @@ def run_case(case: Case, folder: Path) -> None:
     """Simulate one case and write its record; the key of the case goes with it."""
     done = simulate(scenario_from(case.data, case.path))
     metadata = {**done.record.metadata, "case_key": case.key, "wall_s": done.wall_s}
-    write_record(replace(done.record, name=case.name, metadata=metadata), record_path(case, folder))
+    start = case.start_utc or done.record.start_utc
+    record = replace(done.record, name=case.name, start_utc=start, metadata=metadata)
+    write_record(record, record_path(case, folder))
 
 
 def record_path(case: Case, folder: Path) -> Path:

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import AwareDatetime, Field
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
@@ -42,20 +43,27 @@ class SetSchema(Schema):
     yaw_deg: list[Heading] = Field(default=[0.0], min_length=1)
     seeds: Annotated[int, Field(ge=1, le=1000)] = 6
     first_seed: Annotated[int, Field(ge=0, lt=_SEA_SEEDS)] = 1
+    start_utc: AwareDatetime | None = None
+    every_hours: Annotated[float, Field(gt=0.0, le=8760.0)] = 1.0
 
 
 @dataclass(frozen=True)
 class Case:
-    """One simulation of a set: the content of its scenario file, which stands for ``path``."""
+    """One simulation of a set: the content of its scenario file, which stands for ``path``.
+
+    ``start_utc`` is when its record begins; None for the same time as any other record.
+    """
 
     name: str
     path: Path
     data: dict[str, Any]
+    start_utc: datetime | None = None
 
     @property
     def key(self) -> str:
         """Tells a finished record of this very case from any other."""
-        text = json.dumps([self.data, __version__], sort_keys=True)
+        start = [] if self.start_utc is None else [self.start_utc.isoformat()]
+        text = json.dumps([self.data, __version__, *start], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -93,7 +101,10 @@ def read_set(source: str | Path) -> ScenarioSet:
             )
     every = product(schema.bins, schema.misalignment_deg, schema.yaw_deg, range(schema.seeds))
     cases = tuple(
-        _case(base, data, entry, misalignment, yaw, schema.first_seed + number)
+        replace(
+            _case(base, data, entry, misalignment, yaw, schema.first_seed + number),
+            start_utc=schema.start_utc and schema.start_utc + timedelta(hours=number * schema.every_hours),
+        )
         for number, (entry, misalignment, yaw, _) in enumerate(every)
     )
     return ScenarioSet(path.stem, path, cases)

@@ -18,8 +18,10 @@ from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import RealPole
 from jackettwin.twin.observation import Observation
+from jackettwin.twin.pair_angles import pair_angles
 from jackettwin.twin.state import (
     UNDATED,
+    AngleSums,
     ClearShape,
     ConditionSums,
     Day,
@@ -133,7 +135,13 @@ def _operation(seen: Observation) -> Operation:
         w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole, seen)
         own = RateSums(int(bin_ not in rates), whole(w), whole(w * x), whole(w * x * x))
         rates[bin_] = rates.get(bin_, RateSums()).plus(own)
-    return Operation(conditions, modes, rates, _beside(seen))
+    directions = pair_angles(seen)
+    angles = {
+        number: AngleSums.of(*directions[known.label])
+        for number, (_, known) in sorted(seen.modes.items())
+        if known.label in directions
+    }
+    return Operation(conditions, modes, rates, _beside(seen), angles)
 
 
 def _beside(seen: Observation) -> dict[str, tuple[int, int]]:

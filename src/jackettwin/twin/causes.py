@@ -27,6 +27,7 @@ from jackettwin.response.tide import tide_slopes
 from jackettwin.soil.support import Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
+from jackettwin.twin.pair_angles import principal_direction
 from jackettwin.watching import (
     Cause,
     Pattern,
@@ -64,6 +65,10 @@ _SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
 """Names of a sea level in metres."""
 _LEAST_PER_M, _UNKNOWN_PER_M = 1e-4, 0.01
 """Of d ln f per metre: what else than added water may make it, and of a mode that the model has not."""
+_MISREAD = 0.05
+"""Median size of a yaw that is read wrong, sin² of the angle: 13°."""
+_OF_KIND = {"frequency": 0, "damping": MODES, "angle": 2 * MODES}
+"""Where quantities of a kind begin among those of a model."""
 _TRACE = 1e-5
 """A change of all logarithms below this leaves no trace."""
 
@@ -76,7 +81,8 @@ class ModelCauses:
     ----------
     labels : of the model's modes
     frequency_hz : (n_modes,) of the fitted model
-    causes : their draws are over ln f of all modes, then ln ζ of all modes
+    causes : their draws are over ln f of all modes, then ln ζ of all modes, then the directions [rad] in
+        which the lower modes of bending pairs move
     traceless : names of what leaves no trace in frequencies and damping
     level_per_m : (n_modes,) d ln f per metre of sea level
     seen_best : of each mode, the accelerometer that would see most of it
@@ -168,7 +174,7 @@ def model_causes(
             for base, then, eta in zip(bases, changed, loss, strict=True)
         ])  # fmt: skip
         kept = np.minimum(kept, np.min([one.kept for one in changed], axis=0))
-        if np.abs(draws * event.median).max() < _TRACE:
+        if np.abs(draws[:, : 2 * MODES] * event.median).max() < _TRACE:
             traceless.append(event.name)
         else:
             sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
@@ -203,7 +209,8 @@ class Modes:
     """Modes of a standing structure, in the order of another's.
 
     ``soil_share`` is the share of the strain energy in the ground, ``kept`` that of the kinetic energy in the
-    other's modes of the whole structure; modes with members of their own begin with ``local``.
+    other's modes of the whole structure; ``direction`` is the horizontal one of most motion [rad], from x
+    towards y. Modes with members of their own begin with ``local``.
     """
 
     labels: tuple[str, ...]
@@ -211,6 +218,7 @@ class Modes:
     mass: Any
     soil_share: FloatArray
     kept: FloatArray
+    direction: FloatArray
 
     @classmethod
     def of(cls, standing: Standing, assembly: Assembly, like: Modes | None = None) -> Modes:
@@ -229,7 +237,8 @@ class Modes:
         for spring in springs:
             u = moved[assembly.mesh.node_names.index(spring.node)]
             energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
-        return cls(labels, modes, assembly.mass, energy / modes.omega**2, kept)
+        ways = np.array([principal_direction(moved[:, :2, q])[0] for q in range(len(modes.omega))])
+        return cls(labels, modes, assembly.mass, energy / modes.omega**2, kept, ways)
 
 
 def _followed(like: Modes, modes: UndampedModes) -> UndampedModes:
@@ -247,13 +256,31 @@ def _kept(like: Modes, shapes: FloatArray) -> FloatArray:
 
 
 def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
-    """Return the change of ln f and ln ζ by one unit of an event, (2·MODES,).
+    """Return the change of ln f, ln ζ and directions [rad] by one unit of an event, (3·MODES,).
 
     The ground's part of ζ is ½η times its share of the strain energy.
     """
     ln_f = np.log(after.modes.omega / base.modes.omega)
     more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
-    return np.concatenate([ln_f, more / zeta]) / event.per
+    return np.concatenate([ln_f, more / zeta, turned(base, after)]) / event.per
+
+
+def pairs_of(labels: Sequence[str]) -> list[tuple[int, int]]:
+    """Return the bending pairs among some modes: places of the fore-aft and of the side-side one."""
+    pairs = ((f"fore_aft_{n}", f"side_side_{n}") for n in range(1, MODES))
+    return [(labels.index(a), labels.index(b)) for a, b in pairs if a in labels and b in labels]
+
+
+def turned(base: Modes, after: Modes) -> FloatArray:
+    """Return by how much the lower mode of each bending pair has turned [rad], from x towards y.
+
+    At both modes of the pair, (MODES,); a direction is as good as its opposite.
+    """
+    out = np.zeros(MODES)
+    for i, j in pairs_of(base.labels):
+        before, now = (m.direction[i if m.modes.omega[i] < m.modes.omega[j] else j] for m in (base, after))
+        out[[i, j]] = 0.5 * np.angle(np.exp(2j * (now - before)))
+    return out
 
 
 def repeated(event: Happening, times: int) -> Happening:
@@ -276,7 +303,7 @@ def _bend(
     zeta: FloatArray,
     once: FloatArray,
 ) -> FloatArray:
-    """Return how an event's direction turns with each further median size, (2·MODES,), if it has sizes."""
+    """Return how an event's direction turns with each further median size, (3·MODES,), if it has sizes."""
     if event.spread < _ONE_SIZE:
         return np.zeros(0)
     thrice = repeated(event, 3)
@@ -351,7 +378,7 @@ def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
 
 def _cosine(one: Cause, other: Cause) -> float:
     a, b = (c.draws.mean(axis=0) for c in (one, other))
-    scale = np.concatenate([np.ones(MODES), np.full(MODES, 0.02)])  # ζ is known fifty times less well
+    scale = np.repeat([1.0, 0.02, 0.0], MODES)  # ζ is known fifty times less well
     a, b = a * scale, b * scale
     nearness = float(a @ b / np.sqrt((a @ a) * (b @ b)))
     length = float(np.sqrt((a @ a) / (b @ b)))
@@ -361,26 +388,27 @@ def _cosine(one: Cause, other: Cause) -> float:
 def _clock() -> Cause:
     """Return a clock that runs wrong: all frequencies alike, no damping."""
     sizes, weights = lognormal_sizes(1e-3, 1.2, both_ways=True)
-    direction = np.concatenate([np.ones(MODES), np.zeros(MODES)])[None]
+    direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
     return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
 
 
 def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> tuple[Cause, ...]:
-    """Return a yaw angle that is read wrong: it mixes the frequencies and damping of each bending pair."""
-    direction = np.zeros(2 * MODES)
-    for number in (1, 2):
-        try:
-            i, j = labels.index(f"fore_aft_{number}"), labels.index(f"side_side_{number}")
-        except ValueError:
-            continue
+    """Return a yaw that is read wrong: it mixes frequencies and damping of bending pairs, and turns them.
+
+    Which way it turns them is not known: there are two draws.
+    """
+    direction = np.zeros(3 * MODES)
+    for i, j in pairs_of(labels)[:2]:
         direction[i] = np.log(frequency_hz[j] / frequency_hz[i])
         direction[j] = -direction[i]
         direction[MODES + i] = (zeta[j] - zeta[i]) / zeta[i]
         direction[MODES + j] = (zeta[i] - zeta[j]) / zeta[j]
+        direction[[2 * MODES + i, 2 * MODES + j]] = np.arcsin(np.sqrt(_MISREAD)) / _MISREAD
     if not direction.any():
         return ()
-    sizes, weights = lognormal_sizes(0.05, 1.0)  # sin² of the angle: 13°
-    return (Cause("sensor: yaw misread", direction[None], sizes, weights, "sin² of the angle", prior=0.5),)
+    sizes, weights = lognormal_sizes(_MISREAD, 1.0)
+    draws = direction * np.repeat([[1.0, 1.0, 1.0], [1.0, 1.0, -1.0]], MODES, axis=1)
+    return (Cause("sensor: yaw misread", draws, sizes, weights, "sin² of the angle", prior=0.5),)
 
 
 @dataclass(frozen=True)
@@ -413,7 +441,7 @@ def seen_causes(
     """
     known = np.array([model.tells(labels[mode]) for _, mode in quantities], dtype=np.bool_)
     columns = [
-        model.labels.index(labels[mode]) + (0 if kind == "frequency" else MODES)
+        model.labels.index(labels[mode]) + _OF_KIND[kind]
         for (kind, mode), good in zip(quantities, known, strict=True)
         if good
     ]

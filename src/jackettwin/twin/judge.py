@@ -185,9 +185,8 @@ def finding_of(alarm: Mapping[str, Any]) -> Finding:
         "probability": best["probability"],
     }  # fmt: skip
     sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
-    return Finding(
-        "sensor_changed" if sensor else "structure_changed", ", ".join(alarm["quantities"]), params
-    )
+    turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
+    return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
 
 
 def _fingerprint(every: Days, dates: Sequence[str]) -> str:
@@ -237,19 +236,22 @@ def history_of(columns: Columns, every: Days, dates: Sequence[str]) -> History:
         for name, operation in day.operations.items()
         if any(sums.known for sums in operation.modes.values())
     ]
-    values = np.full((4, len(rows), len(columns.labels)), np.nan)
+    values = np.full((6, len(rows), len(columns.labels)), np.nan)
     beside = np.full((len(rows), len(columns.conditions)), np.nan)
     for i, (_, _, operation) in enumerate(rows):
         for number, sums in operation.modes.items():
             if sums.known and number in columns.numbers:
-                values[:, i, columns.numbers.index(number)] = _means(sums)
+                values[:4, i, columns.numbers.index(number)] = _means(sums)
+        for number, angle in operation.angles.items():
+            if angle.w and number in columns.numbers:
+                values[4:, i, columns.numbers.index(number)] = angle.mean
         beside[i] = [_condition(operation, name) for name in columns.conditions]
     new = len(columns.kinds)
     states = [columns.kinds.index(kind) if kind in columns.kinds else new for _, kind, _ in rows]
     return History(
         np.array([at for at, *_ in rows]), columns.labels, values[0], values[1], values[2], values[3],
         beside, columns.conditions,
-        np.array(states, dtype=np.intp), columns.kinds,
+        np.array(states, dtype=np.intp), columns.kinds, values[4], values[5],
     )  # fmt: skip
 
 

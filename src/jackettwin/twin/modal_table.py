@@ -26,11 +26,15 @@ Columns = dict[str, npt.NDArray[Any]]
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "time_stamp", "t", "days", "day")
 _STATES = ("state", "operating_state", "operation")
 _MISSING = ["", "nan", "NaN", "NAN", "NA", "N/A", "n/a", "null", "NULL", "none", "None", "-", "--", "#N/A"]
-_OF_MODES = ("frequency_hz", "frequency_std_hz", "damping_ratio", "damping_ratio_std")
-_SUFFIXES = ("_std", "_damping", "_damping_std")
-_QUANTITIES = dict(zip(_OF_MODES, ("frequency", "frequency_std", "damping", "damping_std"), strict=True))
+_SUFFIXES = ("", "_std", "_damping", "_damping_std", "_angle_deg", "_angle_std_deg")
+QUANTITIES = {
+    "frequency_hz": "frequency", "frequency_std_hz": "frequency_std",
+    "damping_ratio": "damping", "damping_ratio_std": "damping_std",
+    "pair_angle_deg": "angle", "pair_angle_std_deg": "angle_std",
+}  # fmt: skip
+"""Column of a table of one row a mode, and what a history calls it."""
 _MODAL = re.compile(
-    r"^f_?\d|freq|zeta|damp|^mode|mac|_std$|interval|phase|complex|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
+    r"^f_?\d|freq|zeta|damp|^mode|mac|_std$|interval|phase|complex|seed|^id$|_id$|^index$|^unnamed|^row|order|_hz$",
     re.I,
 )
 """Names of columns that tell of modes or of the table: explaining modes by them would explain damage away."""
@@ -244,7 +248,7 @@ def _conditions(
                 value=", ".join(circular), remedy="name what was measured beside the modes",
             )  # fmt: skip
         return tuple(given)
-    taken = {time_name, "label", *_OF_MODES, *(c + s for c in columns for s in ("", *_SUFFIXES))}
+    taken = {time_name, "label", *QUANTITIES, *(c + s for c in columns for s in _SUFFIXES)}
     return tuple(
         name for name, x in stored.items()
         if x.dtype.kind == "f" and not (name in taken or name.lower() in _STATES or _MODAL.search(name))
@@ -294,12 +298,21 @@ def _wide(
         return np.stack([_number(stored, name + suffix, n) for name in names], axis=1)
 
     states, state_names = _states(stored, n)
-    frequency, std, damping, damping_std = (block(s) for s in ("", *_SUFFIXES))
+    seen = dict(zip(QUANTITIES.values(), map(block, _SUFFIXES), strict=True))
     beside = np.stack([_number(stored, c, n) for c in conditions], axis=1) if conditions else np.zeros((n, 0))
-    history = History(
-        days, names, frequency, std, damping, damping_std, beside, conditions, states, state_names
-    )
-    return _checked(history)
+    return _checked(_history(days, names, seen, beside, conditions, states, state_names))
+
+
+def _history(
+    days: FloatArray, labels: tuple[str, ...], seen: dict[str, FloatArray], beside: FloatArray,
+    conditions: tuple[str, ...], states: IntArray, state_names: tuple[str, ...],
+) -> History:  # fmt: skip
+    """Return a history; directions are in degrees until here."""
+    seen |= {name: np.radians(seen[name]) for name in ("angle", "angle_std")}
+    return History(
+        days, labels, conditions=beside, condition_names=conditions, states=states, state_names=state_names,
+        **seen,
+    )  # fmt: skip
 
 
 def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tuple[History, tuple[str, ...]]:
@@ -320,9 +333,9 @@ def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tup
     labels, mode = np.unique(words, return_inverse=True)
     when, row = np.unique(days, return_inverse=True)
     key = row * len(labels) + mode
-    seen, count = np.unique(key, return_counts=True)
+    keys, count = np.unique(key, return_counts=True)
     if (count > 1).any():
-        first = int(np.flatnonzero(np.isin(key, seen[count > 1]))[1])
+        first = int(np.flatnonzero(np.isin(key, keys[count > 1]))[1])
         raise InputError(
             "a mode stands twice at one time", field="label", value=f"{words[first]}, line {first + 2}",
             allowed="one row a mode and time", remedy="leave the second row out",
@@ -334,7 +347,7 @@ def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tup
         out[row, mode] = _number(stored, name, days.size)
         return out
 
-    frequency, std, damping, damping_std = (block(name) for name in _OF_MODES)
+    seen = {of: block(name) for name, of in QUANTITIES.items()}
     states, state_names = _states(stored, days.size)
     first_row = np.zeros(n, dtype=np.intp)
     first_row[row[::-1]] = np.arange(days.size)[::-1]
@@ -343,13 +356,10 @@ def _long(stored: Columns, days: FloatArray, conditions: tuple[str, ...]) -> tup
         x = _number(stored, name, days.size)
         good = np.isfinite(x)
         beside[row[good], k] = x[good]
-    order = np.argsort(typical(frequency))
-    frequency, std, damping, damping_std = (a[:, order] for a in (frequency, std, damping, damping_std))
+    order = np.argsort(typical(seen["frequency"]))
+    seen = {of: values[:, order] for of, values in seen.items()}
     names = tuple(str(labels[i]) for i in order)
-    states = states[first_row]
-    return _checked(
-        History(when, names, frequency, std, damping, damping_std, beside, conditions, states, state_names)
-    )
+    return _checked(_history(when, names, seen, beside, conditions, states[first_row], state_names))
 
 
 def _label(word: Any) -> str:
@@ -360,14 +370,14 @@ def _checked(history: History) -> tuple[History, tuple[str, ...]]:
     """Return the history with what cannot be as missing, and remarks."""
     remarks = []
     arrays: dict[str, Any] = {}
-    for what, column in _QUANTITIES.items():
+    for what, column in QUANTITIES.items():
         x = getattr(history, column)
         if column.endswith("_std") and (x < 0.0).any():
             raise InputError(
                 "a standard deviation below zero", field=what, value=float(x[x < 0.0][0]),
                 allowed="> 0, or empty", remedy="leave the column out if it is no such thing",
             )  # fmt: skip
-        bad = (x <= 0.0) | np.isinf(x)
+        bad = np.isinf(x) | ((x <= 0.0) & (column != "angle"))
         if bad.any():
             remarks.append(
                 f"{int(bad.sum())} values of {what} that are not above zero or infinite count as missing"

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from math import atan2, cos, sin, sqrt
 from operator import add, neg
 from typing import Any, NamedTuple, TypeVar
 
@@ -17,9 +18,9 @@ from jackettwin.arrays import ComplexArray
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.stored import StoredSchema, digest
-from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day
+from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day, whole
 
-Sums = TypeVar("Sums", ModeSums, ModeTotal, "RateSums")
+Sums = TypeVar("Sums", ModeSums, ModeTotal, "RateSums", "AngleSums")
 ALL = "all"
 """The state of operation that holds every record."""
 UNDATED = ""
@@ -86,6 +87,32 @@ class RateSums(NamedTuple):
         return RateSums(*map(neg, self))
 
 
+class AngleSums(NamedTuple):
+    """Sums over records of the direction α in which a pair's lower mode moves: Σw cos 2α and Σw sin 2α.
+
+    The weights are w = 1/var(α); twice the angle, since a direction is as good as its opposite.
+    """
+
+    w: int = 0
+    cosine: int = 0
+    sine: int = 0
+
+    @classmethod
+    def of(cls, angle: float, std: float) -> AngleSums:
+        """Return what one record says of a direction [rad]."""
+        w = std**-2
+        return cls(whole(w), whole(w * cos(2.0 * angle)), whole(w * sin(2.0 * angle)))
+
+    def plus(self, other: AngleSums) -> AngleSums:
+        """Return the sums of both."""
+        return AngleSums(*map(add, self, other))
+
+    @property
+    def mean(self) -> tuple[float, float]:
+        """Direction and standard deviation [rad]."""
+        return 0.5 * atan2(self.sine, self.cosine), sqrt(UNIT / self.w)
+
+
 @dataclass(frozen=True)
 class ClearShape:
     """The clearest shape of a mode or real pole.
@@ -117,12 +144,15 @@ class Operation:
     ----------
     beside : {condition: (records, sum)}
         Levels and temperatures, as whole numbers: what moves frequencies besides wind and waves.
+    angles : {mode: AngleSums}
+        Of the lower modes of bending pairs.
     """
 
     conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeSums] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
     beside: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    angles: Mapping[int, AngleSums] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -293,6 +323,7 @@ def join(a: Operation, b: Operation) -> Operation:
         _joined(a.modes, b.modes, ModeSums()),
         _joined(a.rates, b.rates, RateSums()),
         {name: _both(a.beside.get(name), b.beside.get(name)) for name in sorted({*a.beside, *b.beside})},
+        _joined(a.angles, b.angles, AngleSums()),
     )
 
 

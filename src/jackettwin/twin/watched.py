@@ -27,7 +27,7 @@ from jackettwin.watching import (
 )
 from jackettwin.watching.design import fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
-from jackettwin.watching.history import typical
+from jackettwin.watching.history import deviations, typical
 
 _PATTERNS, _UNLIKELY = 3, 0.001
 """Causes whose patterns are kept, and the probability below which none is."""
@@ -243,8 +243,7 @@ def _explained(
     explained: dict[tuple[str, int], dict[str, float]] = {}
     unexplained: dict[tuple[str, int], float] = {}
     for block in watch.blocks:
-        value = getattr(baseline, block.kind)[:, block.kept]
-        values = np.log(np.where(value > 0.0, value, np.nan) / block.typical)
+        values, _ = deviations(baseline, block.kind, block.kept, block.typical, block.std_power)
         keys = [(block.kind, int(q)) for q in block.kept]
         explained |= dict(zip(keys, shares(block, watch.design, rows, values), strict=True))
         unexplained |= dict(zip(keys, map(float, unexplained_std(block)), strict=True))

@@ -52,7 +52,10 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
     low, high = change.began_interval_90
     names = [quantity_name(watch, key) for key in watch.quantities]
     members = np.flatnonzero(change.members)
-    moved = {names[i]: _sized(change.size[i], change.size_std[i]) for i in range(len(names))}
+    moved = {
+        name: _sized(change.size[i], change.size_std[i], _unit(change.kind, kind))
+        for i, (name, (kind, _)) in enumerate(zip(names, watch.quantities, strict=True))
+    }
     lead = members[np.argmax(change.by_mode[members])]
     return {
         "time_utc": time(change.day).isoformat(),
@@ -62,6 +65,7 @@ def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm
         "quantities": [names[i] for i in members],
         "size": moved[names[lead]]["size"],
         "size_interval_90": moved[names[lead]]["interval_90"],
+        "unit": moved[names[lead]]["unit"],
         "by_quantity": moved,
         "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
         "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
@@ -95,9 +99,22 @@ def next_sentence(alarm: dict[str, Any]) -> str:
     return f"Would tell the causes apart, by the share of the doubt that it settles: {'; '.join(told)}."
 
 
-def _sized(size: float, std: float) -> dict[str, Any]:
-    low, mid, high = np.expm1([size - _Z90 * std, size, size + _Z90 * std])
-    return {"size": float(mid), "interval_90": [float(low), float(high)]}
+def _unit(change: str, kind: str) -> str:
+    """Return the unit of the change of a quantity: pairs turn by degrees, all else changes by a share."""
+    return "deg" if kind == "angle" and change != "scatter" else "-"
+
+
+def _sized(size: float, std: float, unit: str) -> dict[str, Any]:
+    ends = np.array([size - _Z90 * std, size, size + _Z90 * std])
+    low, mid, high = map(float, np.degrees(ends) if unit == "deg" else np.expm1(ends))
+    return {"size": mid, "interval_90": [low, high], "unit": unit}
+
+
+def _sized_words(document: dict[str, Any]) -> str:
+    """Return the size of an alarm with its interval, in words."""
+    low, high = document["size_interval_90"]
+    scale, unit = (1.0, "°") if document["unit"] == "deg" else (100.0, " %")
+    return f"{scale * document['size']:+.2f}{unit} ({scale * low:+.2f} to {scale * high:+.2f}{unit})"
 
 
 def _cause(verdict: CauseVerdict) -> dict[str, Any]:
@@ -113,8 +130,7 @@ def _cause(verdict: CauseVerdict) -> dict[str, Any]:
 def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
     """Return what a watched quantity is called."""
     kind, mode = key
-    label = watch.labels[mode]
-    return label if kind == "frequency" else f"{label} damping"
+    return watch.labels[mode] + {"frequency": "", "damping": " damping", "angle": " direction"}[kind]
 
 
 def _likeliest(alarm: Alarm) -> str:
@@ -139,13 +155,11 @@ def statement(watched: Watched) -> str:
     for alarm in watched.alarms:
         change = alarm.change
         doc = alarm_document(watched.watch, table.time, alarm)
-        low, high = (100.0 * x for x in doc["size_interval_90"])
         what = "scatter of" if change.kind == "scatter" else "change of"
         names = ", ".join(doc["quantities"])
         began = [table.time(day) for day in (change.began, *change.began_interval_90)]
         parts.append(
-            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {100.0 * doc['size']:+.2f} % "
-            f"({low:+.2f} to {high:+.2f} %), began {began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to "
-            f"{began[2]:%Y-%m-%d}); {_likeliest(alarm)}."
+            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {_sized_words(doc)}, began "
+            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}."
         )
     return " ".join(parts)

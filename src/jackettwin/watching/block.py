@@ -1,4 +1,4 @@
-"""One kind of quantity of all modes, ln f or ln ζ: from a day's records to what the day says."""
+"""One kind of quantity, ln f, ln ζ or directions of pairs: from a day's records to what the day says."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
-from jackettwin.watching.history import History, Kind, logarithms, std_power, typical
+from jackettwin.watching.history import History, Kind, deviations, middles, std_power
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
 from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
 from jackettwin.watching.scatter import log_ratios, steadiness
@@ -19,7 +19,7 @@ WINDOW_DAYS = 1.0 / 24.0
 """Records are averaged over an hour of the clock."""
 _LEAST_STD, _MOST_STD = 0.3, 5.0
 """Stated standard deviations are believed within these factors of their median."""
-_BROAD = {"frequency": 0.03, "damping": 0.5}
+BROAD = {"frequency": 0.03, "damping": 0.5, "angle": 0.5}
 """Prior standard deviation of a change once it is certain that there is one."""
 _MAD = 1.4826
 _NEGLIGIBLE = -20.0
@@ -89,8 +89,8 @@ class Spoken:
 
 def watched(baseline: History, kind: Kind) -> IntArray:
     """Return which columns have enough values to be watched, and do not stand still."""
-    columns = [x[np.isfinite(x) & (x > 0.0)] for x in getattr(baseline, kind).T]
-    alive = [x.size >= _FEWEST and np.ptp(x) > _STILL * np.max(x) for x in columns]
+    columns = [x[np.isfinite(x) & ((x > 0.0) | (kind == "angle"))] for x in baseline.seen(kind)[0].T]
+    alive = [x.size >= _FEWEST and np.ptp(x) > _STILL * np.max(np.abs(x)) for x in columns]
     return np.flatnonzero(np.array(alive, dtype=np.bool_))
 
 
@@ -104,21 +104,20 @@ def begin(
     slopes: Sequence[Slope] = (),
 ) -> tuple[Block, Hours]:
     """Return what a baseline teaches of one kind of quantity, and its hours; ``slopes`` are of those kept."""
-    value = getattr(baseline, kind)[:, kept]
-    middle = typical(value)
+    middle = middles(baseline, kind, kept)
     # a frequency's noise is far too small for its power to matter
     power = std_power(baseline, kind, kept) if kind == "damping" else np.ones(len(kept))
-    y, relative = logarithms(baseline, kind, kept, middle, power)
+    y, relative = deviations(baseline, kind, kept, middle, power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
-    usual, rest = _usual_std(baseline.days, x, y, relative, design)
-    variance = _variance(relative, usual)
+    usual_std, rest = _usual_std(baseline.days, x, y, relative, design)
+    variance = _variance(relative, usual_std)
     apart, doubt, tail = _set_apart(baseline, rest, variance)
     y[apart] = np.nan
     hours = by_hour(baseline.days, baseline.states, x, y, variance * doubt, WINDOW_DAYS)
     day = np.floor(baseline.days)
     beside = np.stack([_told(apart[day == d], rest[day == d]) for d in np.unique(day)])
-    spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual)
+    spread = np.maximum(np.nanstd(hours.values, axis=0), 0.1 * usual_std)
     learnt = learn(hours, design.coefficients(spread, slopes), hidden=design.hidden)
     m, p = len(kept), rows.shape[1]
     block = Block(
@@ -126,7 +125,7 @@ def begin(
         kept=kept,
         typical=middle,
         std_power=power,
-        usual_std=usual,
+        usual_std=usual_std,
         spread=spread,
         memories=learnt.memories,
         beliefs=learnt.beliefs,
@@ -213,7 +212,7 @@ def _set_apart(
 
 def hours_of(block: Block, history: History, rows: FloatArray) -> tuple[Hours, FloatArray, Block]:
     """Return the hours of a day, how many values were set aside (m,), and the block with its last values."""
-    y, relative = logarithms(history, block.kind, block.kept, block.typical, block.std_power)
+    y, relative = deviations(history, block.kind, block.kept, block.typical, block.std_power)
     y[~np.isfinite(rows).all(axis=1)] = np.nan
     x = np.nan_to_num(rows)
     variance = _variance(relative, block.usual_std)
@@ -329,7 +328,7 @@ def adopted(block: Block, begun: int, size: FloatArray, states: int) -> Block:
     """
     m, p = block.reference.shape
     beliefs, weights = [], []
-    prior = np.where(size, _BROAD[block.kind] ** -2.0, 1e12)
+    prior = np.where(size, BROAD[block.kind] ** -2.0, 1e12)
     for belief, bank in zip(block.beliefs, block.banks, strict=True):
         covariance = np.linalg.inv(bank.info[begun] + np.diag(prior))
         delta = covariance @ bank.score[begun]

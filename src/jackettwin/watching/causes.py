@@ -97,7 +97,7 @@ def general_causes(
         fine, weights = lognormal_sizes(float(np.sqrt(size[0] * size[-1])), 0.8, both_ways=True)
         found.append(Cause(name, chosen[None].astype(np.float64), fine, weights, "-", prior=prior))
 
-    for kind, what in (("frequency", ""), ("damping", "damping of ")):
+    for kind, what in (("frequency", ""), ("damping", "damping of "), ("angle", "direction of ")):
         of_kind = kinds == kind
         present = sorted(set(modes[of_kind]), key=lambda q: frequency_hz[q])
         for q in present:

@@ -64,7 +64,7 @@ def diagnose(change: Change, causes: Sequence[Cause], kinds: Sequence[str]) -> D
 
     Parameters
     ----------
-    kinds : (m,) "frequency" or "damping" of each quantity
+    kinds : (m,) of each quantity
     """
     judged = [_judge(change, cause, kinds) for cause in causes]
     priors = np.log([cause.prior for cause in causes] + [_OTHER_PRIOR])
@@ -173,14 +173,13 @@ def _free(info: FloatArray, score: FloatArray, std: FloatArray) -> FloatArray:
 
 
 def _something(change: Change, kinds: Sequence[str]) -> float:
-    """Return ln of the evidence of a step of any size in any direction, of frequencies, damping or both."""
+    """Return ln of the evidence of a step of any size in any direction, of one kind of quantity or all."""
     begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
     spans = []
-    for chosen in (("frequency",), ("damping",), ("frequency", "damping")):
+    alone = tuple((kind,) for kind in SIZES if kind in kinds)
+    for chosen in alone if len(alone) == 1 else (*alone, tuple(SIZES)):
         for k in range(max(len(s) for s in SIZES.values())):
             std = np.array([SIZES[q][min(k, len(SIZES[q]) - 1)] if q in chosen else 0.0 for q in kinds])
-            if not std.any():
-                continue
             spans.append(float(np.logaddexp.reduce(begins + _free(change.info, change.score, std))))
     return float(np.logaddexp.reduce(spans) - np.log(len(spans)))
 

@@ -18,18 +18,20 @@ structure."""
 SIZES = {
     "frequency": (0.0007, 0.0014, 0.0028, 0.0056, 0.0112, 0.0225, 0.045),
     "damping": (0.12, 0.24, 0.48, 0.96),
+    "angle": (0.04, 0.08, 0.16, 0.32),
 }
-"""Sizes of a step in the logarithm that are bet on, each give or take a third: below the first nothing is
-worth an alarm, beyond the last one any prior finds it."""
+"""Sizes of a step in the logarithm, or of a turn [rad], that are bet on, each give or take a third: below the
+first nothing is worth an alarm, beyond the last one any prior finds it."""
 SIZE_WEIGHTS = {
     "frequency": (0.12, 0.26, 0.24, 0.16, 0.1, 0.07, 0.05),
     "damping": (0.3, 0.4, 0.2, 0.1),
+    "angle": (0.3, 0.3, 0.2, 0.2),
 }
 """Small steps take the longest: most of the stake is on them."""
 _WIDTH = 1.0 / 3.0
-SHARES = {"frequency": 0.7, "damping": 0.2, "scatter": 0.1}
-"""Stakes of the kinds of change."""
-_FALLING = {"frequency": 0.7, "damping": 0.4}
+SHARES = {"frequency": 0.7, "damping": 0.2, "angle": 0.1, "scatter": 0.1}
+"""Stakes of the kinds of change, relative to those of the kinds that are watched."""
+_FALLING = {"frequency": 0.7, "damping": 0.4, "angle": 0.5}
 """Share of the stake on falling values: what breaks or is washed out is softer, and damps more."""
 _ANY = 0.1
 """Share of a kind's stake on a change in no particular direction."""
@@ -47,7 +49,7 @@ class Directions:
 
     Attributes
     ----------
-    kind : "frequency" or "damping"
+    kind : "frequency", "damping" or "angle"
     names : (n,) of the directions; the last is "any"
     members : (n, m) which quantities move
     vectors : (n − 1, m) of those with a direction

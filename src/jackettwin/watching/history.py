@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
-Kind = Literal["frequency", "damping"]
+Kind = Literal["frequency", "damping", "angle"]
 
 _NEAR_DAYS = 0.25
 """Records closer together saw the same structure."""
@@ -36,6 +36,8 @@ class History:
     condition_names : of the k columns
     states : (n,) number of the operating state of each row
     state_names : of the operating states
+    angle, angle_std : (n, m) [rad] the horizontal direction in which the lower mode of a pair moves, from x
+        towards y and as good as its opposite; NaN where none is known. None for a table without any
     """
 
     days: FloatArray
@@ -48,11 +50,23 @@ class History:
     condition_names: tuple[str, ...]
     states: IntArray
     state_names: tuple[str, ...] = ("all",)
+    angle: FloatArray | None = None
+    angle_std: FloatArray | None = None
+
+    def seen(self, kind: Kind) -> tuple[FloatArray, FloatArray]:
+        """Return values of a kind and their standard deviations, (n, m) each; NaN where there is none."""
+        none = np.full(self.frequency.shape, np.nan)
+        value, std = getattr(self, kind), getattr(self, f"{kind}_std")
+        return none if value is None else value, none if std is None else std
 
     def rows(self, chosen: BoolArray) -> History:
         """Return some of the rows."""
-        arrays = ("days", "frequency", "frequency_std", "damping", "damping_std", "conditions", "states")
-        return replace(self, **{name: getattr(self, name)[chosen] for name in arrays})
+        arrays = (
+            "days", "frequency", "frequency_std", "damping", "damping_std", "conditions", "states", "angle",
+            "angle_std",
+        )  # fmt: skip
+        there = [name for name in arrays if getattr(self, name) is not None]
+        return replace(self, **{name: getattr(self, name)[chosen] for name in there})
 
     def between(self, first: float, last: float) -> History:
         """Return the rows with first ≤ days < last."""
@@ -64,10 +78,20 @@ class History:
         return tuple(self.rows(day == d) for d in np.unique(day))
 
 
-def logarithms(
+def middles(history: History, kind: Kind, kept: IntArray) -> FloatArray:
+    """Return the typical values of some columns, (m,); of directions, the mean of the axes they lie on."""
+    value = history.seen(kind)[0][:, kept]
+    if kind == "angle":
+        return np.asarray(0.5 * np.angle(np.nansum(np.exp(2j * value), axis=0)))
+    return typical(value)
+
+
+def deviations(
     history: History, kind: Kind, kept: IntArray, typical: FloatArray, power: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return ln of the values over typical ones, and relative standard deviations, both (n, m).
+
+    Of directions it is the turn from the typical one [rad], at most a right angle.
 
     A stated standard deviation may follow the value that it belongs to: that of ζ goes with √ζ by Au's law
     (2014), with ζ if a coefficient of variation was stated. A record whose ζ happens to be low must not
@@ -79,7 +103,9 @@ def logarithms(
     typical : (m,) values of the baseline
     power : (m,) by which standard deviations follow values
     """
-    value, std = getattr(history, kind)[:, kept], getattr(history, f"{kind}_std")[:, kept]
+    value, std = (x[:, kept] for x in history.seen(kind))
+    if kind == "angle":
+        return 0.5 * np.angle(np.exp(2j * (value - typical))), np.where(std > 0.0, std, np.nan)
     good = np.where(value > 0.0, value, np.nan)
     relative = std / (good**power * typical ** (1.0 - power))
     return np.log(good / typical), np.where(relative > 0.0, relative, np.nan)

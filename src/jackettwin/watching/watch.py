@@ -20,6 +20,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
+    BROAD,
     Block,
     Spoken,
     adopted,
@@ -54,7 +55,10 @@ PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 36.0, 10.0
 """Share of the baseline that a change has to last where no conditions are given, and the most of it: what is
 shorter may be storms that follow each other. Leaving later begins out can only lower R, so that the promise
 is kept."""
-KINDS: tuple[Kind, ...] = ("frequency", "damping")
+GUARDED = 0.8
+"""Power to which evidence counts where no conditions are given: what weather does then has a longer tail than
+any normal process. No Bayes factor's mean rises by that (Jensen), so that the promise is kept."""
+KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,7 @@ class Watch:
     considered : day on which the models' weights were reconsidered
     arl_years : mean time between false alarms that is promised, at least
     patience_days : for how long a change has to last
+    power : to which evidence counts
     """
 
     labels: tuple[str, ...]
@@ -102,6 +107,7 @@ class Watch:
     considered: float
     arl_years: float
     patience_days: float = 0.0
+    power: float = 1.0
 
     @property
     def log_threshold(self) -> float:
@@ -245,6 +251,7 @@ def start(
         last,
         arl_years,
         min(PATIENCE * (last - baseline.days[0]), MOST_PATIENCE_DAYS) if design.hidden else 0.0,
+        GUARDED if design.hidden else 1.0,
     )
 
 
@@ -309,10 +316,10 @@ def _worth(watch: Watch) -> FloatArray:
     scatter = watch.begins.log_scatter
     n, m, g = scatter.shape
     share = np.log(SHARES["scatter"] / (m * g))
-    parts = [log_evidence(block) + block.directions.log_weights for block in watch.blocks]
-    total = np.concatenate([*parts, scatter.reshape(n, m * g) + share], axis=1)
-    lost = sum(SHARES[k] for k in KINDS if k not in {b.kind for b in watch.blocks})
-    return np.asarray(total - np.log1p(-lost))
+    parts = [watch.power * log_evidence(block) + block.directions.log_weights for block in watch.blocks]
+    total = np.concatenate([*parts, watch.power * scatter.reshape(n, m * g) + share], axis=1)
+    staked = SHARES["scatter"] + sum(SHARES[block.kind] for block in watch.blocks)
+    return np.asarray(total - np.log(staked))
 
 
 def _merged(watch: Watch, worth: FloatArray) -> Watch:
@@ -432,8 +439,7 @@ def _all_info(watch: Watch) -> tuple[FloatArray, FloatArray]:
 
 
 def _prior_precision(watch: Watch) -> FloatArray:
-    broad = {"frequency": 0.03, "damping": 0.5}
-    return np.concatenate([np.full(len(b.kept), broad[b.kind] ** -2.0) for b in watch.blocks])
+    return np.concatenate([np.full(len(b.kept), BROAD[b.kind] ** -2.0) for b in watch.blocks])
 
 
 def _sizes(

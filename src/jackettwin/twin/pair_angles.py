@@ -1,0 +1,87 @@
+"""In which direction the lower mode of a bending pair moves: weakened on one side, a jacket turns it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.identification import ModalEstimate
+from jackettwin.twin.observation import Observation
+
+MOST_STD_RAD = float(np.radians(20.0))
+"""A direction known less well is none: drawn from all there are, it would have 52°."""
+_LEVEL = 0.1
+"""Vertical share of a sensor's direction from which it is no horizontal one."""
+
+Stations = list[tuple[list[int], FloatArray]]
+
+
+def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
+    """Return by label of the lower mode its direction and standard deviation [rad], from x towards y.
+
+    In the axes that the record was identified in: the rotor's, if its yaw is known. A pair whose frequencies
+    differ by no more than they are unsure by has no direction of its own, and is left out; so is one that no
+    place with two horizontal sensors shows.
+    """
+    modes = {known.label: mode for mode, known in seen.modes.values() if mode.status.is_a_mode}
+    places = _stations(seen)
+    found = {}
+    for label in modes if places else ():
+        partner = label.replace("fore_aft_", "side_side_")
+        if partner == label or partner not in modes:
+            continue
+        lower, upper = sorted((label, partner), key=lambda name: modes[name].frequency_hz)
+        angle, std = _direction(modes[lower], modes[upper], places)
+        if std < MOST_STD_RAD:
+            found[lower] = angle, std
+    return found
+
+
+def _stations(seen: Observation) -> Stations:
+    """Return places with sensors along two horizontal directions: their channels, and directions (n, 2)."""
+    sensors = {sensor.channel: sensor for sensor in seen.sensors}
+    places: dict[object, list[tuple[int, FloatArray]]] = {}
+    for row, channel in enumerate(seen.identification.channels):
+        sensor = sensors.get(channel.name)
+        if sensor is None or sensor.quantity != "motion":
+            continue
+        along = np.array(sensor.direction) / np.linalg.norm(sensor.direction)
+        if abs(along[2]) < _LEVEL:
+            where = sensor.node, sensor.height_m, sensor.member, sensor.position
+            places.setdefault(where, []).append((row, along[:2]))
+    both = [([row for row, _ in at], np.array([along for _, along in at])) for at in places.values()]
+    return [(rows, along) for rows, along in both if np.linalg.matrix_rank(along, tol=0.5) == 2]
+
+
+def _direction(lower: ModalEstimate, upper: ModalEstimate, places: Stations) -> tuple[float, float]:
+    """Return the direction of the lower mode [rad] and its standard deviation.
+
+    To first order two modes mix by what disturbs them over how far their frequencies are apart: here by what
+    identification is unsure of. The entries of the shape add their own.
+    """
+    if lower.frequency_std_hz is None or upper.frequency_std_hz is None:
+        return 0.0, np.inf
+    aligned = lower.mode_shape_unaligned is None
+    shape = lower.mode_shape if aligned else lower.mode_shape_unaligned
+    moved = [np.linalg.lstsq(along, shape[rows], rcond=None)[0] for rows, along in places]  # type: ignore[index]
+    angle, square = principal_direction(np.array(moved))
+    own = 0.0
+    if lower.mode_shape_std is not None:
+        unsure = np.array([np.mean(lower.mode_shape_std[rows] ** 2) for rows, _ in places])
+        own = float(np.sum(np.sum(np.abs(moved) ** 2, axis=1) * unsure)) / square**2
+    apart = upper.frequency_hz - lower.frequency_hz
+    mixed = np.hypot(lower.frequency_std_hz, upper.frequency_std_hz) / max(apart, 1e-12)
+    return angle, float(np.sqrt(mixed**2 + own))
+
+
+def principal_direction(moved: ComplexArray) -> tuple[float, float]:
+    """Return the horizontal direction of most motion [rad] of some places (n, 2), and the sum of its squares.
+
+    Examples
+    --------
+    >>> angle, square = principal_direction(np.array([[3.0, 3.0], [-1j, -1j]]))
+    >>> round(float(np.degrees(angle)), 6), round(square, 6)
+    (45.0, 20.0)
+    """
+    xx, xy, yy = (float(np.sum((moved[:, i] * moved[:, j].conj()).real)) for i, j in ((0, 0), (0, 1), (1, 1)))
+    return 0.5 * float(np.arctan2(2.0 * xy, xx - yy)), 0.5 * (xx + yy + float(np.hypot(2.0 * xy, xx - yy)))
