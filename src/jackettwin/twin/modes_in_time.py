@@ -14,7 +14,7 @@ import pyarrow.csv as pacsv
 
 from jackettwin.files import atomic_path
 from jackettwin.identification import ModalEstimate
-from jackettwin.twin.judge import Columns, history_of
+from jackettwin.twin.judge import Columns, Days, history_of
 from jackettwin.twin.modal_table import QUANTITIES
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation
@@ -57,8 +57,8 @@ def _said(conditions: Mapping[str, Any]) -> Row:
 
 def rows_of_days(model: TwinModel, state: TwinState) -> list[Row]:
     """Return a row for each mode, day and state of operation: what is left of records in a twin's state."""
-    dates = [date for date in state.days if date != UNDATED]
-    history = history_of(Columns.of(model, state, dates), state, dates)
+    dates, days = [date for date in state.days if date != UNDATED], Days.of(state)
+    history = history_of(Columns.of(model, days, dates), days, dates)
     rows = []
     for i, day in enumerate(history.days):
         beside = dict(zip(history.condition_names, history.conditions[i], strict=True))
