@@ -10,8 +10,10 @@ from click.testing import CliRunner
 from observations import BEGUN, observation, seen
 
 from jackettwin.cli import main
+from jackettwin.twin import TwinModel, TwinState, advance_all
 from jackettwin.twin.modal_table import read_modal_table
-from jackettwin.twin.modes_in_time import recognised, rows_of_records, write_modes_in_time
+from jackettwin.twin.modes_in_time import recognised, rows_of_days, rows_of_records, write_modes_in_time
+from jackettwin.twin.watched import watch_table
 
 
 def test_what_records_show_is_watched_by_the_command(tmp_path: Path) -> None:
@@ -57,3 +59,15 @@ def test_seeds_and_records_without_a_start_are_left_out(tmp_path: Path) -> None:
 def test_without_records_nothing_is_written(tmp_path: Path) -> None:
     write_modes_in_time([], tmp_path / "none.csv")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_state_is_watched_by_the_command_as_well(tmp_path: Path) -> None:
+    """A row a day and state of operation: what ``follow`` keeps of records finds the same step."""
+    state = advance_all(TwinState("model"), seen(90, step=-0.01))[0]
+    path = tmp_path / "modes_in_time.csv"
+    write_modes_in_time(rows_of_days(TwinModel("asset"), state), path)
+    table = read_modal_table(path)
+    assert table.history.frequency.shape == (90, 2)
+    assert table.history.days[0] == pytest.approx(0.5)  # the middle of 3, 9, 15 and 21 h
+    (alarm,) = watch_table(table, baseline_days=60.0).alarms
+    assert BEGUN <= alarm.change.day < BEGUN + 9
