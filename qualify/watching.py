@@ -59,7 +59,7 @@ CAUSES = "causes.py", "changed_structures.py"
 """Of ``twin``: what patterns are made of."""
 TWIN_HZ = (0.1757, 0.1783)
 """First pair of the reference jacket on feet of 2.5e9 N/m, to which the twin is fitted."""
-UNTOLD = 5
+UNTOLD = 2
 """For so many quiet turbines there is one whose conditions are not told."""
 SIZES = (0.0007, 0.0014, 0.0028, 0.0056, 0.0112, 0.0225, 0.045)
 

@@ -17,13 +17,12 @@ import pyarrow.parquet as pq
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.records.readers.description import parse_time
+from jackettwin.twin.table_times import table_times
 from jackettwin.watching import History
 from jackettwin.watching.history import typical
 
 Columns = dict[str, npt.NDArray[Any]]
 
-_TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "time_stamp", "t", "days", "day")
 _STATES = ("state", "operating_state", "operation")
 _MISSING = ["", "nan", "NaN", "NAN", "NA", "N/A", "n/a", "null", "NULL", "none", "None", "-", "--", "#N/A"]
 _SUFFIXES = ("", "_std", "_damping", "_damping_std", "_angle_deg", "_angle_std_deg")
@@ -38,9 +37,7 @@ _MODAL = re.compile(
     re.I,
 )
 """Names of columns that tell of modes or of the table: explaining modes by them would explain damage away."""
-_SERIAL = {"excel": (2e4, 8e4, datetime(1899, 12, 30)), "datenum": (6.9e5, 8e5, datetime(1, 1, 1))}
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_UNIX_S, _UNIX_MS = (1e8, 1e11), (1e11, 1e14)
 
 
 @dataclass(frozen=True)
@@ -82,8 +79,8 @@ def read_modal_table(
     """
     with located(file=path):
         stored = _read(path)
-        time_name, days, origin = _days(stored)
-        wanted = _conditions(stored, time_name, columns, conditions)
+        time_names, days, origin = _days(stored)
+        wanted = _conditions(stored, time_names, columns, conditions)
         if columns:
             history, remarks = _wide(stored, days, tuple(columns), wanted)
         else:
@@ -150,89 +147,16 @@ def _values(column: Any) -> npt.NDArray[Any]:
     return words
 
 
-def _days(stored: Columns) -> tuple[str, FloatArray, datetime]:
-    """Return the time column, days since the first midnight, and that midnight."""
-    lower = {name.lower(): name for name in stored}
-    name = next((lower[t] for t in _TIMES if t in lower), None)
-    if name is None:
-        name = next((n for n, x in stored.items() if x.dtype.kind == "M"), None)
-    if name is None:
-        raise InputError(
-            "no column of times", field="time_utc", value=", ".join(stored), allowed="ISO 8601 in UTC",
-            remedy="name the column of times time_utc",
-        )  # fmt: skip
-    with located(field=name):
-        stamps = _stamps(name, stored[name])
-        if np.isnat(stamps).any():
-            row = int(np.flatnonzero(np.isnat(stamps))[0]) + 2
-            raise InputError("a row without a time", value=f"line {row}", remedy="leave the row out")
-        backwards = np.flatnonzero(np.diff(stamps) < np.timedelta64(0))
-        if backwards.size:
-            raise InputError(
-                "times are not sorted", value=f"{stamps[backwards[0] + 1]} after {stamps[backwards[0]]}",
-                allowed="ascending", remedy="sort the rows by time; a clock set back shows like this, too",
-            )  # fmt: skip
+def _days(stored: Columns) -> tuple[tuple[str, ...], FloatArray, datetime]:
+    """Return the columns of times, days since the first midnight, and that midnight."""
+    names, stamps = table_times(stored)
     midnight = stamps[0].astype("datetime64[D]")
     days = (stamps - midnight) / np.timedelta64(1, "ms") / 86400e3
-    return name, np.asarray(days, dtype=np.float64), _EPOCH + timedelta(days=int(midnight.astype(np.int64)))
-
-
-def _stamps(name: str, x: npt.NDArray[Any]) -> npt.NDArray[np.datetime64]:
-    if x.dtype.kind == "M":
-        return x.astype("datetime64[ms]")
-    if x.dtype.kind == "f":
-        return _numbered(name, x)
-    zoned = np.array([bool(re.search(r"(Z|[+-]\d\d:?\d\d)$", w)) for w in x])
-    if zoned.any() and not zoned.all():
-        raise InputError(
-            "some times have a zone and some have none", value=str(x[np.argmin(zoned)]), allowed="one way",
-            remedy="write all times in UTC, or all with their zone",
-        )  # fmt: skip
-    return np.array([np.datetime64(_parsed(w), "ms") for w in x])
-
-
-def _parsed(text: str) -> datetime:
-    day_first = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", text)
-    try:
-        return parse_time(re.sub(r"^(\d{4})/(\d\d)/(\d\d)", r"\1-\2-\3", day_first)).replace(tzinfo=None)
-    except InputError:
-        raise InputError(
-            "is no time",
-            value=str(text),
-            allowed="ISO 8601: 2025-01-01T13:00:00Z",
-            remedy="write all times so",
-        ) from None
-
-
-def _numbered(name: str, x: FloatArray) -> npt.NDArray[np.datetime64]:
-    """Return times from serial numbers: Excel's, MATLAB's, Unix seconds or milliseconds, or days."""
-    typical = float(np.nanmedian(x))
-    start = None
-    milliseconds = x * 86400e3
-    for low, high, origin in _SERIAL.values():
-        if low < typical < high:
-            start = origin
-            milliseconds = (x - (366.0 if origin.year == 1 else 0.0)) * 86400e3
-    if _UNIX_S[0] < typical < _UNIX_S[1]:
-        start, milliseconds = datetime(1970, 1, 1), 1e3 * x
-    elif _UNIX_MS[0] < typical < _UNIX_MS[1]:
-        start, milliseconds = datetime(1970, 1, 1), x
-    elif start is None and "day" in name.lower():
-        start = datetime(2000, 1, 1)
-    if start is None:
-        raise InputError(
-            "numbers whose origin is not known", value=typical,
-            allowed="ISO 8601, Unix, Excel or MATLAB times, or days",
-            remedy="write the times as 2025-01-01T13:00:00Z",
-        )  # fmt: skip
-    whole = np.where(np.isfinite(milliseconds), np.round(milliseconds), 0).astype(np.int64)
-    stamps = np.datetime64(start, "ms") + whole.astype("timedelta64[ms]")
-    stamps[~np.isfinite(milliseconds)] = np.datetime64("NaT")
-    return stamps
+    return names, np.asarray(days, dtype=np.float64), _EPOCH + timedelta(days=int(midnight.astype(np.int64)))
 
 
 def _conditions(
-    stored: Columns, time_name: str, columns: Sequence[str], given: Sequence[str] | None
+    stored: Columns, time_names: tuple[str, ...], columns: Sequence[str], given: Sequence[str] | None
 ) -> tuple[str, ...]:
     """Return the names of the columns that are conditions."""
     for name in (*columns, *(given or ())):
@@ -241,14 +165,14 @@ def _conditions(
                 "no such column", field=name, allowed=", ".join(stored), remedy=did_you_mean(name, stored)
             )
     if given is not None:
-        circular = sorted({*given} & {time_name, "frequency_hz", *columns})
+        circular = sorted({*given} & {*time_names, "frequency_hz", *columns})
         if circular:
             raise InputError(
                 "a column that is watched, or the times, cannot be a condition", field="--conditions",
                 value=", ".join(circular), remedy="name what was measured beside the modes",
             )  # fmt: skip
         return tuple(given)
-    taken = {time_name, "label", *QUANTITIES, *(c + s for c in columns for s in _SUFFIXES)}
+    taken = {*time_names, "label", *QUANTITIES, *(c + s for c in columns for s in _SUFFIXES)}
     return tuple(
         name for name, x in stored.items()
         if x.dtype.kind == "f" and not (name in taken or name.lower() in _STATES or _MODAL.search(name))

@@ -1,0 +1,179 @@
+"""When the rows of a table are of: times as people write them, in one column or several."""
+
+from __future__ import annotations
+
+import re
+from datetime import datetime
+from itertools import product
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError, located
+from jackettwin.records.readers.description import parse_time
+
+Stamps = npt.NDArray[np.datetime64]
+Stored = dict[str, npt.NDArray[Any]]
+
+_TIMES = ("timeutc", "time", "timestamp", "datetime", "datetimeutc", "utc", "date", "datum", "zeit")
+"""Names of columns of times, in letters alone, the likeliest first; others are found by what they hold."""
+_NUMBERED = ("t", "days", "day")
+_PARTS = ("year", "month", "day", "hour", "minute", "second")
+_DATES = ("%d.%m.%Y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d-%b-%Y", "%d %b %Y", "%Y%m%d")
+_CLOCKS = ("", " %H:%M", " %H:%M:%S", " %H:%M:%S.%f", " %I:%M %p", " %I:%M:%S %p", "T%H:%M:%S", "T%H%M%S")
+_CLOCK = re.compile(r"\d\d?:\d\d(:\d\d([.,]\d+)?)?( ?[AP]M)?", re.IGNORECASE)
+_ZONED = re.compile(r":\d\d.*(Z|[+-]\d\d:?\d\d)$")
+_SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 1), 366.0))
+"""Serial days of Excel and of MATLAB: range, what day zero is, and what to take off."""
+_UNIX = ((1e8, 1e11, 1e3), (1e11, 1e14, 1.0), (1e14, 1e17, 1e-3), (1e17, 1e20, 1e-6))
+"""Unix seconds, milli-, micro- and nanoseconds: range, and milliseconds in one."""
+_ALLOWED = "ISO 8601: 2025-01-01T13:00:00Z"
+
+
+def table_times(stored: Stored) -> tuple[tuple[str, ...], Stamps]:
+    """Return the columns that hold the times, and the times in UTC to the millisecond, ascending.
+
+    Raises
+    ------
+    InputError
+        If there are none, one is missing or no time, or they are not sorted; names the column.
+    """
+    names, cells = _column(stored)
+    with located(field=names[0]):
+        stamps = _stamps(names[0], cells)
+        if np.isnat(stamps).any():
+            row = int(np.flatnonzero(np.isnat(stamps))[0]) + 2
+            raise InputError("a row without a time", value=f"line {row}", remedy="leave the row out")
+        backwards = np.flatnonzero(np.diff(stamps) < np.timedelta64(0))
+        if backwards.size:
+            raise InputError(
+                "times are not sorted", value=f"{stamps[backwards[0] + 1]} after {stamps[backwards[0]]}",
+                allowed="ascending", remedy="sort the rows by time; a clock set back shows like this, too",
+            )  # fmt: skip
+    return names, stamps
+
+
+def _column(stored: Stored) -> tuple[tuple[str, ...], npt.NDArray[Any]]:
+    """Return the names of the columns of times, and their cells as one column."""
+    letters = {re.sub(r"[^a-z]", "", name.lower()): name for name in reversed(stored)}
+    if all(part in letters and stored[letters[part]].dtype.kind == "f" for part in _PARTS[:3]):
+        return _of_parts(stored, tuple(letters[part] for part in _PARTS if part in letters))
+    named = [letters[name] for name in _TIMES if name in letters]
+    words = [n for n in (*named, *stored) if stored[n].dtype.kind == "U"]
+    clock = next((n for n in words if _CLOCK.fullmatch(stored[n][0])), None)
+    dated = next((n for n in words if n != clock and _is_time(str(stored[n][0]))), None)
+    if clock is not None and dated is not None and ":" not in stored[dated][0]:
+        return (dated, clock), np.char.add(np.char.add(stored[dated], " "), stored[clock])
+    stamped = (n for n, x in stored.items() if x.dtype.kind == "M")
+    numbered = (letters[n] for n in _NUMBERED if n in letters)
+    name = next((n for n in (*named, *stamped, *([] if dated is None else [dated]), *numbered)), None)
+    if name is None:
+        raise InputError(
+            "no column of times", field="time_utc", value=", ".join(stored), allowed="ISO 8601 in UTC",
+            remedy="name the column of times time_utc",
+        )  # fmt: skip
+    return (name,), stored[name]
+
+
+def _of_parts(stored: Stored, names: tuple[str, ...]) -> tuple[tuple[str, ...], npt.NDArray[Any]]:
+    """Return times from columns of years, months, days and perhaps hours, minutes and seconds."""
+    year, month, day, *clock = (stored[name] for name in names)
+    whole = np.array([f"{y:.0f}-{m:02.0f}-{d:02.0f}" for y, m, d in zip(year, month, day, strict=True)])
+    with located(field=", ".join(names)):
+        try:
+            stamps = whole.astype("datetime64[ms]")
+        except ValueError as error:
+            raise InputError("is no time", value=str(error), allowed="a year, month and day") from None
+    for part, milliseconds in zip(clock, (3.6e6, 6e4, 1e3), strict=False):
+        stamps = stamps + np.round(part * milliseconds).astype("timedelta64[ms]")
+    return names, stamps
+
+
+def _stamps(name: str, x: npt.NDArray[Any]) -> Stamps:
+    if x.dtype.kind == "M":
+        return x.astype("datetime64[ms]")
+    if x.dtype.kind == "f":
+        return _numbered(name, x)
+    zoned = np.array([bool(_ZONED.search(w)) for w in x])
+    if zoned.any() and not zoned.all():
+        raise InputError(
+            "some times have a zone and some have none", value=str(x[np.argmin(zoned)]), allowed="one way",
+            remedy="write all times in UTC, or all with their zone",
+        )  # fmt: skip
+    if _iso(str(x[0])) is not None:
+        return np.array([_parsed(str(w)) for w in x], "datetime64[ms]")
+    return _formatted([str(w).replace(",", ".") for w in x])
+
+
+def _iso(text: str) -> datetime | None:
+    try:
+        return parse_time(text).replace(tzinfo=None)
+    except InputError:
+        return None
+
+
+def _is_time(text: str) -> bool:
+    return _iso(text) is not None or any(_under(way, [text]) is not None for way in _ways(text))
+
+
+def _ways(text: str) -> list[str]:
+    """Return the ways of writing times that may be meant by one."""
+    ways = ("".join(parts) for parts in product(_DATES, _CLOCKS))
+    return [way for way in ways if _under(way, [text]) is not None]
+
+
+def _under(way: str, texts: list[str]) -> Stamps | None:
+    """Return texts as times written in one way; None if one of them is not."""
+    try:
+        return np.array([datetime.strptime(text, way) for text in texts], "datetime64[ms]")
+    except ValueError:
+        return None
+
+
+def _formatted(texts: list[str]) -> Stamps:
+    """Return times that are all written in one way and ascend in it; of two such ways neither is taken."""
+    found = [stamps for way in _ways(texts[0]) if (stamps := _under(way, texts)) is not None]
+    if not found:
+        ways = _ways(texts[0])
+        bad = next((t for t in texts if not any(_under(way, [t]) is not None for way in ways)), texts[0])
+        raise InputError("is no time", value=bad, allowed=_ALLOWED, remedy="write all times so")
+    ascending = [stamps for stamps in found if (np.diff(stamps) >= np.timedelta64(0)).all()] or found[:1]
+    if len(ascending) > 1:
+        raise InputError(
+            "days and months may be meant either way", value=texts[0], allowed=_ALLOWED,
+            remedy="write the year first",
+        )  # fmt: skip
+    return ascending[0]
+
+
+def _parsed(text: str) -> datetime:
+    time = _iso(text)
+    if time is None:
+        raise InputError("is no time", value=text, allowed=_ALLOWED, remedy="write all times so")
+    return time
+
+
+def _numbered(name: str, x: FloatArray) -> Stamps:
+    """Return times from numbers: Unix times, Excel's or MATLAB's days, or days of a column called so."""
+    typical = float(np.nanmedian(x))
+    start, milliseconds = None, x * 86400e3
+    for low, high, origin, less in _SERIAL:
+        if low < typical < high:
+            start, milliseconds = origin, (x - less) * 86400e3
+    for low, high, unit in _UNIX:
+        if low < typical < high:
+            start, milliseconds = datetime(1970, 1, 1), unit * x
+    if start is None and "day" in name.lower():
+        start = datetime(2000, 1, 1)
+    if start is None:
+        raise InputError(
+            "numbers whose origin is not known", value=typical,
+            allowed="ISO 8601, Unix, Excel or MATLAB times, or days",
+            remedy="write the times as 2025-01-01T13:00:00Z",
+        )  # fmt: skip
+    whole = np.where(np.isfinite(milliseconds), np.round(milliseconds), 0).astype(np.int64)
+    stamps = np.datetime64(start, "ms") + whole.astype("timedelta64[ms]")
+    stamps[~np.isfinite(milliseconds)] = np.datetime64("NaT")
+    return stamps
