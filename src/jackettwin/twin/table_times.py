@@ -25,7 +25,7 @@ _DATES = ("%d.%m.%Y", "%Y/%m/%d", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%d-%b-%Y"
 _CLOCKS = ("", " %H:%M", " %H:%M:%S", " %H:%M:%S.%f", " %I:%M %p", " %I:%M:%S %p", "T%H:%M:%S", "T%H%M%S")
 _CLOCK = re.compile(r"\d\d?:\d\d(:\d\d([.,]\d+)?)?( ?[AP]M)?", re.IGNORECASE)
 _ZONED = re.compile(r":\d\d.*(Z|[+-]\d\d:?\d\d)$")
-_SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 1), 366.0))
+_SERIAL = ((2e4, 8e4, datetime(1899, 12, 30), 0.0), (6.9e5, 8e5, datetime(1, 1, 1), 367.0))
 """Serial days of Excel and of MATLAB: range, what day zero is, and what to take off."""
 _UNIX = ((1e8, 1e11, 1e3), (1e11, 1e14, 1.0), (1e14, 1e17, 1e-3), (1e17, 1e20, 1e-6))
 """Unix seconds, milli-, micro- and nanoseconds: range, and milliseconds in one."""
