@@ -163,6 +163,7 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
         lambda: client.post("/api/v1/assets/wtg/versions/2/adopt"),
         lambda: adopt_version(service.database, service.settings.store, "wtg", 1),
         lambda: client.post("/api/v1/assets", json={"name": "other", "twin": TWIN}),
+        lambda: client.delete("/api/v1/assets/other?confirm=other"),
         alarm,
         acknowledged,
         lambda: rebuild(service.database, service.settings.store, None, None),

@@ -81,7 +81,7 @@ def test_a_store_that_holds_something_is_not_overwritten(database: Engine, tmp_p
         restore(tmp_path / "all.tar.gz", database, tmp_path / "b")
 
 
-@pytest.mark.parametrize("schema", ["0001", "0002"])
+@pytest.mark.parametrize("schema", ["0001", "0002", "0003"])
 def test_a_backup_of_an_older_schema_is_read_for_ever(database: Engine, tmp_path: Path, schema: str) -> None:
     """It is put into tables as they were then, which are then migrated."""
     filled(database, tmp_path / "a")
@@ -100,13 +100,17 @@ def test_a_backup_of_an_older_schema_is_read_for_ever(database: Engine, tmp_path
 
 
 def as_written_by(schema: str, new: Path, old: Path) -> None:
-    """Write a backup as versions before wrote it: knowledge by model, windows without what is known."""
+    """Write a backup as versions before wrote it: knowledge by model, no archive, fewer columns."""
     with tarfile.open(new) as source, tarfile.open(old, "w:gz") as target:
         for member in source:
             content = source.extractfile(member).read()
             if member.name == "manifest.json":
                 content = json.dumps({**json.loads(content), "schema_version": schema}).encode()
-            if member.name == "tables/knowledge.jsonl":
+            if member.name == "tables/assets.jsonl":
+                row = json.loads(content)
+                del row["archived_utc"]
+                content = json.dumps(row).encode()
+            if member.name == "tables/knowledge.jsonl" and schema < "0003":
                 row = json.loads(content)
                 del row["version"], row["report"]
                 content = json.dumps({**row, "model_hash": "m"}).encode()

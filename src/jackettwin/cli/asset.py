@@ -14,7 +14,7 @@ from jackettwin.cli.store_options import opened, store_options
 
 @click.group("asset")
 def asset_command() -> None:
-    """Turbines of a living twin: add, list, show, adopt, conditions."""
+    """Turbines of a living twin: add, list, show, adopt, archive, conditions."""
 
 
 @asset_command.command("add")
@@ -39,16 +39,17 @@ def add(name: str, twin: Path, comment: str, as_json: bool, store: Path, databas
 
 
 @asset_command.command("list")
+@click.option("--archived", is_flag=True, help="Those that are archived instead.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @store_options
-def list_(as_json: bool, store: Path, database: str | None) -> None:
+def list_(archived: bool, as_json: bool, store: Path, database: str | None) -> None:
     """List the turbines with their status, records and findings."""
     engine = opened(store, database)
     from jackettwin.service.catalogue import overview
     from jackettwin.store import reading
 
     with reading(engine) as connection:
-        found = [asset.model_dump(mode="json") for asset in overview(connection)]
+        found = [asset.model_dump(mode="json") for asset in overview(connection, archived=archived)]
     if as_json:
         print_json({"assets": found})
         return
@@ -109,6 +110,26 @@ def adopt(name: str, version: int, as_json: bool, store: Path, database: str | N
         print_json({"asset": name, "adopted_version": version})
     else:
         output.print(f"{name}: version {version} is adopted")
+
+
+@asset_command.command("archive")
+@click.argument("name")
+@click.option("--undo", is_flag=True, help="Bring it back.")
+@click.option("--yes", is_flag=True, help="Do not ask.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@store_options
+def archive(name: str, undo: bool, yes: bool, as_json: bool, store: Path, database: str | None) -> None:
+    """Archive the turbine NAME: it takes nothing more and leaves the lists; all that is known of it stays."""
+    engine = opened(store, database)
+    from jackettwin.service import archive_asset
+
+    if not (yes or undo):
+        click.confirm(f"{name} takes no records any more; archive it?", abort=True, err=True)
+    archive_asset(engine, store, name, undo=undo)
+    if as_json:
+        print_json({"asset": name, "archived": not undo})
+    else:
+        output.print(f"{name} is {'back' if undo else 'archived'}")
 
 
 @asset_command.command("conditions")

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
         add_conditions as add_conditions,
         add_twin as add_twin,
         adopt_version as adopt_version,
+        archive_asset as archive_asset,
         rebuild as rebuild,
         take_here as take_here,
     )

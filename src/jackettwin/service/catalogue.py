@@ -97,6 +97,19 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
     journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
 
 
+def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
+    """Archive an asset, or bring it back: it takes nothing more; what it knew stays, and can be asked for.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    assets.archive(connection, name, None if undo else service.now())
+    people.note_down(connection, by, "unarchive" if undo else "archive", name, "ok", service.now())
+    journal.tell(connection, "asset", name, {"archived": not undo}, service.now())
+
+
 def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
     with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
         for path, content in contents.items():
@@ -111,13 +124,13 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
             raise
 
 
-def overview(connection: Connection) -> list[AssetOut]:
-    """Return every asset with its status; as many queries for a hundred as for one."""
+def overview(connection: Connection, *, archived: bool = False) -> list[AssetOut]:
+    """Return the assets, or the archived ones, with their status, by the same few queries however many."""
     counts, said = records.count_by_status(connection), results.count_findings(connection)
     unseen = results.unacknowledged_alarms(connection)
     return [
         _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
-        for row in assets.summaries(connection)
+        for row in assets.summaries(connection, archived=archived)
     ]
 
 

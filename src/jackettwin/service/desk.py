@@ -9,9 +9,10 @@ from typing import Any
 
 from sqlalchemy import Engine, select
 
+from jackettwin.errors import InputError
 from jackettwin.service import conditions, consequences
 from jackettwin.service.bundles import bundle
-from jackettwin.service.catalogue import add_version, adopt
+from jackettwin.service.catalogue import add_version, adopt, archive
 from jackettwin.service.context import Desk
 from jackettwin.service.intake.files import Accepted, queue, take_file
 from jackettwin.service.settings import ServiceSettings
@@ -55,17 +56,36 @@ def adopt_version(database: Engine, store: Path, name: str, version: int) -> Non
         adopt(connection, Desk(ServiceSettings(store), database), name, version, "command line")
 
 
-def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
-    """Read a file in this process and keep its record for a server to observe.
+def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = False) -> None:
+    """Archive an asset, or bring it back.
 
     Raises
     ------
     InputError
         If there is no such asset.
     """
+    with writing(database) as connection:
+        archive(connection, Desk(ServiceSettings(store), database), name, "command line", undo=undo)
+
+
+def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
+    """Read a file in this process and keep its record for a server to observe.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset, or it is archived.
+    """
     settings = ServiceSettings(store)
     with reading(database) as connection:
         assets.found_version(connection, asset)
+        if asset not in assets.asset_names(connection, archived=False):
+            raise InputError(
+                "the asset is archived",
+                field="asset",
+                value=asset,
+                remedy="bring it back with `jackettwin asset archive NAME --undo --store STORE`",
+            )
 
     def parse(file: Path, whose: str) -> Parsed:
         return read_file(str(file), whose, str(store), settings.samples_limit, settings.worker_memory_bytes)

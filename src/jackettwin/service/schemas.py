@@ -73,6 +73,7 @@ class AssetOut(BaseModel):
     model_hash: str
     created_utc: datetime
     last_record_utc: datetime | None
+    archived_utc: datetime | None = Field(default=None, description="Since when it takes nothing more.")
     records: dict[str, int] = Field(description="How many records have each status.")
     findings: dict[str, int] = Field(description="How many findings there are of each severity.")
     status: Literal["ok", "warning", "alarm", "no data"]

@@ -113,11 +113,13 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted:
     """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it."""
     asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:
-        known = asset in assets.asset_names(connection)
+        known = asset in assets.asset_names(connection, archived=False)
     if known:
         taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
     else:
-        taken = Accepted("", None, False, {"detail": f"there is no asset {asset}", "field": "folder"})
+        taken = Accepted(
+            "", None, False, {"detail": f"there is no asset {asset}, or it is archived", "field": "folder"}
+        )
     if taken.problem is None:
         for file in (path, path.with_suffix(".json"), reason):
             file.unlink(missing_ok=True)

@@ -14,7 +14,7 @@ from jackettwin.service import conditions, engine
 from jackettwin.service.consequences import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
 from jackettwin.service.problems import ApiError, disk_full
-from jackettwin.service.routes.common import known_asset
+from jackettwin.service.routes.common import living_asset
 from jackettwin.service.schemas import PicksIn, Stabilisation, Taken
 from jackettwin.service.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
@@ -27,10 +27,10 @@ _ROOM_BYTES = 256 * 2**20
 """Room that must be left on the disk after an upload: the database needs it to finish what it began."""
 
 
-def refuse_unknown(service: Service, asset: str) -> None:
-    """Answer 404 if there is no such asset."""
+def refuse_unfit(service: Service, asset: str) -> None:
+    """Answer 404 if there is no such asset, 409 if it is archived."""
     with reading(service.database) as connection:
-        known_asset(connection, asset)
+        living_asset(connection, asset)
 
 
 def take(service: Service, asset: str, name: str, stream: BinaryIO, description: str | None) -> Accepted:

@@ -122,24 +122,32 @@ def adopt(connection: Connection, name: str, version: int) -> None:
     connection.execute(update(assets).where(assets.c.name == name).values(adopted_version=version))
 
 
-def asset_names(connection: Connection) -> list[str]:
-    """Return the names of all assets, sorted."""
-    return list(connection.scalars(select(assets.c.name).order_by(assets.c.name)))
+def archive(connection: Connection, name: str, at: datetime | None) -> None:
+    """Have an asset take nothing more and stand in no list from now on; None brings it back."""
+    found_version(connection, name)
+    connection.execute(update(assets).where(assets.c.name == name).values(archived_utc=at))
+
+
+def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
+    """Return the names of all assets, sorted, with those that are archived or without."""
+    query = select(assets.c.name).order_by(assets.c.name)
+    return list(connection.scalars(query if archived else query.where(assets.c.archived_utc.is_(None))))
 
 
 @dataclass(frozen=True)
 class Summary:
-    """An asset, its adopted version, and when its latest record began."""
+    """An asset, its adopted version, when its latest record began, and since when it is archived."""
 
     name: str
     version: int
     model_hash: str
     created_utc: datetime
     last_record_utc: datetime | None
+    archived_utc: datetime | None
 
 
-def summaries(connection: Connection, name: str | None = None) -> list[Summary]:
-    """Return every asset by name, or one."""
+def summaries(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[Summary]:
+    """Return every asset by name that is archived, or is not; or one, whichever it is."""
     start = records.c.start_utc
     last = select(func.max(start, type_=start.type)).where(records.c.asset == assets.c.name)
     adopted = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
@@ -149,9 +157,10 @@ def summaries(connection: Connection, name: str | None = None) -> list[Summary]:
         versions.c.model_hash,
         assets.c.created_utc,
         last.correlate(assets).scalar_subquery().label("last_record_utc"),
+        assets.c.archived_utc,
     ).join(versions, adopted)
-    if name is not None:
-        query = query.where(assets.c.name == name)
+    of = assets.c.archived_utc.is_not(None) if archived else assets.c.archived_utc.is_(None)
+    query = query.where(of if name is None else assets.c.name == name)
     return [Summary(*row) for row in connection.execute(query.order_by(assets.c.name))]
 
 

@@ -337,11 +337,11 @@ def count_findings(connection: Connection, asset: str | None = None) -> dict[str
 
 
 def _adopted(query: Select[Any], asset: str | None) -> Select[Any]:
-    """Return a query on findings, of the adopted versions alone, of all assets or one."""
+    """Return a query on findings, of the adopted versions of one asset, or of all that are not archived."""
     own = (versions.c.asset == assets.c.name) & (versions.c.version == assets.c.adopted_version)
     same = (findings.c.asset == versions.c.asset) & (findings.c.model_hash == versions.c.model_hash)
     query = query.select_from(assets.join(versions, own).join(findings, same))
-    return query if asset is None else query.where(assets.c.name == asset)
+    return query.where(assets.c.archived_utc.is_(None) if asset is None else assets.c.name == asset)
 
 
 def _state(row: Mapping[str, Any]) -> StoredState:

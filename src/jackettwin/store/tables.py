@@ -29,7 +29,7 @@ from sqlalchemy import (
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
-SCHEMA_VERSION = "0003"
+SCHEMA_VERSION = "0004"
 """Newest migration; a database of an older one is migrated when it is opened, a newer one is refused."""
 
 
@@ -70,6 +70,7 @@ assets = Table(
     Column("name", String(64), primary_key=True),
     Column("created_utc", Utc, nullable=False),
     Column("adopted_version", Integer, nullable=False),
+    Column("archived_utc", Utc, nullable=True),
 )
 
 versions = Table(

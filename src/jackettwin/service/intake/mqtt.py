@@ -154,7 +154,7 @@ class MqttIntake:
             self._held += list(_waiting(self._inbox, _BATCH - len(self._held)))
             packets = [packet for message in self._held for packet in self._packets(message)]
             with writing(self.service.database) as connection:
-                known = set(assets.asset_names(connection))
+                known = set(assets.asset_names(connection, archived=False))
                 ours = [p for p in packets if p.asset in known]
                 streams.add_packets(connection, ours, self.service.now())
             for packet in packets:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, File, Form, Path, UploadFile
+from fastapi import APIRouter, File, Form, Path, Query, UploadFile
 
 from jackettwin.service import auth, catalogue, conditions, uploads
 from jackettwin.service.problems import ApiError, answers
@@ -17,6 +17,7 @@ from jackettwin.service.routes.common import (
     Writes,
     known_asset,
     known_version,
+    living_asset,
     waits,
 )
 from jackettwin.service.schemas import AssetOut, ConditionsIn, NewAsset, NewVersion, Page, Taken, VersionOut
@@ -25,10 +26,10 @@ from jackettwin.store import assets
 router = APIRouter(tags=["assets"], route_class=Transaction)
 
 
-@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401))
-def list_assets(connection: Told) -> Page[AssetOut]:
-    """List the assets with their status, last data and findings."""
-    return Page(items=catalogue.overview(connection))
+@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
+def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
+    """List the assets, or the archived ones, with their status, last data and findings."""
+    return Page(items=catalogue.overview(connection, archived=archived))
 
 
 @router.post(
@@ -49,10 +50,34 @@ def get_asset(asset: AssetName, connection: Told) -> AssetOut:
     return catalogue.one(connection, asset)
 
 
-@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422))
+@router.delete("/assets/{asset}", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
+def archive_asset(
+    asset: AssetName,
+    confirm: Annotated[str, Query(description="The asset's name once more.", examples=["demo"])],
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> AssetOut:
+    """Archive an asset: it takes nothing more and leaves the lists; all that is known of it stays."""
+    known_asset(connection, asset)
+    if confirm != asset:
+        raise ApiError(422, "this is another name", field="confirm", value=confirm, allowed=asset)
+    catalogue.archive(connection, parts, asset, who.name)
+    return catalogue.one(connection, asset)
+
+
+@router.post("/assets/{asset}/unarchive", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
+def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
+    """Bring an archived asset back."""
+    known_asset(connection, asset)
+    catalogue.archive(connection, parts, asset, who.name, undo=True)
+    return catalogue.one(connection, asset)
+
+
+@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 409, 422))
 def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, connection: Writes) -> VersionOut:
     """Add a version; records are observed by it too, and it counts once it is adopted."""
-    known_asset(connection, asset)
+    living_asset(connection, asset)
     version = catalogue.add_text_version(
         connection, parts, asset, body.twin, body.files, who.name, body.comment
     )
@@ -85,11 +110,13 @@ def adopt(
 
 
 @router.post(
-    "/assets/{asset}/conditions", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+    "/assets/{asset}/conditions",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 409, 422),
 )
 def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connection: Writes) -> Taken:
     """Add conditions of the site through time; records that they belong to are observed again with them."""
-    known_asset(connection, asset)
+    living_asset(connection, asset)
     for name, values in body.values.items():
         if len(values) != len(body.time_utc):
             raise ApiError(422, "times and values differ in number", field=f"values.{name}")
@@ -101,7 +128,7 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
 @router.post(
     "/assets/{asset}/conditions.csv",
     dependencies=[auth.ENGINEER],
-    responses=answers(400, 401, 403, 404, 413, 422, 503),
+    responses=answers(400, 401, 403, 404, 409, 413, 422, 503),
 )
 @waits
 def add_table(
@@ -114,5 +141,5 @@ def add_table(
     end_stamped: Annotated[bool, Form(description="Whether a row bears the end of its interval.")] = False,
 ) -> Taken:
     """Add a table of conditions as a SCADA system exports it."""
-    uploads.refuse_unknown(parts, asset)
+    uploads.refuse_unfit(parts, asset)
     return uploads.take_conditions(parts, asset, file.file, zone, end_stamped)

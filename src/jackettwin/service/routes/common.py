@@ -147,6 +147,15 @@ def known_asset(connection: Connection, name: str) -> assets.Version:
     return known_version(connection, name, None)
 
 
+def living_asset(connection: Connection, name: str) -> None:
+    """Answer 404 if there is no such asset, 409 if it is archived."""
+    known_asset(connection, name)
+    if name not in assets.asset_names(connection, archived=False):
+        raise ApiError(
+            409, "the asset is archived", field="asset", value=name, remedy="POST /assets/{asset}/unarchive"
+        )
+
+
 def known_version(connection: Connection, name: str, version: int | None) -> assets.Version:
     """Return a version of an asset, by default the adopted one; answers 404 if there is none."""
     try:

@@ -45,7 +45,7 @@ Limit = Annotated[int, Query(ge=1, le=1000)]
     dependencies=[auth.ENGINEER],
     responses={
         200: {"description": "This content is known.", "model": RecordAccepted},
-        **answers(400, 401, 403, 404, 413, 422, 503, 507),
+        **answers(400, 401, 403, 404, 409, 413, 422, 503, 507),
     },
 )
 @waits
@@ -57,7 +57,7 @@ def add_record(
     description: Annotated[str | None, Form(description="What would lie beside it, as JSON.")] = None,
 ) -> RecordAccepted:
     """Take a record: it is read now and observed soon."""
-    uploads.refuse_unknown(parts, asset)
+    uploads.refuse_unfit(parts, asset)
     taken = uploads.take(parts, asset, file.filename or "record", file.file, description)
     if not taken.new:
         response.status_code = 200
