@@ -100,18 +100,22 @@ def run(case: int) -> Result:
 
 
 def judged(mode: ModalEstimate, true: list[tuple[float, float]]) -> Result:
-    """Return what is said of a mode, and whether its intervals hold one of the jacket's."""
-    f, damping = min(true, key=lambda t: abs(t[0] / mode.frequency_hz - 1.0))
+    """Return what is said of a mode, and whether its intervals hold one of the jacket's.
+
+    Of a pair at one frequency it is held against the one of its damping: nothing else in a record's truth
+    tells which is which.
+    """
     low, high = mode.frequency_interval_95 or (0.0, np.inf)
-    # the next true frequency is no farther than half as much again as the interval says
-    reach = 1.5 * max(high - mode.frequency_hz, mode.frequency_hz - low) + STEPS_APART * f
-    zeta = mode.damping_ratio_interval_95
+    reach = 1.5 * max(high - mode.frequency_hz, mode.frequency_hz - low)
+    near = [(f, zeta) for f, zeta in true if abs(f - mode.frequency_hz) < reach + STEPS_APART * f]
+    held = min(near, key=lambda t: abs(np.log(t[1] / mode.damping_ratio)), default=None)
+    interval = mode.damping_ratio_interval_95
     return {
         "frequency_hz": mode.frequency_hz,
         "status": mode.status.value,
         "reasons": [finding.code for finding in mode.reasons],
-        "true": bool(abs(f - mode.frequency_hz) < reach),
-        "damping_inside": None if zeta is None else bool(zeta[0] <= damping <= zeta[1]),
+        "true": held is not None,
+        "damping_inside": held is not None and interval is not None and interval[0] <= held[1] <= interval[1],
     }
 
 

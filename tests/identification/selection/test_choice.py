@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify
-from jackettwin.identification.synthetic import simulate
+from jackettwin.identification.selection.choice import PAIR_WIDENING
+from jackettwin.identification.synthetic import ModalSystem, simulate
 
 
 def test_refined_modes_state_both_estimates_and_the_bound(tower, rng):
@@ -55,6 +56,19 @@ def test_remaining_gaps_leave_the_modes_unrefined_and_say_so(tower, rng):
     result = identify(replace(record, data=data))
     assert any("gaps remain" in text for text in result.warnings)
     assert {mode.method for mode in result.modes} == {"ssi-cov"}
+
+
+def test_damping_of_a_close_pair_that_no_fit_describes_is_known_less_well(rng):
+    pair = ModalSystem(np.array([0.3, 0.302, 1.0]), np.full(3, 0.01), np.eye(3), np.diag([1.0, 1.0, 4.0]))
+    record = simulate(pair, rng, sample_rate_hz=5.0, duration_s=1800.0)
+    data = record.data.copy()
+    data[:, 400:500] = np.nan  # too long a gap to fit a spectrum
+    record = replace(record, data=data)
+    plain = identify(record, IdentificationSettings(refine=False)).modes
+    modes = identify(record).modes
+    wider = [m.damping_ratio_std / p.damping_ratio_std for m, p in zip(modes, plain, strict=True)]
+    np.testing.assert_allclose(wider, [PAIR_WIDENING, PAIR_WIDENING, 1.0], rtol=1e-9)
+    np.testing.assert_allclose([m.frequency_std_hz for m in modes], [p.frequency_std_hz for p in plain])
 
 
 def test_a_steady_tone_is_taken_out_before_the_fit(tower, rng):

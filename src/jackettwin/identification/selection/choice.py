@@ -20,6 +20,7 @@ from jackettwin.identification.selection.candidates import (
     beside_tones,
     with_covariance,
 )
+from jackettwin.identification.selection.neighbours import apart
 from jackettwin.identification.selection.screening import rescued, screened, worth_keeping
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.envelopes import is_suspiciously_steady
@@ -50,6 +51,11 @@ SAME_SHAPE = 0.8
 """MAC from which a pole is the mode beside it."""
 SAME_CANDIDATE = 1e-3
 """Relative distance of frequencies up to which a refused candidate is the one that came back."""
+CLOSE_PAIR = 1.0
+"""Half bandwidths of both together within which the subspace method trades damping between two modes …"""
+PAIR_WIDENING = 1.6
+"""… where forces are not smooth, so that no fit describes them: the errors of ln ζ of 75 such modes of
+simulated jackets in waves had 1.55 times their standard deviations, those of 50 farther apart 1.16 times."""
 TAKEN_LINES = 0.75
 """A line as far from a tone as this went with it."""
 
@@ -94,7 +100,17 @@ def chosen_modes(
     found = replace(found, modes=tuple(_steady(mode, lines, duration_s, scale) for mode in flagged))
     if settings.refine:
         found = replace(found, findings=(*found.findings, *_hidden(judged, found)))
+        found = replace(found, modes=tuple(_widened(m, found.modes) for m in found.modes))
     return replace(found, rejected=(*found.rejected, *_tones(ready, resolved)))
+
+
+def _widened(mode: ModalEstimate, modes: Sequence[ModalEstimate]) -> ModalEstimate:
+    """Widen what is said of the damping of a mode that no fit describes, close to another."""
+    beside = (apart(mode, other) for other in modes if other is not mode)
+    if mode.unrefined is not None or mode.log_covariance is None or min(beside, default=np.inf) > CLOSE_PAIR:
+        return mode
+    wider = np.array([1.0, PAIR_WIDENING])
+    return with_covariance(mode, mode.log_covariance * np.outer(wider, wider))
 
 
 def _steady(mode: ModalEstimate, lines: ComplexArray, duration_s: float, scale: FloatArray) -> ModalEstimate:
