@@ -152,7 +152,7 @@ class Spectra(BaseModel):
     units: dict[str, str]
 
 
-class Stabilisation(BaseModel):
+class StabilisationOut(BaseModel):
     """Poles of every model order; ``mode`` numbers the modes that poles were gathered to, -1 where none."""
 
     order: list[int]

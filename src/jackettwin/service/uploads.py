@@ -15,7 +15,7 @@ from jackettwin.service.consequences import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
 from jackettwin.service.problems import ApiError, disk_full
 from jackettwin.service.routes.common import living_asset
-from jackettwin.service.schemas import PicksIn, Stabilisation, Taken
+from jackettwin.service.schemas import PicksIn, StabilisationOut, Taken
 from jackettwin.service.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
 
@@ -91,7 +91,7 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     return Taken(count=count, observed_again=again)
 
 
-def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> Stabilisation:
+def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> StabilisationOut:
     """Return the poles of every model order of a record."""
     if record.waveform is None:
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
@@ -100,7 +100,7 @@ def stabilisation(connection: Connection, service: Service, record: records.Stor
     waveform = str(service.settings.store / record.waveform)
     future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
     try:
-        return Stabilisation(**service.compute.result(future, service.settings.observe_limit_s))
+        return StabilisationOut(**service.compute.result(future, service.settings.observe_limit_s))
     except TimeoutError:
         raise ApiError(503, "the identification takes too long") from None
 

@@ -29,7 +29,7 @@ from jackettwin.service.schemas import (
     RecordOut,
     Signal,
     Spectra,
-    Stabilisation,
+    StabilisationOut,
 )
 from jackettwin.store import records
 
@@ -134,7 +134,7 @@ def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
     "/records/{record_id}/stabilisation", dependencies=[auth.VIEWER], responses=answers(401, 404, 422, 503)
 )
 @waits
-def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> Stabilisation:
+def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> StabilisationOut:
     """Return the poles of every model order, computed anew by a worker."""
     return uploads.stabilisation(connection, parts, known_record(connection, record_id))
 
