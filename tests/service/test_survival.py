@@ -18,6 +18,7 @@ from tests.service.servers import Broker, Database, Server, opened, publish
 from jackettwin.service import add_twin, engine
 from jackettwin.service.tasks import read_file
 from jackettwin.store import sqlite_url
+from jackettwin.store.backup import backup, restore
 
 RECORDS = 6
 SAMPLES = 2400
@@ -73,6 +74,9 @@ def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[
     try:
         for i, sent in enumerate(records()):
             server.send(*sent)
+            if i == 0:
+                with opened(sqlite_url(store)) as database:
+                    backup(database, store, tmp_path / "yesterday.tar.gz")
             if i == 1:
                 assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
                 assert server.kill_a_worker()
@@ -85,15 +89,35 @@ def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[
     finally:
         server.stop()
     assert not server.workers_alive()
+    restored_and_sent_again(tmp_path, expected)
 
 
-def test_a_database_that_dies_is_waited_for(tmp_path: Path, expected: dict[str, str]) -> None:
+def restored_and_sent_again(folder: Path, expected: dict[str, str]) -> None:
+    """Restore the backup of the first record into a new store; send all again."""
+    again = folder / "again"
+    again.mkdir()
+    with opened(sqlite_url(again)) as database:
+        assert restore(folder / "yesterday.tar.gz", database, again)["records"] == 1
+    with Server(again, "--workers", "1") as server:
+        for sent in records():
+            server.send(*sent)
+        server.wait_until_observed(RECORDS)
+        assert server.states() == expected
+        assert server.counts() == {"records": RECORDS, "observations": RECORDS}
+
+
+def test_a_database_that_dies_is_waited_for_by_two_servers(tmp_path: Path, expected: dict[str, str]) -> None:
+    """One of them dies for good, too, with what it had taken."""
     database = Database(tmp_path / "postgresql")
     database.start()
     try:
         store = new_store(tmp_path, database.url)
-        with Server(store, "--workers", "1", "--database", database.url) as server:
+        options = ("--workers", "1", "--database", database.url)
+        with Server(store, *options) as server, Server(store, *options) as dying:
             sent = records()
+            dying.send(*sent[0])
+            dying.send(*sent[1])
+            dying.kill()
             for one in sent[:3]:
                 server.send(*one)
             database.kill()

@@ -1,5 +1,6 @@
 """The queue: once for each key, leases that outlive no server, tries that are counted."""
 
+import time
 from datetime import UTC, datetime
 
 from sqlalchemy import Connection, Engine
@@ -34,6 +35,27 @@ def test_the_same_key_is_the_same_work(database: Engine) -> None:
         first, again, other = asked(c, "a"), asked(c, "a"), asked(c, "a", model_hash="n")
         assert first == again != other
         assert work.queue_sizes(c) == {"queued": 2}
+
+
+def test_a_long_queue_costs_what_a_short_one_does(database: Engine) -> None:
+    """Leasing and ending find their rows by an index: a scan of twenty times the rows costs twenty times."""
+    with_asset(database)
+    with writing(database) as c:
+        work.join(c, "one", {}, NOW)
+    costs = []
+    for first, last in ((0, 100), (100, 2000)):
+        with writing(database) as c:
+            for k in range(first, last):
+                asked(c, f"r{k}")
+        spent = []
+        for _ in range(5):
+            with writing(database) as c:
+                before = time.process_time()
+                jobs = work.lease(c, "one", 4, NOW)
+                assert [work.finish(c, job, "one", "done", NOW) for job in jobs] == [True] * 4
+                spent.append(time.process_time() - before)
+        costs.append(min(spent))
+    assert costs[1] < 5 * costs[0]
 
 
 def test_urgent_work_is_leased_first_and_only_once(database: Engine) -> None:
