@@ -228,16 +228,17 @@ def point_forces(
     n = shape[-2]
     forces = np.empty((n, 3, int(np.prod(shape[:-2]))))
     # time runs fastest in the kernel; series of a random sea lie so in memory
-    seen, gained = (
+    fields = (v,) if du is v else (v, du)
+    seen, *others = (
         np.ascontiguousarray(np.broadcast_to(field, shape).reshape(-1, n, 3).transpose(2, 1, 0))
-        for field in (v, du)
+        for field in fields
     )
     morison(
         0.5 * rho * grid.drag * D,
         0.25 * np.pi * rho * (grid.pressure + grid.added_mass) * D**2,
         grid.normal,
         seen,
-        gained,
+        others[0] if others else seen,
         np.ascontiguousarray(length.reshape(-1, n).T),
         forces,
     )

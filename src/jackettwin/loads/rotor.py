@@ -238,37 +238,31 @@ def linearise(
     """
     wind = wind_speed * np.array([np.cos(yaw_error), np.sin(yaw_error), 0.0])
     places = 2.0 * np.pi / rotor.n_blades * np.arange(12) / 12 if azimuth is None else np.array([azimuth])
-    h = np.array(
-        [0.05] * 3 + [0.05 / rotor.radius] * 3
-    )  # 0.05 m/s: small against the wind, large against rounding
-    steps = np.concatenate([np.diag(h), -np.diag(h)])
-    load, damping, stiffness = np.zeros(6), np.zeros((6, 6)), np.zeros((6, 6))
+    # 0.05 m/s: small against the wind, large against rounding
+    h = np.array([0.05] * 3 + [0.05 / rotor.radius] * 3)
+    small = 1e-3
+    turns = np.array([rotation(axis, sign * small) for sign in (1.0, -1.0) for axis in np.eye(3)])
+    # at rest, moved and against the move, turned and turned back: all in one call
+    winds = np.vstack([np.tile(wind, (13, 1)), turns.swapaxes(1, 2) @ wind])
+    motions = np.vstack([np.zeros(6), np.diag(h), -np.diag(h), np.zeros((6, 6))])
+    found = np.zeros((winds.shape[0], 6))
     for psi in places:
-
-        def at(wind: FloatArray, motion: FloatArray, psi: float = float(psi)) -> FloatArray:
-            return rotor_loads(
-                rotor,
-                wind,
-                pitch=pitch,
-                azimuth=psi,
-                motion=motion,
-                rotor_speed=rotor_speed,
-                shaft=shaft,
-                induced=induced,
-                density=density,
-            )
-
-        moved = at(np.broadcast_to(wind, (12, 3)), steps)
-        load += at(wind, np.zeros(6))
-        damping -= (moved[:6] - moved[6:]).T / (2.0 * h)
-        for j in range(3):
-            small = 1e-3
-            for sign in (1.0, -1.0):
-                R = rotation(np.eye(3)[j], sign * small)
-                turned = at(R.T @ wind, np.zeros(6))
-                turned = np.concatenate([R @ turned[:3], R @ turned[3:]])
-                stiffness[:, 3 + j] -= sign * turned / (2.0 * small)
-    return Linearised(load / places.size, damping / places.size, stiffness / places.size)
+        found += rotor_loads(
+            rotor,
+            winds[:, None, None],
+            pitch=pitch,
+            azimuth=float(psi),
+            motion=motions,
+            rotor_speed=rotor_speed,
+            shaft=shaft,
+            induced=induced,
+            density=density,
+        )
+    found /= places.size
+    turned = (turns[:, None] @ found[13:].reshape(6, 2, 3, 1)).reshape(6, 6)
+    stiffness = np.zeros((6, 6))
+    stiffness[:, 3:] = (turned[3:] - turned[:3]).T / (2.0 * small)
+    return Linearised(found[0], (found[7:13] - found[1:7]).T / (2.0 * h), stiffness)
 
 
 def in_global_axes(matrix: FloatArray, yaw: float) -> FloatArray:

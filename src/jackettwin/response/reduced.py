@@ -97,7 +97,8 @@ def _missing(K: sp.csc_array, M: sp.csc_array, T: FloatArray, limit: float, erro
     By Rayleigh's quotient a mode of which the share e of the strain energy lies beyond the basis comes out
     e/2 too high, if the basis takes the rest.
     """
-    phi = _modes_below(K, M, limit)
+    # interlacing: no more modes lie below the limit than held ones and kept coordinates
+    phi = _modes_below(K, M, limit, first=T.shape[1] + 1)
     if phi.shape[1] == 0 or T.shape[1] == 0:
         return phi[:, :0]
     own = T.T @ (K @ T)
@@ -113,8 +114,8 @@ def _missing(K: sp.csc_array, M: sp.csc_array, T: FloatArray, limit: float, erro
     return np.asarray(beyond @ vectors[:, :number])
 
 
-def _modes_below(K: sp.csc_array, M: sp.csc_array, limit: float) -> FloatArray:
-    number = _FIRST_GUESS
+def _modes_below(K: sp.csc_array, M: sp.csc_array, limit: float, *, first: int = _FIRST_GUESS) -> FloatArray:
+    number = first
     while K.shape[0]:
         omega, phi = lowest_modes(K, M, number)
         if omega[-1] >= limit or number >= K.shape[0] or omega.size < number:
