@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import errno
 import json
+from collections.abc import Awaitable, Callable
 from typing import Any
 
-from fastapi import FastAPI, HTTPException, Request
+from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict
@@ -15,6 +16,7 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
 from jackettwin.service.begun import NoWorker
+from jackettwin.service.tasks import problem_of
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -58,6 +60,7 @@ TITLES = {
     415: "Unsupported Media Type",
     422: "Unprocessable Content",
     429: "Too Many Requests",
+    500: "Internal Server Error",
     503: "Service Unavailable",
     507: "Insufficient Storage",
 }
@@ -81,19 +84,10 @@ def no_database() -> ApiError:
 
 def disk_full() -> ApiError:
     """Return the answer where nothing more can be written."""
-    return ApiError(507, "the disk of the store is full", remedy="make room, or prune old samples")
-
-
-def as_problem(error: InputError, status: int = 422) -> ProblemDocument:
-    """Return an error of the user's input as a problem document; paths of ours are left out."""
-    return ProblemDocument(
-        title=TITLES[status],
-        status=status,
-        detail=error.problem,
-        field=error.field,
-        value=None if error.value is None else str(error.value)[:200],
-        allowed=error.allowed,
-        remedy=error.remedy,
+    return ApiError(
+        507,
+        "the disk of the store is full",
+        remedy="make room, or keep samples for fewer days: `serve --raw-days`",
     )
 
 
@@ -110,16 +104,30 @@ def answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 def register(app: FastAPI) -> None:
     """Have every error of an application answered by a problem document."""
-    app.add_exception_handler(ApiError, _api_error)
-    app.add_exception_handler(InputError, _input_error)
-    app.add_exception_handler(StarletteHTTPException, _http_error)
-    app.add_exception_handler(RequestValidationError, _invalid_request)
-    app.add_exception_handler(OperationalError, _database_away)
-    app.add_exception_handler(DataError, _not_kept)
-    app.add_exception_handler(UnicodeEncodeError, _not_kept)
-    app.add_exception_handler(NoWorker, _no_worker)
-    app.add_exception_handler(OSError, _disk_full)
-    app.add_exception_handler(Exception, _our_fault)
+    not_kept = "a text holds characters that cannot be kept"  # half a character; in PostgreSQL, a NUL
+    busy = "every worker is busy; nothing was kept, send it again"
+    made: dict[type[Exception], Callable[[Any], Response]] = {
+        ApiError: answered,
+        InputError: lambda error: answered(ApiError(422, **problem_of(error))),
+        StarletteHTTPException: _http_error,
+        RequestValidationError: _invalid_request,
+        OperationalError: lambda _: answered(no_database()),
+        DataError: lambda _: answered(ApiError(422, not_kept)),
+        UnicodeEncodeError: lambda _: answered(ApiError(422, not_kept)),
+        NoWorker: lambda _: answered(ApiError(503, busy, headers={"Retry-After": "30"})),
+        OSError: _disk_full,
+        # no more than that is said; the log has the rest
+        Exception: lambda _: answered(ApiError(500, "a fault of ours")),
+    }
+    for kind, answer in made.items():
+        app.add_exception_handler(kind, _handler(answer))
+
+
+def _handler(answer: Callable[[Any], Response]) -> Callable[[Request, Exception], Awaitable[Response]]:
+    async def handle(_: Request, error: Exception) -> Response:
+        return answer(error)
+
+    return handle
 
 
 def _answer(problem: ProblemDocument, headers: dict[str, str] | None = None) -> Response:
@@ -132,52 +140,19 @@ def answered(error: ApiError) -> Response:
     return _answer(error.problem, error.headers)
 
 
-async def _api_error(_: Request, error: Exception) -> Response:
-    assert isinstance(error, ApiError)
-    return answered(error)
-
-
-async def _input_error(_: Request, error: Exception) -> Response:
-    assert isinstance(error, InputError)
-    return _answer(as_problem(error))
-
-
-async def _database_away(_: Request, error: Exception) -> Response:
-    assert isinstance(error, OperationalError)
-    away = no_database()
-    return _answer(away.problem, away.headers)
-
-
-async def _not_kept(_: Request, error: Exception) -> Response:
-    """Answer what no database can keep: half a character; in PostgreSQL, a NUL."""
-    return answered(ApiError(422, "a text holds characters that cannot be kept"))
-
-
-async def _no_worker(_: Request, error: Exception) -> Response:
-    busy = "every worker is busy; nothing was kept, send it again"
-    return answered(ApiError(503, busy, headers={"Retry-After": "30"}))
-
-
-async def _disk_full(_: Request, error: Exception) -> Response:
-    if not isinstance(error, OSError) or error.errno != errno.ENOSPC:
+def _disk_full(error: OSError) -> Response:
+    if error.errno != errno.ENOSPC:
         raise error
     return answered(disk_full())
 
 
-async def _our_fault(_: Request, error: Exception) -> Response:
-    """Say no more than that; the log has the rest."""
-    return _answer(ProblemDocument(title="Internal Server Error", status=500, detail="a fault of ours"))
-
-
-async def _http_error(_: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException | StarletteHTTPException)
+def _http_error(error: StarletteHTTPException) -> Response:
     title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
     return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 
 
-async def _invalid_request(_: Request, error: Exception) -> Response:
-    assert isinstance(error, RequestValidationError)
+def _invalid_request(error: RequestValidationError) -> Response:
     first = error.errors()[0]
     place = ".".join(str(part) for part in first["loc"] if part not in ("body", "query", "path", "header"))
     value = first.get("input")

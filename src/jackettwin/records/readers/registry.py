@@ -125,8 +125,9 @@ def reading(path: Path) -> Iterator[None]:
     except (JackettwinError, MemoryError, GeneratorExit):
         raise
     except Exception as error:  # what parsers raise on damaged bytes is not theirs to promise
+        said = str(error).replace(str(path), path.name)  # where it lies may be nobody's business
         raise InputError(
-            f"is not readable as {_format_of(path).name} ({type(error).__name__}: {str(error)[:120]})",
+            f"is not readable as {_format_of(path).name} ({type(error).__name__}: {said[:120]})",
             file=path,
             remedy="the file is damaged or not of this format",
         ) from error
