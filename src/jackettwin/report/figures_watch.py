@@ -29,8 +29,8 @@ def leading(watched: Watched) -> int:
 
 
 def frequencies(watched: Watched) -> tuple[int, ...]:
-    """Return which quantities are frequencies; all, if none is."""
-    chosen = tuple(i for i, (kind, _) in enumerate(watched.watch.quantities) if kind == "frequency")
+    """Return which quantities are frequencies or directions; all, if none is."""
+    chosen = tuple(i for i, (kind, _) in enumerate(watched.watch.quantities) if kind != "damping")
     return chosen or tuple(range(len(watched.watch.quantities)))
 
 
@@ -136,11 +136,14 @@ def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
     keys = watched.watch.quantities
     change = alarm.change
     kinds = [kind for kind in _SHOWN_IN if any(key[0] == kind for key in keys)]
-    figure = make_subplots(rows=1, cols=len(kinds), horizontal_spacing=0.16)
-    for column, kind in enumerate(kinds, start=1):
-        chosen = [i for i, key in enumerate(keys) if key[0] == kind]
+    of_kind = [[i for i, key in enumerate(keys) if key[0] == kind] for kind in kinds]
+    height = 34 * len(keys) + 90 * len(kinds) + 60
+    figure = make_subplots(
+        rows=len(kinds), cols=1, vertical_spacing=70 / height, row_heights=[len(own) + 1 for own in of_kind]
+    )
+    for row, (kind, chosen) in enumerate(zip(kinds, of_kind, strict=True), start=1):
         names = [words(watched.watch.labels[keys[i][1]]) for i in chosen]
-        place = {"row": 1, "col": column, "showlegend": column == 1}
+        place = {"row": row, "col": 1, "showlegend": row == 1}
         scale, unit = (100.0, "%") if change.kind == "scatter" else _SHOWN_IN[kind]
         figure.add_scatter(
             x=[scale * change.size[i] for i in chosen], y=names,
@@ -154,5 +157,5 @@ def change_pattern(watched: Watched, alarm: Alarm) -> go.Figure:
                 marker={"size": 12, "symbol": symbol, "color": colour, "line": {"width": 2}}, **place,
             )  # fmt: skip
         what = "noise" if change.kind == "scatter" else {"angle": "direction"}.get(kind, kind)
-        figure.update_xaxes(title=style.title(f"change of {what}", unit), row=1, col=column)
-    return style.finish(figure, height=max(340, 40 * len(keys) // 2 + 200))
+        figure.update_xaxes(title=style.title(f"change of {what}", unit), row=row, col=1)
+    return style.finish(figure, height=height)

@@ -52,7 +52,7 @@ def build_watch_page(watched: Watched, path: Path) -> Path:
     ]
     if watched.looks:
         figure = unexplained_through_time(watched, frequencies(watched))
-        caption = "The same of every frequency."
+        caption = "The same of every frequency, and of the direction of every pair that shows one."
         sections.append(
             PageSection("Every mode", (Plot("unexplained_through_time", caption, figure, fits=True),))
         )
@@ -93,7 +93,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
     caption = "Causes, after the data of the change."
     blocks: list[Block] = [
         PageTable(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
-        Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm)),
+        Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
     ]
     if document["inseparable"]:
         said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
