@@ -17,6 +17,7 @@ from jackettwin.watching import (
     start,
     step,
 )
+from jackettwin.watching.watch import GUARDED
 
 from .conftest import made
 
@@ -100,3 +101,27 @@ def test_a_day_that_is_over_is_refused(quiet: History) -> None:
     watch = start(quiet.between(0.0, 100.0))
     with pytest.raises(InputError, match="over already"):
         step(watch, quiet.between(50.0, 51.0))
+
+
+def test_evidence_of_hidden_weather_is_guarded_after_a_year(rng: np.random.Generator) -> None:
+    """A power below one cannot raise R, and leaves watches with conditions or a short baseline alone."""
+    days = np.arange(0.0, 400.0, 0.5)
+    f = 0.3 * np.exp(1e-3 * rng.standard_normal((days.size, 2)))
+    none = np.full(f.shape, np.nan)
+    states = np.zeros(days.size, dtype=np.intp)
+    told = History(days, ("a", "b"), f, none, none, none, days[:, None] % 7.0, ("air_temp",), states)
+    hidden = replace(told, conditions=np.zeros((days.size, 0)), condition_names=())
+    assert start(told.between(0.0, 365.0)).power == 1.0
+    assert start(hidden.between(0.0, 300.0)).power == 1.0
+    watch = start(hidden.between(0.0, 365.0))
+    assert watch.power == GUARDED
+    whole = replace(watch, power=1.0)
+    moved = replace(hidden, frequency=f * np.exp(np.outer(days >= 366.0, [-0.003, 0.0])))
+    for day in moved.between(365.0, 380.0).by_day():
+        watch, guarded = step(watch, day)
+        whole, plain = step(whole, day)
+        if plain.change is not None:
+            break
+    assert whole.log_threshold < plain.log_r
+    # what is staked is not raised to the power: a few nats of it
+    assert GUARDED * plain.log_r - 3.0 < guarded.log_r < plain.log_r

@@ -25,7 +25,7 @@ from jackettwin.watching import (
     start,
     step,
 )
-from jackettwin.watching.design import fresh, regressors
+from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
 from jackettwin.watching.explained import shares, unexplained_std
 from jackettwin.watching.history import deviations, typical
 
@@ -198,7 +198,7 @@ def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
         said.append(f"constant over the baseline or nearly empty, left out: {', '.join(constant)}")
     said += _gaps(watch, rest)
     span = float(np.ptp(baseline.days))
-    if span < 330.0:
+    if span < WHOLE_YEAR_DAYS:
         said.append(
             f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
             "counts as a change"

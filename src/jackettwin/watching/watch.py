@@ -34,7 +34,7 @@ from jackettwin.watching.block import (
     thinned,
     watched,
 )
-from jackettwin.watching.design import Design, Lagged, Slope, design_of, fresh, regressors
+from jackettwin.watching.design import WHOLE_YEAR_DAYS, Design, Lagged, Slope, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Pattern, directions_of
 from jackettwin.watching.history import History, Kind, typical
 from jackettwin.watching.ramps import log_ramps
@@ -56,8 +56,9 @@ PATIENCE, MOST_PATIENCE_DAYS = 1.0 / 36.0, 10.0
 shorter may be storms that follow each other. Leaving later begins out can only lower R, so that the promise
 is kept."""
 GUARDED = 0.8
-"""Power to which evidence counts where no conditions are given: what weather does then has a longer tail than
-any normal process. No Bayes factor's mean rises by that (Jensen), so that the promise is kept."""
+"""Power to which evidence counts where no conditions are given and a baseline of a year makes models sure of
+what weather does, which has a longer tail than any normal process. The mean of no Bayes factor rises by that
+(Jensen), so that the promise is kept. After a shorter baseline models are unsure enough by themselves."""
 KINDS: tuple[Kind, ...] = ("frequency", "damping", "angle")
 
 
@@ -240,6 +241,7 @@ def start(
         blocks.append(begin(baseline, design, rows, kind, directions, columns, known)[0])
     total = sum(len(block.kept) for block in blocks)
     last = float(baseline.days[-1])
+    span = last - float(baseline.days[0])
     return Watch(
         baseline.labels,
         design,
@@ -250,8 +252,8 @@ def start(
         float(np.floor(last)),
         last,
         arl_years,
-        min(PATIENCE * (last - baseline.days[0]), MOST_PATIENCE_DAYS) if design.hidden else 0.0,
-        GUARDED if design.hidden else 1.0,
+        min(PATIENCE * span, MOST_PATIENCE_DAYS) if design.hidden else 0.0,
+        GUARDED if design.hidden and span > WHOLE_YEAR_DAYS else 1.0,
     )
 
 
