@@ -42,7 +42,9 @@ def unexplained_through_time(watched: Watched, chosen: Sequence[int]) -> go.Figu
         for number, alarm in enumerate(watched.alarms):
             _mark(figure, watched, alarm, i, row, named=row == 1 and number == 0)
         kind = watched.watch.quantities[i][0]
-        figure.update_yaxes(title=style.title(_named(watched, i), _SHOWN_IN[kind][1]), row=row, col=1)
+        figure.update_yaxes(
+            title=style.title(_named(watched, i).replace(", ", ",<br>"), _SHOWN_IN[kind][1]), row=row, col=1
+        )
     figure.update_xaxes(title="time (UTC)", row=len(chosen), col=1)
     return style.finish(figure, height=max(340, 150 * len(chosen) + 80))
 
