@@ -257,3 +257,17 @@ def test_a_pair_that_turns_is_found_and_said_in_degrees(wide: Columns, tmp_path:
     assert alarm["causes"][0]["cause"] == "direction of f1 alone"
     assert "f1 direction by +" in document["statement"] and "°" in document["statement"]
     assert json.loads(invoke(written(quiet, tmp_path / "b.csv"), *options[:5]).stdout)["alarms"] == []
+
+
+def test_the_slopes_with_conditions_are_said(wide: Columns, tmp_path: Path) -> None:
+    """A level that moves ln f by −0.003 per metre, another condition that does nothing."""
+    rng = np.random.default_rng(8)
+    level = 1.3 * np.cos(np.arange(len(wide["time"])) * 3.1)
+    table = {"time": wide["time"], "sea_level_m": level, "idle": rng.standard_normal(level.size)}
+    table |= {f: wide[f] * np.exp(-0.003 * level) for f in ("f1", "f2")}
+    done = invoke(written(table, tmp_path / "a.csv"), "--columns", "f1,f2", "--baseline-days", "90", "--json")
+    for label in ("f1", "f2"):
+        found = json.loads(done.stdout)["quantities"][label]["per_unit"]
+        # 180 values of 0.2 % at levels that scatter by 0.9 m: 0.00016 per metre
+        assert found["sea_level_m"] == pytest.approx(-0.003, abs=6e-4)
+        assert abs(found["idle"]) < 6e-4

@@ -26,7 +26,7 @@ from jackettwin.watching import (
     step,
 )
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
-from jackettwin.watching.explained import shares, unexplained_std
+from jackettwin.watching.explained import shares, slopes, unexplained_std
 from jackettwin.watching.history import deviations, typical
 
 _PATTERNS, _UNLIKELY = 3, 0.001
@@ -61,6 +61,7 @@ class Watched:
     watch : the state after the last day
     looks : of each day with records after the baseline
     explained : {(kind, mode): {condition: share of variance over the baseline}}
+    slopes : {(kind, mode): {condition: of the logarithm, by a unit of it}}
     unexplained_std : {(kind, mode): of the logarithm}
     limits : what could not be done, as sentences
     """
@@ -73,6 +74,7 @@ class Watched:
     explained: Mapping[tuple[str, int], Mapping[str, float]]
     unexplained_std: Mapping[tuple[str, int], float]
     limits: tuple[str, ...]
+    slopes: Mapping[tuple[str, int], Mapping[str, float]]
 
 
 def watch_table(
@@ -132,8 +134,18 @@ def watch_table(
         looks.append(look)
         if look.change is not None:
             alarms.append(explained_alarm(look.change, watch, baseline, seen))
+    found = [one for block in watch.blocks for one in slopes(block, watch.design)]
+    per_unit: dict[tuple[str, int], dict[str, float]] = dict(zip(watch.quantities, found, strict=True))
     return Watched(
-        table, (first, end), watch, tuple(looks), tuple(alarms), explained, unexplained, tuple(limits)
+        table,
+        (first, end),
+        watch,
+        tuple(looks),
+        tuple(alarms),
+        explained,
+        unexplained,
+        tuple(limits),
+        per_unit,
     )
 
 

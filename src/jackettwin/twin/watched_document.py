@@ -29,6 +29,7 @@ def watched_document(watched: Watched) -> dict[str, Any]:
         "quantities": {
             quantity_name(watched.watch, key): {
                 "explained_by": dict(watched.explained[key]),
+                "per_unit": dict(watched.slopes[key]),
                 "unexplained_std": watched.unexplained_std[key],
             }
             for key in watched.watch.quantities

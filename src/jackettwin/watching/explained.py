@@ -42,6 +42,20 @@ def shares(
     return tuple(out)
 
 
+def slopes(block: Block, design: Design) -> tuple[dict[str, float], ...]:
+    """Return for each quantity what a lasting unit of each condition does to it, about the baseline's mean.
+
+    Of logarithms, or of directions [rad], in the operating state seen most; late parts count as arrived.
+    """
+    first = len(design.states)
+    out: tuple[dict[str, float], ...] = tuple({} for _ in block.kept)
+    for place, column in enumerate(design.columns, start=first):
+        if column.shape == "line":
+            for found, per_scale in zip(out, block.reference[:, place], strict=True):
+                found[column.name] = found.get(column.name, 0.0) + float(per_scale) / column.scale
+    return out
+
+
 def unexplained_std(block: Block) -> FloatArray:
     """Return the standard deviation of the slow processes, averaged over models, (m,)."""
     weight = np.exp(block.log_weights)
