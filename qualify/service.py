@@ -37,6 +37,8 @@ from jackettwin.store.backup import restore
 KEPT = Path("out/qualify/service")
 TEN_MINUTES = 12_000
 """Samples of ten minutes at 20 Hz."""
+PACE_S = 6.0
+"""Between two records of a hundred turbines."""
 CHEAP = 1200
 """Samples of a record that is observed in a fifth of a CPU second: faults, not modes, are looked at."""
 CHEAP_TWIN = """structure: jacket15
@@ -68,8 +70,6 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
 
         def send() -> None:
             for k in range(given.records):
-                if time.monotonic() > begin + 60.0 * given.minutes:
-                    return
                 one = (f"r{k}.parquet", record_file(k, samples=TEN_MINUTES), description(hour(30 + k // 100)))
                 server.send(*one, asset=f"wtg_{k % 100:02d}")
                 while server.records()["received"] > 3 or time.monotonic() < begin + k * given.pace_s:
@@ -78,12 +78,10 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
                 if k % 50 == 0:
                     print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
 
-        def send_and_wait() -> None:
-            send()
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
 
-        busy = asked(server, given.readers, send_and_wait)
+        busy = asked(server, given.readers, send)
         took, spent, sent = time.monotonic() - begin, server.cpu_s(), len(memory)
         return {
             "records": sent,
@@ -162,19 +160,10 @@ def spread(memory: list[dict[int, int]]) -> Figures:
     }
 
 
-def long_run(folder: Path, given: argparse.Namespace) -> Figures:
-    """Send many cheap records; return what the memory of server and workers does."""
-    memory = []
-    with Server(living.new_store(folder, CHEAP_TWIN)) as server:
-        for k in range(given.long):
-            server.send(f"r{k}.parquet", record_file(k, samples=CHEAP), description(hour(k)))
-            while k % 10 == 9 and server.records()["received"] > 4:
-                time.sleep(0.1)
-            memory.append(server.resident_bytes())
-            if k % 50 == 0:
-                print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
-        server.wait_until_observed(given.long, seconds=3600.0)
-    return {"records": given.long, **spread(memory)}
+def by_the_clock(folder: Path, given: argparse.Namespace) -> Figures:
+    """Send records of a hundred turbines at their own rate, one every six seconds; memory is looked at."""
+    there = {"pace_s": PACE_S, "records": round(60.0 * given.minutes / PACE_S)}
+    return load(folder, argparse.Namespace(**{**vars(given), **there}))
 
 
 def kills(folder: Path, given: argparse.Namespace) -> Figures:
@@ -373,7 +362,7 @@ SCENES: dict[str, Callable[[Path, argparse.Namespace], Figures]] = {
     "backup": restored,
     "kills": kills,
     "load": load,
-    "memory": long_run,
+    "hour": by_the_clock,
 }
 
 
@@ -423,25 +412,39 @@ def _load(f: Figures) -> list[str]:
     ]
 
 
-def _memory(f: Figures) -> list[str]:
+def _hour(f: Figures) -> list[str]:
     return [
-        "## Memory",
+        "## By the clock",
         "",
-        f"{f['records']} records of a minute, an hour apart, of one turbine; the first third is warm-up.",
+        f"{f['records']} records of a hundred turbines at their own rate, one every {f['pace_s']:g} s for "
+        f"{f['minutes']:.0f} minutes,",
+        f"with {f['readers']} readers ({f['busy']['answers']} answers, p95 {f['busy']['p95_ms']:.0f} ms, "
+        f"{f['busy']['wrong']} not 200). A worker spent {f['worker_cpu_s_a_record']:.2f} CPU-s a record,",
+        f"the server {f['server_cpu_s'] / f['records']:.2f}. The first third is warm-up.",
         "",
         *_grown(f),
+        "| MB at tenths of the records | " + " | ".join(map(str, range(len(f["memory_tenths_mb"])))) + " |",
+        "|---" * (1 + len(f["memory_tenths_mb"])) + "|",
+        *(
+            f"| {name} | {' | '.join(f'{size:.0f}' for size in sizes)} |"
+            for name, sizes in zip(_processes(f), zip(*f["memory_tenths_mb"], strict=True), strict=True)
+        ),
+        "",
     ]
 
 
+def _processes(f: Figures) -> list[str]:
+    return ["server", *(f"worker {i}" for i, _ in enumerate(f["spread_percent"][1:], start=1))]
+
+
 def _grown(f: Figures) -> list[str]:
-    names = ["server", *(f"worker {i}" for i, _ in enumerate(f["spread_percent"][1:], start=1))]
     return [
         "| MB | after the first record | after warm-up | in the end | from its middle, after warm-up | bar |",
         "|---|---|---|---|---|---|",
         *(
             f"| {name} | {first:.0f} | {warm:.0f} | {last:.0f} | ± {share:.1f} % | ± 5 % |"
             for name, first, warm, last, share in zip(
-                names, *f["memory_mb"], f["spread_percent"], strict=True
+                _processes(f), *f["memory_mb"], f["spread_percent"], strict=True
             )
         ),
         "",
@@ -482,7 +485,7 @@ def _queue(f: Figures) -> list[str]:
 
 PAGES: dict[str, Callable[[Figures], list[str]]] = {
     "load": _load,
-    "memory": _memory,
+    "hour": _hour,
     "kills": _faults(
         "Kills",
         "Two servers on one PostgreSQL, a stream through a broker, and kill −9 at moments drawn from a seed: "
@@ -510,8 +513,7 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=150)
     parser.add_argument("--readers", type=int, default=50)
     parser.add_argument("--pace-s", type=float, default=0.0, help="least time between two records of load")
-    parser.add_argument("--minutes", type=float, default=1e9, help="longest time of load")
-    parser.add_argument("--long", type=int, default=1500)
+    parser.add_argument("--minutes", type=float, default=60.0, help="of the scene by the clock")
     parser.add_argument("--kills", type=int, default=60)
     parser.add_argument("--kill-records", type=int, default=60)
     parser.add_argument("--few", type=int, default=24)

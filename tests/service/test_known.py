@@ -77,3 +77,10 @@ def test_sources_make_up_the_damping(answered: tuple[dict, str]) -> None:
 def test_the_page_is_of_all_records(answered: tuple[dict, str]) -> None:
     _, page = answered
     assert "3 records, 30 minutes" in page  # two of them are shown one by one
+
+
+def test_without_a_day_nothing_is_known(tmp_path: Path) -> None:
+    """All its records were superseded before it was asked."""
+    outcome = know(Question("wtg", 1, str(tmp_path), {}, {}, of="it"))
+    assert outcome is not None and outcome.of == "it"
+    assert json.loads(outcome.document)["known"]["status"] == verdict.NO_MODE

@@ -20,7 +20,7 @@ from jackettwin.service.tasks import read_file
 from jackettwin.store import sqlite_url
 from jackettwin.store.backup import backup, restore
 
-RECORDS = 6
+RECORDS = 5
 SAMPLES = 2400
 TWIN = """structure: jacket15
 identification: {max_order: 12}

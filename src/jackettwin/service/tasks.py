@@ -184,7 +184,8 @@ def know(question: Question) -> Outcome | None:
     from jackettwin.service import engine, verdict
 
     if not question.identities:  # all its records were taken back
-        return Outcome(json.dumps({"known": {}, "judged": None, "past": None}), of=question.of)
+        nothing = {"known": {"status": verdict.NO_MODE, "parameters": {}}}
+        return Outcome(json.dumps(nothing), of=question.of)
     twin = engine.load_twin(Path(question.twin_folder))
     try:
         judged, findings = verdict.watched(
