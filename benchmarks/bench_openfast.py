@@ -34,7 +34,7 @@ SEA_M_S = 2.5, 8.0
 STEP_S = 0.01
 PIECE_M = 8.0
 """HydroDyn's: OpenFAST starts with the product of dense matrices of 18 rows a piece, so that pieces of 2 m
-cost it 64 times as much before the first step."""
+cost it many times as much before the first step."""
 SIMULATED_S = 0.1, 2.1
 """What OpenFAST is asked: the difference is free of its start-up."""
 OC4_DEPTH_M, OC4_FEET = 50.0, "kelvin-voigt:k=6e8,c=1.2e7"
