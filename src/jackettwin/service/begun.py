@@ -27,10 +27,10 @@ def begun(topic: str, task: Callable[..., Any], *args: Any) -> Any:
     try:
         return task(*args)
     finally:
-        _give_back()
+        give_back()
 
 
-def _give_back() -> None:
+def give_back() -> None:
     """Return free memory to the system; glibc keeps what lies below the highest block in use, and grows."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:  # other C libraries have no such function

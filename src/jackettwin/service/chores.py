@@ -1,4 +1,4 @@
-"""What is done now and then: old samples pruned by the store's policy, old events and uploads forgotten."""
+"""What is done now and then: old samples pruned by the store's policy, old events, uploads and memory let go."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
+from jackettwin.service.begun import give_back
 from jackettwin.store import journal, records, settings, writing
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ class Housekeeping:
             return
         self._next = time.monotonic() + _EVERY_S
         prune(self._service)
+        give_back()
         for folder in self._service.settings.spool.iterdir():
             if folder.is_dir() and time.time() - folder.stat().st_mtime > _STALE_S:
                 shutil.rmtree(folder, ignore_errors=True)
