@@ -1,4 +1,4 @@
-"""What is done now and then: old samples pruned by the store's policy, old events, uploads and memory let go."""
+"""What is done now and then: old samples pruned by policy, old events, uploads and memory let go."""
 
 from __future__ import annotations
 
