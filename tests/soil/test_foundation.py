@@ -97,6 +97,14 @@ def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
     assert str(path) in str(caught.value)
 
 
+@pytest.mark.parametrize(("diameter_m", "said"), [(2.4, False), (6.0, False), (6.1, True), (9.0, True)])
+def test_stout_piles_are_said_to_be_beyond_the_curves(tmp_path: Path, diameter_m: float, said: bool) -> None:
+    path = tmp_path / "piles.yaml"
+    path.write_text(PILE.replace("2.8", str(diameter_m)) + CLAY)
+    notes = read_support(path, read_structure("jacket15")).notes
+    assert ["diameters long" in note for note in notes] == [True] * said
+
+
 def test_a_pile_longer_than_its_layers_is_said(tmp_path: Path) -> None:
     structure = read_structure("jacket15")
     for length, said in ((60, 0), (61, 1)):

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from jackettwin.report import style
 from jackettwin.report.page import Block, PageSection, PageTable, Plot, Text, write_page
@@ -17,6 +16,8 @@ from jackettwin.version import __version__
 _SHOWN = 6
 """Depths whose curves are drawn."""
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
+_ZERO = 1e-9
+"""An entry below this share of the root of its diagonal's is rounding."""
 
 
 def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
@@ -37,28 +38,32 @@ def write_soil_page(document: Mapping[str, Any], path: Path) -> Path:
     return write_page(
         sections,
         path,
-        title=f"The ground of {document['foundation']}",
+        title=f"A pile of {document['foundation']}",
         subtitle=f"a pile {pile['length_m']:g} m long, {pile['outer_diameter_m']:g} m wide"
         f" · jackettwin {__version__}",
     )
 
 
 def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
-    f = document["frequency_hz"]
-    return tuple(
-        PageTable(
-            f"{title} of the pile's head at {f:g} Hz [N/m, N, N·m/rad].",
-            ("", *_NAMES),
-            tuple(
-                (name, *(f"{v:.4g}" for v in row))
-                for name, row in zip(_NAMES, np.asarray(document[key]), strict=True)
-            ),
+    """Return stiffness and loss of the head entry by entry, without what is zero beside its diagonal."""
+    stiffness, loss = (np.asarray(document[key]) for key in ("head_stiffness", "head_loss"))
+    own = np.sqrt(np.abs(np.diag(stiffness)))
+    there = np.triu(np.abs(stiffness) > _ZERO * np.outer(own, own))
+    rows = tuple(
+        (
+            f"{_NAMES[i]}, {_NAMES[j]}" if i != j else _NAMES[i],
+            ("N/m", "N", "N·m/rad")[int(i > 2) + int(j > 2)],
+            f"{stiffness[i, j]:.4g}",
+            f"{loss[i, j]:.4g}",
         )
-        for title, key in (
-            ("Stiffness: the real part of the impedance", "head_stiffness"),
-            ("Loss: its imaginary part", "head_loss"),
-        )
+        for i, j in zip(*np.nonzero(there), strict=True)
     )
+    caption = (
+        f"What does the head of the pile feel at {document['frequency_hz']:g} Hz? Its impedance, entry by "
+        "entry; the matrix is symmetric, and what is not listed is zero."
+    )
+    columns = ("entry", "unit", "stiffness (real part)", "loss (imaginary part)")
+    return (PageTable(caption, columns, rows, text_columns=2),)
 
 
 def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
@@ -75,10 +80,14 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
         (f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * turn:.2f}", f"{1e-6 * moment:.2f}")
         for load, head, turn, moment in zip(*columns, strict=True)
     )
-    caption = f"A lateral load {pushed['arm_m']:g} m above the free head, step by step."
+    caption = f"How far does the head go? A lateral load {pushed['arm_m']:g} m above it, step by step."
     return (
-        PageTable("Ultimate loads.", ("", "[MN]"), tuple((name, f"{1e-6 * v:.2f}") for name, v in rows)),
-        Plot("pushover", caption, _pushover(pushed)),
+        PageTable(
+            "What does the pile bear? Ultimate loads.",
+            ("", "[MN]"),
+            tuple((name, f"{1e-6 * v:.2f}") for name, v in rows),
+        ),
+        Plot("pushover", caption, _pushover(pushed), fits=True),
         PageTable(
             "The same in numbers.",
             ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]"),
@@ -114,7 +123,13 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
         for one in stations
     )
     return (
-        Plot("curves", "Reaction per metre of pile at some depths.", _drawn(stations)),
+        Plot(
+            "py",
+            "What does the ground bear sideways? p-y curves at some depths.",
+            _drawn(stations, "py"),
+            fits=True,
+        ),
+        Plot("tz", "And along the shaft? t-z curves.", _drawn(stations, "tz"), fits=True),
         PageTable(
             "Every station.",
             ("depth [m]", "p_u [kN/m]", "t_max [kN/m]", "p-y stiffness [MN/m²]", "t-z stiffness [MN/m²]"),
@@ -135,23 +150,18 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
     )
 
 
-def _drawn(stations: list[Mapping[str, Any]]) -> go.Figure:
-    figure = make_subplots(rows=1, cols=2, subplot_titles=("p-y", "t-z"))
+def _drawn(stations: list[Mapping[str, Any]], key: str) -> go.Figure:
+    figure = go.Figure()
     some = stations[1 :: max(1, (len(stations) - 1) // _SHOWN)][:_SHOWN]
     colours = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE, style.SKY)
     for colour, one in zip(colours, some, strict=False):
-        for column, key in enumerate(("py", "tz"), start=1):
-            figure.add_scatter(
-                x=1e3 * one[key]["y_m"],
-                y=1e-3 * one[key]["reaction"],
-                mode="lines",
-                line={"color": colour},
-                name=f"{one['depth_m']:.1f} m",
-                legendgroup=f"{one['depth_m']:.1f}",
-                showlegend=column == 1,
-                row=1,
-                col=column,
-            )
+        figure.add_scatter(
+            x=1e3 * one[key]["y_m"],
+            y=1e-3 * one[key]["reaction"],
+            mode="lines",
+            line={"color": colour},
+            name=f"{one['depth_m']:.1f} m",
+        )
     figure.update_xaxes(title=style.title("displacement", "mm"))
     figure.update_yaxes(title=style.title("reaction", "kN/m"))
     return style.finish(figure, height=420)

@@ -26,6 +26,9 @@ from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure.model import Material, Section, Structure
 
+SLENDER = 10.0
+"""Diameters of length below which a pile is not slender: on monopiles, of 2 to 6, shear at the base and along
+the sides counts as well (Byrne et al. 2015, the PISA tests)."""
 _MOST_ELEMENTS = 2000
 """Along a pile."""
 
@@ -279,16 +282,23 @@ class FoundationSchema(Schema):
         return Foundation(pile, springs, law, radiation, curves, self._notes())
 
     def _notes(self) -> tuple[str, ...]:
-        """Return that the lowest layer is taken to go on, if the pile is longer than the layers."""
+        """Return what to beware of in layered ground: a pile that is longer than the layers, or stout."""
         if self.soil.layers is None:
             return ()
+        notes, length = [], self.pile.length_m
         described = sum(layer.thickness_m for layer in self.soil.layers)
-        if self.pile.length_m <= described + 1e-9:
-            return ()
-        return (
-            f"the pile reaches {self.pile.length_m:g} m, the layers {described:g} m: "
-            "the lowest is taken to go on below",
-        )
+        if length > described + 1e-9:
+            notes.append(
+                f"the pile reaches {length:g} m, the layers {described:g} m: "
+                "the lowest is taken to go on below"
+            )
+        slenderness = length / self.pile.outer_diameter_m
+        if slenderness < SLENDER:
+            notes.append(
+                f"the pile is only {slenderness:.1f} diameters long: API's curves are of slender piles; base "
+                "and side shear, by which a monopile or a caisson carries much of its load, are left out"
+            )
+        return tuple(notes)
 
     def _curves(self, pile: Pile) -> PileCurves | None:
         layers, linear = self.soil.layers, self.soil.linear
