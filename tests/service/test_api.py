@@ -253,3 +253,14 @@ def test_a_file_is_read_again_when_its_reader_was_killed(
     monkeypatch.setattr(service.compute, "submit", submit)
     assert upload(client, 1).status_code == status
     assert tried == 3
+
+
+@pytest.mark.parametrize(
+    "path", ["modes?lable=mode_1", "twin?model_version=3", "records?cursor=&limit=5&since=2"]
+)
+def test_a_query_that_nobody_reads_is_refused(client: TestClient, path: str) -> None:
+    answer = client.get(f"/api/v1/assets/wtg/{path}")
+    assert answer.status_code == 422, answer.text
+    problem = answer.json()
+    assert problem["field"] in path and problem["detail"] == "no such query parameter"
+    assert problem["allowed"]

@@ -33,7 +33,7 @@ COMMANDS = {
     "bed.",
     "view": "Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record.",
     "serve": "Serve the living twin in STORE: records in, answers out; STORE is made if it is not there.",
-    "asset": "Turbines of a living twin: add, list, show, adopt, conditions.",
+    "asset": "Turbines of a living twin: add, list, show, adopt, archive, conditions.",
     "intake": "Take records from PATHS, files or folders, into a store; a server observes them.",
     "rebuild": "Make the states again from stored observations, or with --observe from raw records.",
     "backup": "Write everything of STORE into FILE, while it is served or not; whole or not at all.",

@@ -1,4 +1,4 @@
-"""What a worker and its server know of a task: that it began, that its worker ended, that none came."""
+"""What a worker and its server know of a task: that it began, what was wrong with it, that no worker came."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import ctypes
 import time
 from collections.abc import Callable
 from typing import Any
+
+from jackettwin.errors import InputError
 
 LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
 """Errors that say that a worker ended over a task, whatever of."""
@@ -15,6 +17,17 @@ _SAID_S = 0.01
 
 class NoWorker(Exception):
     """No worker came to a task in time; nothing is wrong with it."""
+
+
+def problem_of(error: InputError) -> dict[str, Any]:
+    """Return what is wrong with a user's input; where it lies on our disk is nobody's business."""
+    return {
+        "detail": error.problem,
+        "field": error.field,
+        "value": None if error.value is None else str(error.value)[:200],
+        "allowed": error.allowed,
+        "remedy": error.remedy,
+    }
 
 
 def begun(topic: str, task: Callable[..., Any], *args: Any) -> Any:

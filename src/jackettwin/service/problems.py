@@ -15,8 +15,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
-from jackettwin.service.begun import NoWorker
-from jackettwin.service.tasks import problem_of
+from jackettwin.service.begun import NoWorker, problem_of
 
 MEDIA_TYPE = "application/problem+json"
 

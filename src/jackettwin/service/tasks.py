@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jackettwin.errors import InputError, JackettwinError
+from jackettwin.service.begun import problem_of
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -51,17 +52,6 @@ class Parsed:
     size_bytes: int = 0
     about: dict[str, Any] = field(default_factory=dict)
     problem: dict[str, Any] | None = None
-
-
-def problem_of(error: InputError) -> dict[str, Any]:
-    """Return what is wrong with a user's input; where it lies on our disk is nobody's business."""
-    return {
-        "detail": error.problem,
-        "field": error.field,
-        "value": None if error.value is None else str(error.value)[:200],
-        "allowed": error.allowed,
-        "remedy": error.remedy,
-    }
 
 
 def about(record: Record) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from functools import partial, wraps
 from typing import Annotated, Any, get_type_hints
 
@@ -63,6 +63,20 @@ class Transaction(APIRoute):
         tagged = more.get("methods") in ({"GET"}, ["GET"])
         run = endpoint if inspect.iscoroutinefunction(endpoint) else _in_one_thread(endpoint, tagged)
         super().__init__(path, run, **more)
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return what answers a request; in the API a query that no one reads is refused, not ignored."""
+        answer = super().get_route_handler()
+        known = {parameter.alias for parameter in self.dependant.query_params}
+
+        async def answer_known(request: Request) -> Response:
+            unknown = next((name for name in request.query_params if name not in known), None)
+            if unknown is not None and self.include_in_schema:
+                allowed = ", ".join(sorted(known)) or "none here"
+                raise ApiError(422, "no such query parameter", field=unknown, allowed=allowed)
+            return await answer(request)
+
+        return answer_known
 
 
 def waits(route: Callable[..., Any]) -> Callable[..., Any]:
