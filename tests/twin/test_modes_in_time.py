@@ -12,7 +12,7 @@ from observations import BEGUN, observation, seen
 from jackettwin.cli import main
 from jackettwin.twin import TwinModel, TwinState, advance_all
 from jackettwin.twin.modal_table import read_modal_table
-from jackettwin.twin.modes_in_time import recognised, rows_of_days, rows_of_records, write_modes_in_time
+from jackettwin.twin.modes_in_time import rows_of_days, rows_of_records, write_modes_in_time
 from jackettwin.twin.watched import watch_table
 
 
@@ -20,7 +20,7 @@ def test_what_records_show_is_watched_by_the_command(tmp_path: Path) -> None:
     """Four records a day of two modes under a temperature; both lose 1 % on day 75."""
     records = seen(90, step=-0.01)
     path = tmp_path / "modes_in_time.csv"
-    write_modes_in_time(rows_of_records((one, recognised(one)) for one in reversed(records)), path)
+    write_modes_in_time(rows_of_records(reversed(records)), path)
     done = CliRunner().invoke(main, ["watch", str(path), "--baseline-days", "60", "--json"])
     assert done.exit_code == 0, done.stderr
     document = json.loads(done.stdout)
@@ -36,7 +36,7 @@ def test_what_records_show_is_watched_by_the_command(tmp_path: Path) -> None:
 def test_the_table_holds_what_the_records_say(tmp_path: Path) -> None:
     records = seen(2)
     path = tmp_path / "modes_in_time.csv"
-    write_modes_in_time(rows_of_records((one, recognised(one)) for one in records), path)
+    write_modes_in_time(rows_of_records(records), path)
     history = read_modal_table(path).history
     assert history.labels == ("mode_1", "mode_2")
     assert history.condition_names == ("mean_wind_speed_m_s", "air_temperature_c")
@@ -51,7 +51,7 @@ def test_seeds_and_records_without_a_start_are_left_out(tmp_path: Path) -> None:
     first, second = seen(1)[:2]
     told = replace(first, conditions={**first.conditions, "wind_seed": 7})
     undated = observation({1: second.identification.modes[0]}, None)
-    rows = rows_of_records((one, recognised(one)) for one in (told, undated))
+    rows = rows_of_records((told, undated))
     assert len(rows) == 2
     assert "wind_seed" not in rows[0]
 

@@ -51,13 +51,12 @@ def compare_command(a: Path, b: Path, as_json: bool) -> None:
             output.print(f"Beware, {name}: {run['headline'][0]}", markup=False)
     table = Table("what", "before", "after", "change [%]", "over its σ", "verdict")
     for c in changes:
-        moved = None if c.log_change is None else 100.0 * expm1(c.log_change)
         unit = "" if c.unit == "-" else f" {c.unit}"
         table.add_row(
             f"{c.what}{unit and f' [{c.unit}]'}",
             number(c.before),
             number(c.after),
-            "–" if moved is None else f"{float(f'{moved:.2g}'):+g}",
+            "–" if c.log_change is None else _percent(c.log_change),
             "–" if c.sigmas is None else f"{c.sigmas:+.1f}",
             c.verdict,
         )
@@ -69,9 +68,13 @@ def _summary(changes: tuple[ChangedNumber, ...]) -> str:
     changed = sorted((c for c in changes if c.verdict == "changed"), key=lambda c: -abs(c.sigmas or 0.0))
     if not changed:
         return "Nothing changed by more than two standard deviations of the difference."
-    shares = [float(f"{100.0 * expm1(c.log_change or 0.0):.2g}") for c in changed]
-    texts = [f"{c.what} by {by:+g} % ({c.sigmas:+.1f} σ)" for c, by in zip(changed, shares, strict=True)]
+    texts = [f"{c.what} by {_percent(c.log_change or 0.0)} % ({c.sigmas:+.1f} σ)" for c in changed]
     return f"Changed: {', '.join(texts)}."
+
+
+def _percent(log_change: float) -> str:
+    """Return a change in per cent with its sign, in two figures and without powers of ten."""
+    return f"{float(f'{100.0 * expm1(log_change):.2g}'):+g}"
 
 
 def _result(path: Path) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from jackettwin.report import build_report
 from jackettwin.simulate.batch import pending_cases, record_path, run_set
 from jackettwin.simulate.sets import read_set
 from jackettwin.twin import count_steps, read_twin, run_document, run_twin
-from jackettwin.twin.modes_in_time import MODES_IN_TIME, recognised, rows_of_records, write_modes_in_time
+from jackettwin.twin.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
 from jackettwin.twin.truth import true_parameters
 
 SIMULATED_TWIN = "simulated"
@@ -78,7 +78,7 @@ def run_command(
         with atomic_folder(folder) as temporary:
             build_report(result, temporary, answers=answers, provenance=made)
             write_json(document, temporary / "result.json")
-            rows = rows_of_records((seen, recognised(seen)) for seen in result.observations)
+            rows = rows_of_records(result.observations)
             write_modes_in_time(rows, temporary / MODES_IN_TIME)
     if as_json:
         print_json(document)

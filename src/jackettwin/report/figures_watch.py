@@ -102,8 +102,7 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
 
 
 def _cause(best: CauseVerdict) -> str:
-    clear = best.probability >= 0.5
-    return f"{best.cause}, {100.0 * best.probability:.0f} %" if clear else "cause not clear"
+    return f"{best.cause}, {100.0 * best.probability:.0f} %" if best.is_clear else "cause not clear"
 
 
 def evidence_through_time(watched: Watched) -> go.Figure:

@@ -79,7 +79,7 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
     settings = ServiceSettings(store)
     with reading(database) as connection:
         assets.found_version(connection, asset)
-        if asset not in assets.asset_names(connection, archived=False):
+        if assets.is_archived(connection, asset):
             raise InputError(
                 "the asset is archived",
                 field="asset",

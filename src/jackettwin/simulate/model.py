@@ -72,7 +72,7 @@ def build_model(scenario: Scenario) -> Model:
     return asset_model(
         scenario.asset,
         sea=scenario.sea,
-        yaw=0.0 if scenario.air is None else scenario.air.yaw,
+        yaw=scenario.heading_rad,
     )
 
 

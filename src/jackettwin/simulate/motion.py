@@ -101,7 +101,7 @@ def _motion(scenario: Scenario) -> Motion:
         true_modes(
             loads.model,
             below_hz=BAND_HZ,
-            heading_rad=0.0 if scenario.air is None else scenario.air.yaw,
+            heading_rad=scenario.heading_rad,
         ),
         loads.signals,
         0.0 if loads.rotor is None else float(loads.rotor.angle[1]) / clock.load_step_s,

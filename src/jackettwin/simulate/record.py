@@ -107,7 +107,7 @@ def conditions(scenario: Scenario, rotor_speed_rad_s: float) -> dict[str, Any]:
         "mean_wind_speed_m_s": None if air is None else air.wind.speed_m_s,
         "turbulence": None if air is None else air.wind.turbulence,
         "wind_direction": "+x",
-        "yaw_deg": 0.0 if air is None else degrees(air.yaw),
+        "yaw_deg": degrees(scenario.heading_rad),
         "wind_seed": None if air is None else air.seed,
         "rotor": None if turbine is None else turbine.name,
         "state": None if turbine is None else turbine.state,

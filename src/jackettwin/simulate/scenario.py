@@ -187,3 +187,8 @@ class Scenario:
     clock: SimulationClock
     instruments: tuple[Instrument, ...]
     sensor_seed: int = 0
+
+    @property
+    def heading_rad(self) -> float:
+        """Mean heading of the nacelle, anticlockwise from x seen from above; zero in calm."""
+        return 0.0 if self.air is None else self.air.yaw

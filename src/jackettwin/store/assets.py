@@ -128,6 +128,11 @@ def archive(connection: Connection, name: str, at: datetime | None) -> None:
     connection.execute(update(assets).where(assets.c.name == name).values(archived_utc=at))
 
 
+def is_archived(connection: Connection, name: str) -> bool:
+    """Return whether an asset is archived."""
+    return connection.scalar(select(assets.c.archived_utc).where(assets.c.name == name)) is not None
+
+
 def asset_names(connection: Connection, *, archived: bool = True) -> list[str]:
     """Return the names of all assets, sorted, with those that are archived or without."""
     query = select(assets.c.name).order_by(assets.c.name)

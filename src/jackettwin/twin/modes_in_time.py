@@ -13,7 +13,6 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 
 from jackettwin.files import atomic_path
-from jackettwin.identification import ModalEstimate
 from jackettwin.twin.judge import Columns, Days, history_of
 from jackettwin.twin.modal_table import QUANTITIES
 from jackettwin.twin.model import TwinModel
@@ -28,25 +27,20 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 Row = dict[str, Any]
 
 
-def rows_of_records(records: Iterable[tuple[Observation, Mapping[str, ModalEstimate]]]) -> list[Row]:
+def rows_of_records(records: Iterable[Observation]) -> list[Row]:
     """Return a row for each named mode of each record that says when it began, in the order of time."""
     rows = []
-    for seen, modes in records:
+    for seen in records:
         if seen.start_utc is None:
             continue
         angles = pair_angles(seen)
-        for label, mode in modes.items():
+        for label, mode in seen.named_modes.items():
             numbers = (
                 mode.frequency_hz, mode.frequency_std_hz, mode.damping_ratio, mode.damping_ratio_std,
                 *np.degrees(angles.get(label, (np.nan, np.nan))),
             )  # fmt: skip
             rows.append(_row(seen.start_utc, label, numbers, _said(seen.conditions)))
     return sorted(rows, key=lambda row: (row["time_utc"], row["label"]))
-
-
-def recognised(seen: Observation) -> dict[str, ModalEstimate]:
-    """Return the modes of the model that a record shows, by label."""
-    return {known.label: mode for mode, known in seen.modes.values() if mode.status.is_a_mode}
 
 
 def _said(conditions: Mapping[str, Any]) -> Row:

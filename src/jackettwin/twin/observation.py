@@ -100,6 +100,11 @@ class Observation:
         return {known.mode: (mode, known) for mode, known in pairs if known is not None}
 
     @property
+    def named_modes(self) -> dict[str, ModalEstimate]:
+        """The modes of the model that the record shows and that are modes, by label."""
+        return {known.label: mode for mode, known in self.modes.values() if mode.status.is_a_mode}
+
+    @property
     def wind_m_s(self) -> float | None:
         """Mean wind speed [m/s], if the record says it."""
         value = self.conditions.get("mean_wind_speed_m_s")

@@ -23,8 +23,7 @@ def pair_angles(seen: Observation) -> dict[str, tuple[float, float]]:
     differ by no more than they are unsure by has no direction of its own, and is left out; so is one that no
     place with two horizontal sensors shows.
     """
-    modes = {known.label: mode for mode, known in seen.modes.values() if mode.status.is_a_mode}
-    places = _stations(seen)
+    modes, places = seen.named_modes, _stations(seen)
     found = {}
     for label in modes if places else ():
         partner = label.replace("fore_aft_", "side_side_")

@@ -68,7 +68,7 @@ def _column(stored: Stored) -> tuple[tuple[str, ...], npt.NDArray[Any]]:
         return (dated, clock), np.char.add(np.char.add(stored[dated], " "), stored[clock])
     stamped = (n for n, x in stored.items() if x.dtype.kind == "M")
     numbered = (letters[n] for n in _NUMBERED if n in letters)
-    name = next((n for n in (*named, *stamped, *([] if dated is None else [dated]), *numbered)), None)
+    name = next(iter((*named, *stamped, *([] if dated is None else [dated]), *numbered)), None)
     if name is None:
         raise InputError(
             "no column of times", field="time_utc", value=", ".join(stored), allowed="ISO 8601 in UTC",
@@ -115,7 +115,7 @@ def _iso(text: str) -> datetime | None:
 
 
 def _is_time(text: str) -> bool:
-    return _iso(text) is not None or any(_under(way, [text]) is not None for way in _ways(text))
+    return _iso(text) is not None or bool(_ways(text))
 
 
 def _ways(text: str) -> list[str]:
@@ -134,9 +134,9 @@ def _under(way: str, texts: list[str]) -> Stamps | None:
 
 def _formatted(texts: list[str]) -> Stamps:
     """Return times that are all written in one way and ascend in it; of two such ways neither is taken."""
-    found = [stamps for way in _ways(texts[0]) if (stamps := _under(way, texts)) is not None]
+    ways = _ways(texts[0])
+    found = [stamps for way in ways if (stamps := _under(way, texts)) is not None]
     if not found:
-        ways = _ways(texts[0])
         bad = next((t for t in texts if not any(_under(way, [t]) is not None for way in ways)), texts[0])
         raise InputError("is no time", value=bad, allowed=_ALLOWED, remedy="write all times so")
     ascending = [stamps for stamps in found if (np.diff(stamps) >= np.timedelta64(0)).all()] or found[:1]

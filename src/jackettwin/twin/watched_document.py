@@ -137,7 +137,7 @@ def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
 def _likeliest(alarm: Alarm) -> str:
     """Return the cause if one is likelier than not, else the first few."""
     named = [f"{v.cause} ({100.0 * v.probability:.0f} %)" for v in alarm.diagnosis.verdicts[:_NAMED]]
-    clear = alarm.diagnosis.verdicts[0].probability >= 0.5
+    clear = alarm.diagnosis.verdicts[0].is_clear
     return f"most likely {named[0]}" if clear else f"cause not clear: {', '.join(named)}"
 
 

@@ -44,6 +44,11 @@ class CauseVerdict:
     interval_90: tuple[float, float]
     unit: str
 
+    @property
+    def is_clear(self) -> bool:
+        """Whether it is as likely as all others together."""
+        return self.probability >= 0.5
+
 
 @dataclass(frozen=True)
 class Diagnosis:

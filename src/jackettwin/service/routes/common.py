@@ -67,11 +67,13 @@ class Transaction(APIRoute):
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """Return what answers a request; in the API a query that no one reads is refused, not ignored."""
         answer = super().get_route_handler()
+        if not self.include_in_schema:
+            return answer
         known = {parameter.alias for parameter in self.dependant.query_params}
 
         async def answer_known(request: Request) -> Response:
             unknown = next((name for name in request.query_params if name not in known), None)
-            if unknown is not None and self.include_in_schema:
+            if unknown is not None:
                 allowed = ", ".join(sorted(known)) or "none here"
                 raise ApiError(422, "no such query parameter", field=unknown, allowed=allowed)
             return await answer(request)
@@ -164,7 +166,7 @@ def known_asset(connection: Connection, name: str) -> assets.Version:
 def living_asset(connection: Connection, name: str) -> None:
     """Answer 404 if there is no such asset, 409 if it is archived."""
     known_asset(connection, name)
-    if name not in assets.asset_names(connection, archived=False):
+    if assets.is_archived(connection, name):
         raise ApiError(
             409, "the asset is archived", field="asset", value=name, remedy="POST /assets/{asset}/unarchive"
         )
