@@ -72,11 +72,13 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
             for k in range(given.records):
                 one = (f"r{k}.parquet", record_file(k, samples=TEN_MINUTES), description(hour(30 + k // 100)))
                 server.send(*one, asset=f"wtg_{k % 100:02d}")
-                while server.records()["received"] > 3 or time.monotonic() < begin + k * given.pace_s:
+                time.sleep(max(begin + k * given.pace_s - time.monotonic(), 0.0))
+                while server.records()["received"] > 3:
                     time.sleep(0.1)
-                memory.append(server.resident_bytes())
-                if k % 50 == 0:
-                    print(k, *(size // 2**20 for size in memory[-1].values()), file=sys.stderr, flush=True)
+                memory.append(server.own_bytes())
+                if k % 10 == 0:
+                    sizes = (f"{size / 2**20:.1f}" for size in memory[-1].values())
+                    print(k, f"{time.monotonic() - begin:.0f} s", *sizes, file=sys.stderr, flush=True)
 
             while server.records()["received"] or server.records()["observing"]:
                 time.sleep(0.1)
@@ -93,7 +95,7 @@ def load(folder: Path, given: argparse.Namespace) -> Figures:
             "quiet": quiet,
             "busy": busy,
             "minutes": took / 60.0,
-            **spread(memory),
+            **spread(memory, took),
         }
 
 
@@ -144,18 +146,21 @@ def asked(server: Server, n: int, during: Callable[[], None]) -> Figures:
     return {"answers": len(delays), "p50_ms": p50, "p95_ms": p95, "wrong": len(wrong), "cpu_ms": cpu_ms}
 
 
-def spread(memory: list[dict[int, int]]) -> Figures:
+def spread(memory: list[dict[int, int]], took_s: float) -> Figures:
     """Return the memory of server and workers [MB], and how far from its middle each ever is [%].
 
-    The first third is warm-up: libraries are loaded when they are first needed, and caches fill.
+    The first hour, of less than 75 minutes the first third, is warm-up: libraries are loaded when
+    they are first needed, and caches fill. A worker that was started anew meanwhile is not among them.
     """
-    late = memory[len(memory) // 3 :]
-    lowest, highest = (np.array([part(m[pid] for m in late) for pid in late[0]]) for part in (min, max))
+    lasting = [pid for pid in memory[0] if all(pid in m for m in memory)]
+    sizes = np.array([[m[pid] for pid in lasting] for m in memory]) / 2**20
+    share = 3600.0 / took_s if took_s > 4500.0 else 1 / 3
+    late = sizes[int(share * len(sizes)) :]
+    lowest, highest = late.min(axis=0), late.max(axis=0)
     return {
-        "memory_mb": [[m[pid] / 2**20 for pid in memory[0]] for m in (memory[0], late[0], memory[-1])],
-        "memory_tenths_mb": [
-            [m[pid] / 2**20 for pid in memory[0]] for m in memory[:: max(len(memory) // 10, 1)]
-        ],
+        "warm_up_minutes": share * took_s / 60.0,
+        "memory_mb": [sizes[0].tolist(), late[0].tolist(), sizes[-1].tolist()],
+        "memory_tenths_mb": sizes[:: max(len(sizes) // 10, 1)].tolist(),
         "spread_percent": list(100.0 * (highest - lowest) / (highest + lowest)),
     }
 
@@ -406,7 +411,7 @@ def _load(f: Figures) -> list[str]:
         f"| CPU for an answer | {quiet['cpu_ms']:.1f} ms | |",
         f"| answers that were not 200 | {busy['wrong'] + quiet['wrong']} | 0 |",
         "",
-        f"Their memory over these {f['minutes']:.0f} minutes, of which the first third is warm-up:",
+        f"Memory that each shares with no other process, over these {f['minutes']:.0f} minutes:",
         "",
         *_grown(f),
     ]
@@ -420,7 +425,8 @@ def _hour(f: Figures) -> list[str]:
         f"{f['minutes']:.0f} minutes,",
         f"with {f['readers']} readers ({f['busy']['answers']} answers, p95 {f['busy']['p95_ms']:.0f} ms, "
         f"{f['busy']['wrong']} not 200). A worker spent {f['worker_cpu_s_a_record']:.2f} CPU-s a record,",
-        f"the server {f['server_cpu_s'] / f['records']:.2f}. The first third is warm-up.",
+        f"the server {f['server_cpu_s'] / f['records']:.2f}, answers included. Memory each shares with no",
+        f"other process; the first {f['warm_up_minutes']:.0f} minutes are warm-up:",
         "",
         *_grown(f),
         "| MB at tenths of the records | " + " | ".join(map(str, range(len(f["memory_tenths_mb"])))) + " |",

@@ -285,14 +285,10 @@ class Server:
         assert self._process is not None
         return _cpu_s(self._process.pid), sum(_cpu_s(pid) for pid in self.workers())
 
-    def resident_bytes(self) -> dict[int, int]:
-        """Return the memory of the server's own process, then of its workers, by process."""
+    def own_bytes(self) -> dict[int, int]:
+        """Return the memory that the server's own process, then each worker, shares with no other process."""
         assert self._process is not None
-        page = os.sysconf("SC_PAGE_SIZE")
-        return {
-            pid: page * int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-            for pid in (self._process.pid, *sorted(self.workers()))
-        }
+        return {pid: _own_bytes(pid) for pid in (self._process.pid, *sorted(self.workers()))}
 
     @contextmanager
     def _database(self) -> Iterator[Engine]:
@@ -380,6 +376,11 @@ def _cpu_s(pid: int) -> float:
         after_name = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
         return (int(after_name[11]) + int(after_name[12])) / os.sysconf("SC_CLK_TCK")
     return 0.0
+
+
+def _own_bytes(pid: int) -> int:
+    lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+    return 1024 * sum(int(line.split()[1]) for line in lines if line.startswith("Private_"))
 
 
 def _quiet() -> dict[str, int]:

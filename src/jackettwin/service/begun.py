@@ -48,3 +48,14 @@ def give_back() -> None:
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:  # other C libraries have no such function
         trim(0)
+
+
+def one_heap() -> None:
+    """Have all threads of this process share one heap; glibc makes many, each with free room of its own."""
+    tune = getattr(ctypes.CDLL(None), "mallopt", None)
+    if tune is not None:
+        tune(_M_ARENA_MAX, 1)
+
+
+_M_ARENA_MAX = -8
+"""Of glibc's ``mallopt``; other C libraries answer that they do not know it."""

@@ -14,7 +14,7 @@ import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.app import create_app
-from jackettwin.service.begun import NoWorker
+from jackettwin.service.begun import NoWorker, one_heap
 from jackettwin.service.chores import Housekeeping
 from jackettwin.service.context import Service, open_service
 from jackettwin.service.dispatch import Dispatcher
@@ -41,6 +41,7 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
     InputError
         If the database cannot be opened, or others could reach a server without users or TLS.
     """
+    one_heap()
     service = open_service(settings)
     try:
         with reading(service.database) as connection:
