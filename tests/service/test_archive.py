@@ -1,19 +1,20 @@
 """A turbine that is gone: nothing more is taken of it, what was known stays, and it can come back."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from fastapi.testclient import TestClient
 from sqlalchemy import select
-from tests.service.conftest import turn, upload
+from tests.service.conftest import NOON, TWIN, description, hour, record_file, turn, upload
 
 from jackettwin.cli.asset import asset_command
 from jackettwin.errors import InputError
-from jackettwin.service import take_here
+from jackettwin.service import add_conditions, add_twin, catalogue, take_here
 from jackettwin.service.context import Service
 from jackettwin.service.server import take_from_inbox
-from jackettwin.store import reading, tables
+from jackettwin.store import reading, tables, work, writing
 
 
 def names(client: TestClient, query: str = "") -> list[str]:
@@ -55,9 +56,38 @@ def test_files_and_the_command_line_are_refused_too(
     path = store / "inbox" / "wtg" / "r.csv"
     path.parent.mkdir(parents=True)
     path.write_text("time,a\n0,1\n")
-    refused = take_from_inbox(service, store / "inbox", path)
-    assert refused.problem is not None and "archived" in refused.problem["detail"] and path.exists()
-    with pytest.raises(InputError, match="archived"):
-        take_here(service.database, store, "wtg", path)
+    assert take_from_inbox(service, store / "inbox", path) is None and path.exists()
+    assert "archived" in path.with_name("r.csv.refused.json").read_text()
+    (tmp_path / "twin.yaml").write_text("structure: jacket15\n")
+    refused: list[Callable[[], object]] = [
+        lambda: take_here(service.database, store, "wtg", path),
+        lambda: add_twin(service.database, store, "wtg", tmp_path / "twin.yaml"),
+        lambda: add_conditions(service.database, store, "wtg", path),
+    ]
+    for take in refused:
+        with pytest.raises(InputError, match="archived"):
+            take()
     assert CliRunner().invoke(asset_command, [*arguments, "--undo"]).output == "wtg is back\n"
     assert names(client) == ["wtg"]
+
+
+def test_what_an_archived_turbine_left_waits_for_all_others(client: TestClient, service: Service) -> None:
+    """It delays nobody, alarms nobody, and is observed in the end; brought back it waits in line again."""
+    with writing(service.database) as connection:
+        catalogue.add_text_version(connection, service, "other", TWIN, {}, "test")
+    left = upload(client, 1).json()["record_id"]
+    client.delete("/api/v1/assets/wtg?confirm=wtg")
+    assert "jackettwin_queue_age_seconds 0.0" in client.get("/api/v1/metrics").text
+    later = client.post(
+        "/api/v1/assets/other/records",
+        files={"file": ("r2.parquet", record_file(2))},
+        data={"description": description(hour(2))},
+    ).json()["record_id"]
+    with writing(service.database) as connection:
+        assert [job.record_id for job in work.lease(connection, "x", 9, NOON)] == [later, left]
+        work.take_back_orphans(connection, "y", ())
+    turn(service, 6)
+    assert client.get(f"/api/v1/records/{left}").json()["status"] == "observed"
+    client.post("/api/v1/assets/wtg/unarchive")
+    with reading(service.database) as connection:
+        assert work.any_queued(connection, work.OBSERVE, gone=True) is False

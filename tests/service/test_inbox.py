@@ -7,15 +7,16 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.service.conftest import Done, description, record_file
+from tests.service.conftest import TWIN, Done, description, record_file
 
 from jackettwin.service.begun import NoWorker
+from jackettwin.service.catalogue import add_text_version
 from jackettwin.service.context import Service
 from jackettwin.service.intake import folder
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
-from jackettwin.store import reading
+from jackettwin.store import reading, writing
 from jackettwin.store.records import find_record
 
 
@@ -27,13 +28,14 @@ def dropped(service: Service, content: bytes, asset: str = "wtg") -> Path:
     return path
 
 
-def taken(service: Service, path: Path) -> Accepted:
+def taken(service: Service, path: Path) -> Accepted | None:
     return take_from_inbox(service, service.settings.store / "inbox", path)
 
 
 def test_a_file_becomes_a_record_and_leaves_the_inbox(service: Service) -> None:
     path = dropped(service, record_file(1))
     found = taken(service, path)
+    assert found is not None
     with reading(service.database) as connection:
         assert find_record(connection, "wtg", found.record_id) is not None
     assert list(path.parent.iterdir()) == []
@@ -41,18 +43,26 @@ def test_a_file_becomes_a_record_and_leaves_the_inbox(service: Service) -> None:
 
 def test_what_cannot_be_read_stays_with_the_reason_beside_it_until_it_can(service: Service) -> None:
     path = dropped(service, b"nothing that is read")
-    assert taken(service, path).problem is not None
+    refused = taken(service, path)
+    assert refused is not None and refused.problem is not None
     reason = path.with_name("r1.parquet.refused.json")
     assert {"detail", "field"} <= set(json.loads(reason.read_text()))
     path.write_bytes(record_file(1))
-    assert taken(service, path).problem is None
+    mended = taken(service, path)
+    assert mended is not None and mended.new
     assert list(path.parent.iterdir()) == []
 
 
-def test_a_folder_of_no_asset_is_said(service: Service) -> None:
+def test_a_file_of_no_asset_is_said_and_waits_for_one(service: Service) -> None:
     path = dropped(service, record_file(1), asset="wgt")
-    assert "no asset wgt" in taken(service, path).problem["detail"]  # type: ignore[index]
-    assert path.exists() and path.with_name("r1.parquet.refused.json").exists()
+    assert taken(service, path) is None and path.exists()
+    reason = path.with_name("r1.parquet.refused.json")
+    assert json.loads(reason.read_text())["value"] == "wgt"
+    with writing(service.database) as connection:
+        add_text_version(connection, service, "wgt", TWIN, {}, "test")
+    found = taken(service, path)
+    assert found is not None and found.new
+    assert list(path.parent.iterdir()) == []
 
 
 @pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), NoWorker()])
@@ -70,6 +80,7 @@ def test_a_full_disk_or_no_worker_is_not_the_files_fault(
 def test_what_could_not_be_taken_now_is_taken_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As while the database is away: the watcher lives on and comes back to the file."""
     monkeypatch.setattr(folder, "STILL_S", 0.0)
+    monkeypatch.setattr(folder, "_LATER_S", 0.0)
     (tmp_path / "r1.parquet").write_bytes(b"x")
     tried: list[Path] = []
 

@@ -101,7 +101,7 @@ def test_after_three_tries_a_record_is_set_aside_and_may_be_tried_again(database
     assert states == ["queued", "queued", "set_aside"]
     with writing(database) as c:
         assert work.lease(c, "one", 1, NOW) == []
-        assert work.try_again(c, job.id)
+        assert work.try_again(c, job.id, NOW)
         assert work.lease(c, "one", 1, NOW)[0].tries == 0
 
 

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from jackettwin.cli.console import output, print_json
 from jackettwin.cli.store_options import opened, store_options
+from jackettwin.errors import InputError
 
 
 @click.group("asset")
@@ -66,22 +67,19 @@ def list_(archived: bool, as_json: bool, store: Path, database: str | None) -> N
 def show(name: str, as_json: bool, store: Path, database: str | None) -> None:
     """Show one turbine and the versions of its twin."""
     engine = opened(store, database)
-    from jackettwin.service.catalogue import one, version_out
+    from jackettwin.service.catalogue import one, versions_out
     from jackettwin.store import reading
-    from jackettwin.store.assets import all_versions, found_version
+    from jackettwin.store.assets import found_version
 
     with reading(engine) as connection:
         found_version(connection, name)
         document = one(connection, name).model_dump(mode="json")
-        versions = [
-            version_out(connection, v).model_dump(mode="json") for v in all_versions(connection, name)
-        ]
+        versions = [version.model_dump(mode="json") for version in versions_out(connection, name)]
     if as_json:
         print_json({**document, "versions": versions})
         return
-    output.print(
-        f"{name}: {document['status']}, records {document['records']}, findings {document['findings']}"
-    )
+    _, status, _, counts, said, _ = _row(document)
+    output.print(f"{name}: {status}; records: {counts}; findings: {said}")
     table = Table("version", "adopted", "observations", "created (UTC)", "by", "comment", box=None)
     for v in versions:
         row = (
@@ -161,7 +159,12 @@ def conditions(
     engine = opened(store, database)
     from jackettwin.service import add_conditions
 
-    renamed = dict(column.rsplit("=", 1) for column in columns if "=" in column)
+    for column in columns:
+        if "=" not in column:
+            raise InputError(
+                "a column's new name is missing", field="column", value=column, allowed="THEIRS=OURS"
+            )
+    renamed = dict(column.rsplit("=", 1) for column in columns)
     rows = []
     for path in tables:
         values, again = add_conditions(

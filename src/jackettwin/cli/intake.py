@@ -44,6 +44,8 @@ def intake_command(
     ]
     if as_json:
         print_json({"asset": asset, "files": rows})
+    if not took:
+        messages.print("there is no file to take")
     refused = sum(t.problem is not None for _, t in took)
     if refused:
         messages.print(f"{refused} of {len(took)} files were refused")

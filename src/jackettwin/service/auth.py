@@ -172,7 +172,12 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
 
 def unknown() -> ApiError:
     """Return the answer to somebody of whom it is not known who it is."""
-    return ApiError(401, "log in, or send a token", headers={"WWW-Authenticate": "Bearer"})
+    return ApiError(
+        401,
+        "log in, or send a token",
+        headers={"WWW-Authenticate": "Bearer"},
+        remedy="a server without users answers only to http://127.0.0.1 and localhost, on its own machine",
+    )
 
 
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:

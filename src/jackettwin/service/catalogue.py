@@ -16,7 +16,7 @@ from jackettwin.service.confined import only_files_in
 from jackettwin.service.consequences import ask_known
 from jackettwin.service.intake.files import queue
 from jackettwin.service.schemas import AssetOut, VersionOut
-from jackettwin.store import assets, journal, people, records, results
+from jackettwin.store import assets, journal, people, records, results, work
 
 if TYPE_CHECKING:
     from jackettwin.service.context import Place
@@ -100,12 +100,15 @@ def adopt(connection: Connection, service: Place, name: str, version: int, by: s
 def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
     """Archive an asset, or bring it back: it takes nothing more; what it knew stays, and can be asked for.
 
+    What was taken of it before is still observed, when no other asset's record waits.
+
     Raises
     ------
     InputError
         If there is no such asset.
     """
     assets.archive(connection, name, None if undo else service.now())
+    work.reorder(connection, name, 0 if undo else work.GONE)
     people.note_down(connection, by, "unarchive" if undo else "archive", name, "ok", service.now())
     journal.tell(connection, "asset", name, {"archived": not undo}, service.now())
 

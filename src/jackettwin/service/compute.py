@@ -46,6 +46,7 @@ _DASK = {
     "distributed.deploy.lost-worker-timeout": "1h",
     "distributed.worker.profile.enabled": False,
     "distributed.admin.system-monitor.log-length": 100,
+    "distributed.admin.low-level-log-length": 10,
     "distributed.worker.preload": [_START],
     "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
 }
@@ -53,8 +54,9 @@ _DASK = {
 
 A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
 busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
-its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor keep
-what every thread did for an hour, and let workers grow meanwhile: off, and short.
+its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
+keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
+that was sent: off, and short.
 """
 
 _REMEMBERED = 10_000

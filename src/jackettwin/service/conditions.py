@@ -108,7 +108,9 @@ def _observe_again(connection: Connection, place: Place, asset: str, changed: se
         first = bisect_right(starts, record.start_utc - streams.INTERVAL)
         if first < len(starts) and starts[first] < end:
             jobs = work.jobs_of(connection, asset, record.record_id)
-            again += bool([work.renew(connection, job.id) for job in jobs if job.version >= adopted])
+            again += bool(
+                [work.renew(connection, job.id, place.now()) for job in jobs if job.version >= adopted]
+            )
     return again
 
 

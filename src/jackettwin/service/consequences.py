@@ -125,7 +125,7 @@ def ask_known(connection: Connection, service: Place, version: assets.Version) -
     """
     named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
     number = queue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
-    work.try_again(connection, number)
+    work.try_again(connection, number, service.now())
 
 
 def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, select
+from sqlalchemy import Connection, Engine, select
 
 from jackettwin.errors import InputError
 from jackettwin.service import conditions, consequences
@@ -28,12 +28,13 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
     Raises
     ------
     InputError
-        If the twin or a file it names cannot be read.
+        If the twin or a file it names cannot be read, or the asset is archived.
     """
     assets.check_name(name)
     contents = bundle(twin)
     desk = Desk(ServiceSettings(store), database)
     with writing(database) as connection:
+        _refuse_archived(connection, name)
         version = add_version(connection, desk, name, contents, "command line", comment)
     return {
         "asset": name,
@@ -79,18 +80,22 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
     settings = ServiceSettings(store)
     with reading(database) as connection:
         assets.found_version(connection, asset)
-        if assets.is_archived(connection, asset):
-            raise InputError(
-                "the asset is archived",
-                field="asset",
-                value=asset,
-                remedy="bring it back with `jackettwin asset archive NAME --undo --store STORE`",
-            )
+        _refuse_archived(connection, asset)
 
     def parse(file: Path, whose: str) -> Parsed:
         return read_file(str(file), whose, str(store), settings.samples_limit, settings.worker_memory_bytes)
 
     return take_file(database, Desk(settings, database).now, parse, asset, path, path.name)
+
+
+def _refuse_archived(connection: Connection, asset: str) -> None:
+    if assets.is_archived(connection, asset):
+        raise InputError(
+            "the asset is archived",
+            field="asset",
+            value=asset,
+            remedy="bring it back with `jackettwin asset archive NAME --undo --store STORE`",
+        )
 
 
 def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how: Any) -> tuple[int, int]:
@@ -99,10 +104,11 @@ def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how
     Raises
     ------
     InputError
-        If there is no such asset, or the table cannot be read.
+        If there is no such asset, it is archived, or the table cannot be read.
     """
     with reading(database) as connection:
         assets.found_version(connection, asset)
+        _refuse_archived(connection, asset)
     values = conditions.read_table(table, **how)
     with writing(database) as connection:
         return conditions.add(connection, Desk(ServiceSettings(store), database), asset, values)
@@ -154,5 +160,5 @@ def _queue_all(connection: Any, desk: Desk, version: assets.Version, start: date
     for record in records.all_with_samples(connection, version.asset):
         if record.start_utc >= start:
             number = queue(connection, version, record.record_id, desk.now())
-            count += work.try_again(connection, number)
+            count += work.try_again(connection, number, desk.now())
     return count

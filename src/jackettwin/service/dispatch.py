@@ -153,14 +153,18 @@ class Dispatcher(Thread):
         self._running[job.id] = _Running(job, future, time.monotonic())
 
     def _next_kind(self) -> str | None:
-        """Return what to lease: records first; what a state says only when it was rested for long enough."""
+        """Return what to lease: records first, those of archived assets last of all.
+
+        What a state says is asked only when it was rested for long enough.
+        """
         with reading(self.service.database) as connection:
             if work.any_queued(connection, work.OBSERVE):
                 return work.OBSERVE
             asking = any(running.job.kind == work.KNOW for running in self._running.values())
-            if asking or time.monotonic() < self._rest_until or not work.any_queued(connection, work.KNOW):
-                return None
-            return work.KNOW
+            rests = asking or time.monotonic() < self._rest_until
+            if not rests and work.any_queued(connection, work.KNOW):
+                return work.KNOW
+            return work.OBSERVE if work.any_queued(connection, work.OBSERVE, gone=True) else None
 
     def _task(
         self, connection: Connection, job: work.Job, every_day: bool

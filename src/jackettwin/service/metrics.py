@@ -53,7 +53,7 @@ def exposition(service: Service) -> bytes:
                 age = (now - asset.last_record_utc).total_seconds()
                 gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
-    gauge("queue_age_seconds", "Time since the oldest queued work was asked for", waited)
+    gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
     gauge("workers", "Workers there are", service.compute.workers)
     gauge(
         "worker_restarts_total",

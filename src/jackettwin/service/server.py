@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
@@ -110,22 +111,35 @@ def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
     watch_folders([folder], take, stop)
 
 
-def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted:
-    """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it."""
+def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | None:
+    """Take a file that lies in an asset's folder; what could not be read stays, with the reason beside it.
+
+    Return None for a file of no asset, which is looked at again: there may be one by then.
+    """
     asset, reason = path.relative_to(inbox).parts[0], path.with_name(path.name + REFUSED)
     with reading(service.database) as connection:
         known = asset in assets.asset_names(connection, archived=False)
-    if known:
-        taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
-    else:
-        taken = Accepted(
-            "", None, False, {"detail": f"there is no asset {asset}, or it is archived", "field": "folder"}
-        )
+    if not known:
+        if not reason.exists():
+            _leave(path, reason, _OF_NO_ASSET | {"value": None if path.parent == inbox else asset})
+        return None
+    taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
     if taken.problem is None:
         for file in (path, path.with_suffix(".json"), reason):
             file.unlink(missing_ok=True)
         service.wake()
     else:
-        log.warning("%s stays in the inbox: %s", path.name, taken.problem["detail"])
-        reason.write_text(json.dumps(taken.problem, indent=1))
+        _leave(path, reason, taken.problem)
     return taken
+
+
+def _leave(path: Path, reason: Path, problem: dict[str, Any]) -> None:
+    log.warning("%s stays in the inbox: %s", path.name, problem["detail"])
+    reason.write_text(json.dumps(problem, indent=1, ensure_ascii=False), encoding="utf-8")
+
+
+_OF_NO_ASSET = {
+    "detail": "lies in the folder of no asset, or of one that is archived",
+    "field": "folder",
+    "remedy": "put it into inbox/ASSET/; it is taken once there is that asset",
+}

@@ -64,7 +64,7 @@ def pick(
     number = 0
     for version in assets.all_versions(connection, record.asset):
         number = queue(connection, version, record.record_id, service.now(), priority=20)
-        work.renew(connection, number)
+        work.renew(connection, number, service.now())
     told = {"record_id": record.record_id, "status": record.status, "picks": len(body.picks)}
     journal.tell(connection, "record", record.asset, told, service.now())
     return number

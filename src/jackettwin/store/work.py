@@ -19,6 +19,8 @@ from jackettwin.store.tables import servers, work
 
 OBSERVE, KNOW = "observe", "know"
 """Kinds of work: observe a record; say what a state says of the supports."""
+GONE = -20
+"""Priority of the records of an archived asset: after all others, and in nobody's alarm."""
 MOST_TRIES = 3
 """A record that three workers died of, or could not finish in time, is set aside."""
 
@@ -132,22 +134,28 @@ def release(connection: Connection, job: Job, owner: str) -> None:
     connection.execute(update(work).where(*mine).values(state="queued", owner=None, tries=work.c.tries - 1))
 
 
-def try_again(connection: Connection, job_id: int) -> bool:
-    """Queue work anew that was set aside, failed or was cancelled."""
+def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
+    """Queue work anew that is done, was set aside, failed or was cancelled: it is asked for now."""
     ended = work.c.state.in_(("set_aside", "failed", "cancelled", "done"))
-    done = connection.execute(
-        update(work)
-        .where(work.c.id == job_id, ended)
-        .values(state="queued", tries=0, reason=None, ended_utc=None)
-    )
+    done = connection.execute(update(work).where(work.c.id == job_id, ended).values(**_anew(now)))
     return done.rowcount == 1
 
 
-def renew(connection: Connection, job_id: int) -> bool:
+def renew(connection: Connection, job_id: int, now: datetime) -> bool:
     """Queue work anew since what it is of has changed: a result that is on its way is not accepted."""
-    open_again = {"state": "queued", "tries": 0, "owner": None, "reason": None, "ended_utc": None}
     mine = (work.c.id == job_id, work.c.state.not_in(("queued", "cancelled")))
-    return connection.execute(update(work).where(*mine).values(**open_again)).rowcount == 1
+    return connection.execute(update(work).where(*mine).values(**_anew(now))).rowcount == 1
+
+
+def _anew(now: datetime) -> dict[str, Any]:
+    nothing = dict.fromkeys(("owner", "reason", "ended_utc"))
+    return {"state": "queued", "tries": 0, "created_utc": now, **nothing}
+
+
+def reorder(connection: Connection, asset: str, priority: int) -> None:
+    """Give the records of an asset that wait to be observed another priority."""
+    waiting = (work.c.asset == asset, work.c.kind == OBSERVE, work.c.state == "queued")
+    connection.execute(update(work).where(*waiting).values(priority=priority))
 
 
 def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
@@ -186,9 +194,10 @@ def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
     return [Job(**row._mapping) for row in connection.execute(select(work).where(*where).order_by(work.c.id))]
 
 
-def any_queued(connection: Connection, kind: str) -> bool:
-    """Tell whether work of a kind waits; it costs the same however much is done."""
-    query = select(work.c.id).where(work.c.state == "queued", work.c.kind == kind).limit(1)
+def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool:
+    """Tell whether work of a kind waits, or only of archived assets; it costs the same whatever is done."""
+    urgency = work.c.priority == GONE if gone else work.c.priority > GONE
+    query = select(work.c.id).where(work.c.state == "queued", urgency, work.c.kind == kind).limit(1)
     return connection.scalar(query) is not None
 
 
@@ -200,9 +209,10 @@ def queue_sizes(connection: Connection) -> dict[str, int]:
 
 
 def oldest_queued(connection: Connection) -> datetime | None:
-    """Return since when the oldest queued work has been waiting."""
+    """Return since when the oldest record to be observed has been waiting, those of archived assets apart."""
+    waiting = (work.c.state == "queued", work.c.kind == OBSERVE, work.c.priority > GONE)
     found: datetime | None = connection.scalar(
-        select(func.min(work.c.created_utc, type_=work.c.created_utc.type)).where(work.c.state == "queued")
+        select(func.min(work.c.created_utc, type_=work.c.created_utc.type)).where(*waiting)
     )
     return found
 

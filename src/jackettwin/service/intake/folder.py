@@ -15,6 +15,8 @@ log = logging.getLogger(__name__)
 
 STILL_S = 2.0
 """A file whose size did not change for so long is written."""
+_LATER_S = 10.0
+"""After which a file is tried again that could not be taken now: it may be one of thousands."""
 _IGNORED = (".json", ".tmp", ".part", ".swp", ".crdownload")
 """Descriptions come with their record; the others are not finished."""
 
@@ -51,8 +53,10 @@ def watch_folders(
                 waiting[file] = (mark, time.monotonic())
             elif time.monotonic() - since >= STILL_S:
                 took = take(file)
-                del waiting[file]
-                if took is not None:
+                if took is None:
+                    waiting[file] = (mark, time.monotonic() + _LATER_S)
+                else:
+                    del waiting[file]
                     seen[file] = mark
                     log.info("%s: %s", file.name, took.problem["detail"] if took.problem else took.record_id)
 

@@ -54,7 +54,7 @@ def cancel(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOu
 def retry(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
     """Try work again that was set aside, failed or was cancelled."""
     job = _found(work.find_job(connection, job_id), job_id)
-    if not work.try_again(connection, job_id):
+    if not work.try_again(connection, job_id, parts.now()):
         raise ApiError(409, f"this work is {job.state} already")
     records.set_status(connection, job.asset, job.record_id, "received")
     people.note_down(connection, who.name, "retry", str(job_id), "ok", parts.now())
