@@ -84,7 +84,10 @@ def _encoded_array(value: npt.NDArray[Any]) -> Any:
         return {"real": _encoded_array(value.real), "imag": _encoded_array(value.imag)}
     if not value.size:
         return {"shape": list(value.shape)}
-    return encode(value.tolist())
+    plain = value.tolist()
+    kind = value.dtype.kind
+    # JSON has these numbers; what it lacks is looked for one by one
+    return plain if kind in "biu" or (kind == "f" and np.isfinite(value).all()) else encode(plain)
 
 
 def _left_out(f: Field[Any], value: Any) -> bool:

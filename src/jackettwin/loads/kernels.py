@@ -7,13 +7,19 @@ Plain arrays in and out; what they mean stands where they are called.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
 _BLOCK = 64
 """Times at once: what is read and written of them stays in the cache."""
 
-compiled = njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
+compiled = njit(cache=True, **_HOW)
+"""For what Python calls."""
+inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
+"""For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
 
 
 @compiled
@@ -44,7 +50,7 @@ def between_levels(level, middle, half, nodes, fields, mixing, points, out):
             _mix(mixing, value[:, :n], out[:, at, start : start + n])
 
 
-@compiled
+@inner
 def _lagrange(x, nodes, scale, weight):
     """Write Lagrange's weights of the nodes at every x to ``weight`` (n_nodes, at least as many)."""
     for j in range(nodes.size):
@@ -55,7 +61,7 @@ def _lagrange(x, nodes, scale, weight):
                     weight[j, t] *= x[t] - nodes[i]
 
 
-@compiled
+@inner
 def _mix(mixing, value, out):
     """Write mixing @ value (n_fields, n) to ``out`` (n_mixed, n)."""
     out[:] = 0.0
@@ -65,7 +71,7 @@ def _mix(mixing, value, out):
                 out[m, t] += mixing[m, f] * value[f, t]
 
 
-@compiled
+@inner
 def _lagrange_scale(nodes):
     """Return 1/Π(x_j − x_i) of every node."""
     scale = np.ones(nodes.size)
@@ -140,7 +146,7 @@ def blade_elements(
         _to_top(turn, shaft, hub, free, load, out[k])
 
 
-@compiled
+@inner
 def _seen_by_elements(wind, first, place, share, out):
     """Write the wind (3, n_elements) that elements see of that at places (n_places, 3)."""
     for e in range(first.size - 1):
@@ -153,7 +159,7 @@ def _seen_by_elements(wind, first, place, share, out):
         out[0, e], out[1, e], out[2, e] = x, y, z
 
 
-@compiled
+@inner
 def _summed(along, across, scale, polar, flow, out):
     """Write force and moment (6,) of all elements from their lift and drag coefficients and their flow."""
     a = b = c = d = e = f = 0.0
@@ -170,7 +176,7 @@ def _summed(along, across, scale, polar, flow, out):
     out[0], out[1], out[2], out[3], out[4], out[5] = a, b, c, d, e, f
 
 
-@compiled
+@inner
 def _arctan2(y, x):
     """Return the angle of (x, y) to 2e-8 rad (Abramowitz & Stegun 1964, eq. 4.4.49): a third of the work."""
     low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
@@ -184,7 +190,7 @@ def _arctan2(y, x):
     return -angle if y < 0.0 else angle
 
 
-@compiled
+@inner
 def _to_rotor(turn, shaft, hub, free, motion, out):
     """Write the hub's velocity and turning in the rotor's axes from the motion (6,) of the tower top."""
     spin, at_hub = motion[3:], np.empty(3)
@@ -199,7 +205,7 @@ def _to_rotor(turn, shaft, hub, free, motion, out):
             out[3 + i] -= about * shaft[i]
 
 
-@compiled
+@inner
 def _to_top(turn, shaft, hub, free, load, out):
     """Write force and moment at the tower top from those at the hub in the rotor's axes (6,)."""
     arm = np.empty(3)
@@ -211,7 +217,7 @@ def _to_top(turn, shaft, hub, free, load, out):
         out[3 + i] += arm[i] - about * shaft[i]
 
 
-@compiled
+@inner
 def _turn(axis, angle, out):
     """Write the rotation by ``angle`` about a unit ``axis``."""
     cos, sin = np.cos(angle), np.sin(angle)
@@ -227,13 +233,13 @@ def _turn(axis, angle, out):
     out[2, 1] += sin * axis[0]
 
 
-@compiled
+@inner
 def _times(matrix, vector, out):
     for i in range(3):
         out[i] = matrix[i, 0] * vector[0] + matrix[i, 1] * vector[1] + matrix[i, 2] * vector[2]
 
 
-@compiled
+@inner
 def _back(matrix, vector, out):
     """Write matrixᵀ vector; ``out`` may be the vector itself."""
     x, y, z = vector[0], vector[1], vector[2]
@@ -241,7 +247,7 @@ def _back(matrix, vector, out):
         out[i] = matrix[0, i] * x + matrix[1, i] * y + matrix[2, i] * z
 
 
-@compiled
+@inner
 def _cross(a, b, out):
     x = a[1] * b[2] - a[2] * b[1]
     y = a[2] * b[0] - a[0] * b[2]

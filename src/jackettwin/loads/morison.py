@@ -19,7 +19,6 @@ import scipy.sparse as sp
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.kernels import morison
 from jackettwin.structure import Assembly, Structure, beam
 from jackettwin.structure.mesh import Mesh
 
@@ -221,6 +220,8 @@ def point_forces(
     wet : (..., n)
         Wet share of each point.
     """
+    from jackettwin.loads.kernels import morison  # it brings a compiler along
+
     rho, D = grid.density_kg_m3, grid.diameter
     v = u if velocity is None else u - velocity
     shape = np.broadcast_shapes(v.shape, du.shape)

@@ -29,6 +29,8 @@ making = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
 """For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
 inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, **_HOW)
 """For what makes no array either: a tenth of the compiling is counting who still holds one."""
+within = njit(inline="always", **_HOW)
+"""For what is called in one place: written into it there, so that what it calls is optimised once less."""
 
 MAX_STEPS = 30
 _TINY = 1e-300
@@ -442,7 +444,7 @@ def _ritz(room, s, values, vectors):
     return step
 
 
-@inner
+@within
 def _iterate(model, laws, a, b, values, vectors, tolerance, room):
     """Refine one pole, or two nearly equal ones about their mean, by inverse iteration and Rayleigh–Ritz.
 
@@ -491,24 +493,27 @@ def _take(values, shapes, i, other_values, other_shapes, j):
         other_shapes[j, k] = shapes[i, k]
 
 
-@inner
+@within
 def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
     """Refine one pole, or two that are near each other: together, then alone where they stand clear.
 
-    Two end in the order of |λ|, not in that of the starts.
+    Two end in the order of |λ|, not in that of the starts. Return whether all came to rest.
     """
-    if values.size == 1:
-        return _iterate(model, laws, a, b, values, vectors, tolerance, room)
-    if not _iterate(model, laws, a, b, values, vectors, COARSE, room):
-        return False
-    if abs(values[1]) < abs(values[0]):
-        _exchange(values, vectors, 0, 1)
-    if abs(values[1] - values[0]) <= INSEPARABLE * abs(values[1]):
-        return _iterate(model, laws, a, b, values, vectors, tolerance, room)
-    done = True
-    for i in range(2):
-        done &= _iterate(model, laws, a, b, values[i : i + 1], vectors[i : i + 1], tolerance, room)
-    return done
+    first, size = 0, values.size
+    near = COARSE if size == 2 else tolerance
+    while first < values.size:
+        last = first + size
+        if not _iterate(model, laws, a, b, values[first:last], vectors[first:last], near, room):
+            return False
+        if near == tolerance:
+            first = last
+            continue
+        near = tolerance
+        if abs(values[1]) < abs(values[0]):
+            _exchange(values, vectors, 0, 1)
+        if abs(values[1] - values[0]) > INSEPARABLE * abs(values[1]):
+            size = 1
+    return True
 
 
 @inner
@@ -710,35 +715,46 @@ def _turn(like, own, m, values, shapes):
 
 @compiled
 def arrange(like, family, values, shapes, same):
-    """Name the modes of every family in every set and turn those of multiple poles, in place.
+    """Name the modes of every family in every set, in place.
 
     ``like`` (n_modes, n) is φᵀM of the pinned modes that name them. Returns (n_sets, n_modes) numbers, the
-    same for the modes of one multiple pole: those nearer than ``same`` (relative).
+    same for the modes of one multiple pole, those nearer than ``same`` (relative): the place of its first.
     """
     n_sets, n_modes = values.shape
     number = np.empty((n_sets, n_modes), np.int64)
-    own, equal = np.empty(n_modes, np.int64), np.empty(n_modes, np.int64)
+    own = np.empty(n_modes, np.int64)
     likeness = np.empty((n_modes, n_modes))
     for k in range(n_sets):
         for i in range(n_modes):
-            number[k, i] = k * n_modes + i
+            number[k, i] = i
         first = 0
         while first < n_modes:
             m, last = _members(family, values[k], first, own)
             if m > 1:
                 _name(like, own, m, values[k], shapes[k], likeness)
             for i in range(m):
-                n_equal = 0
-                for j in range(i, m):
+                for j in range(i + 1, m):
                     near = abs(values[k, own[j]] - values[k, own[i]]) <= same * abs(values[k, own[i]])
-                    if near and number[k, own[j]] == k * n_modes + own[j]:
+                    if near and number[k, own[j]] == own[j]:
                         number[k, own[j]] = number[k, own[i]]
-                        equal[n_equal] = own[j]
-                        n_equal += 1
-                if n_equal > 1:
-                    _turn(like, equal, n_equal, values[k], shapes[k])
             first = last
     return number
+
+
+@compiled
+def turn(like, number, values, shapes):
+    """Turn the modes of the multiple poles that :func:`arrange` numbered to the pinned ones, in place."""
+    n_sets, n_modes = values.shape
+    own = np.empty(n_modes, np.int64)
+    for k in range(n_sets):
+        for i in range(n_modes):
+            m = 0
+            for j in range(i, n_modes):
+                if number[k, j] == i:
+                    own[m] = j
+                    m += 1
+            if m > 1:
+                _turn(like, own, m, values[k], shapes[k])
 
 
 @inner

@@ -125,8 +125,11 @@ class Families:
         -------
         (n_sets, n_modes) numbers, the same for the modes of one multiple pole
         """
-        found: IntArray = kernels().arrange(self.like, self.of, poles, shapes, SAME)
-        return found
+        number: IntArray = kernels().arrange(self.like, self.of, poles, shapes, SAME)
+        n_sets, n_modes = number.shape
+        if (number != np.arange(n_modes)).any():
+            kernels().turn(self.like, number, poles, shapes)
+        return number + n_modes * np.arange(n_sets)[:, None]
 
 
 def families_of(model: Condensed, modes: tuple[int, ...]) -> Families:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import io
 
 from jackettwin.records.readers import hdf5
 from jackettwin.records.readers.arrays import arrays_from_record, table_from_arrays
@@ -27,6 +26,8 @@ def read(path: Path) -> ReadTable:
         stream.seek(512)  # 7.3 puts HDF5 behind a text block of this size
         if stream.read(8) == HDF5_MARK:
             return hdf5.read(path)
+    from scipy import io  # a tenth of a second that few records need
+
     content = io.loadmat(path, chars_as_strings=True)
     arrays: dict[str, npt.NDArray[Any]] = {}
     for key, value in content.items():
@@ -39,6 +40,8 @@ def write(record: Record, path: Path) -> None:
     """Write a version 5 file."""
     arrays = arrays_from_record(record)
     arrays["channel_names"] = np.array(record.channel_names, dtype=object)  # a cell array of texts
+    from scipy import io  # a tenth of a second that few records need
+
     io.savemat(str(path), arrays, appendmat=False, do_compression=True)
 
 
