@@ -444,7 +444,7 @@ def _ritz(room, s, values, vectors):
     return step
 
 
-@within
+@inner
 def _iterate(model, laws, a, b, values, vectors, tolerance, room):
     """Refine one pole, or two nearly equal ones about their mean, by inverse iteration and Rayleigh–Ritz.
 
