@@ -3,7 +3,7 @@
 Plain arrays in and out; what they mean stands where they are called.
 """
 
-# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator"
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-overload"
 
 from __future__ import annotations
 

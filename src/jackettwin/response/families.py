@@ -129,7 +129,7 @@ class Families:
         n_sets, n_modes = number.shape
         if (number != np.arange(n_modes)).any():
             kernels().turn(self.like, number, poles, shapes)
-        return number + n_modes * np.arange(n_sets)[:, None]
+        return np.asarray(number + n_modes * np.arange(n_sets)[:, None])
 
 
 def families_of(model: Condensed, modes: tuple[int, ...]) -> Families:
