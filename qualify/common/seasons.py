@@ -21,6 +21,11 @@ WIND = 1e-2 * np.array([-0.010, -0.006, -0.008, -0.008])
 """d ln f per m/s."""
 WAVE = 1e-2 * np.array([-0.04, -0.05, -0.03, -0.03])
 """d ln f per metre of significant height."""
+PAIRS = ((0, 1), (2, 3))
+TURN = 3e-5
+"""What a m/s of wind adds to the coupling of a pair: half a degree for the closer one."""
+NO_ANGLE = np.radians(20.0)
+"""Standard deviation from which identification states no direction of a pair."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,8 @@ class Kind:
 class Seasons:
     """Modes through time: ``days`` (n,), the others (n, 4); ``conditions`` by name (n,).
 
-    ``expected`` (2, n, 4) is what moves ln f and ln ζ, without the noise of identification.
+    ``expected`` (2, n, 4) is what moves ln f and ln ζ, without the noise of identification. ``angle`` [rad]
+    stands at the lower mode of a pair, and is NaN where there is none.
     """
 
     days: np.ndarray
@@ -68,6 +74,8 @@ class Seasons:
     process: np.ndarray = field(repr=False)
     expected: np.ndarray = field(repr=False)
     noise_std: np.ndarray = field(repr=False)
+    angle: np.ndarray = field(repr=False)
+    angle_std: np.ndarray = field(repr=False)
 
     def changed(self, ln_f: np.ndarray, ln_zeta: np.ndarray | float = 0.0) -> Seasons:
         """Return the same seasons with (n, 4) added to ln f and ln ζ."""
@@ -125,11 +133,40 @@ def seasons(seed: int, days: float, kind: Kind | None = None) -> Seasons:
     wrong_z = np.exp(kind.wrong * rng.choice([-1.0, 1.0], N_MODES))
     frequency = FREQUENCY_HZ * np.exp(ln_f)
     damping = np.exp(ln_zeta_seen)
+    angle, angle_std = _angles(seed, t, days, kind, frequency, f_std, drawn_wind)
+    wrong_a = np.exp(kind.wrong * rng.choice([-1.0, 1.0], N_MODES))
     return Seasons(
         t, frequency, frequency * f_std * wrong_f, damping, damping * np.minimum(z_std, 0.6) * wrong_z,
         {"sea_level_m": level[at], "air_temperature_c": air[at], "wind_speed_m_s": drawn_wind, "hs_m":
-        drawn_wave}, process, expected, f_std,
+        drawn_wave}, process, expected, f_std, angle, angle_std * wrong_a,
     )  # fmt: skip
+
+
+def _angles(
+    seed: int, t: np.ndarray, days: float, kind: Kind, frequency: np.ndarray, f_std: np.ndarray,
+    wind: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Return the directions of pairs and their standard deviations, (n, 4) each; NaN where there is none.
+
+    What couples two modes turns them, by ½ atan 2κ/g where the coupling is κ and the frequencies are ln g
+    apart; identification does the same by what it is unsure of.
+    """
+    rng = np.random.default_rng((1813, seed))
+    angle, std = np.full((2, t.size, N_MODES), np.nan)
+    draw = _student if kind.heavy else np.random.Generator.standard_normal
+    for pair in PAIRS:
+        own = np.sqrt(max(1.0 - kind.shared - kind.common, 0.0))
+        coupling = kind.unexplained * own * _slow(rng, t, days, kind.memory) + TURN * wind
+        gap = np.log(FREQUENCY_HZ[pair[1]] / FREQUENCY_HZ[pair[0]])
+        mixed = np.hypot(*f_std[:, pair].T)
+        turned = 0.5 * np.arctan2(2.0 * coupling, gap) + mixed / gap * draw(rng, (t.size,))
+        turned = np.where(rng.random(t.size) < kind.outliers, rng.uniform(-np.pi, np.pi, t.size), turned)
+        seen = np.log(frequency[:, pair])
+        stated = mixed / np.abs(seen[:, 1] - seen[:, 0])
+        rows = np.flatnonzero(stated < NO_ANGLE)
+        lower = np.array(pair)[np.argmin(seen[rows], axis=1)]
+        angle[rows, lower], std[rows, lower] = turned[rows], stated[rows]
+    return angle, std
 
 
 def _student(rng: np.random.Generator, size: tuple[int, ...]) -> np.ndarray:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import multivariate_normal
 
-from jackettwin.watching.causes import Cause
-from jackettwin.watching.diagnosis import _free, _likelihood, _misfit, _moved
+from jackettwin.watching.causes import Cause, sizes_about
+from jackettwin.watching.diagnosis import _free, _judge, _likelihood, _misfit, _moved
 from jackettwin.watching.watch import Change
 
 KINDS = ("frequency", "damping", "frequency")
@@ -17,6 +17,14 @@ def case(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, Cause]:
     sizes = np.array([-0.5, 0.3, 2.0])
     cause = Cause("any", rng.standard_normal((4, 3)), sizes, np.zeros(3))
     return root @ root.T + np.eye(3), rng.standard_normal(3), cause
+
+
+def changed(info: np.ndarray, score: np.ndarray) -> Change:
+    none = np.zeros(len(score))
+    return Change(
+        0.0, "scatter", "any", 0.0, (0.0, 0.0), none > 0.0, none, none, info[None], score[None], np.zeros(1),
+        np.zeros((1, len(score), 3)), 0.0, none,
+    )  # fmt: skip
 
 
 def test_the_evidence_is_that_of_a_normal_direction(rng: np.random.Generator) -> None:
@@ -54,10 +62,22 @@ def test_draws_that_differ_make_the_direction_uncertain_where_they_do(rng: np.ra
 
 
 def test_a_large_step_is_not_many_small_ones_where_it_is_bent() -> None:
-    sizes = np.array([0.5, 1.0, 2.0])  # median 1: there the direction is that of the draws
-    cause = Cause("bent", np.array([[1.0, 0.0]]), sizes, np.zeros(3), bend=np.array([0.0, 0.5]))
-    found = cause.steps(np.array([0.5, 1.0, 3.0]))
-    np.testing.assert_allclose(found, [[0.5, -0.125], [1.0, 0.0], [3.0, 3.0]])
+    at, bend = np.array([0.0, 1.0, 3.0]), np.array([[0.0, -0.5], [0.0, 0.0], [0.0, 1.0]])
+    cause = Cause("bent", np.array([[1.0, 0.0]]), np.ones(1), np.zeros(1), bent_at=at, bend=bend)
+    found = cause.steps(np.array([-1.0, 0.5, 1.0, 3.0, 5.0]))
+    np.testing.assert_allclose(found, [[-1.0, 1.0], [0.5, -0.125], [1.0, 0.0], [3.0, 3.0], [5.0, 5.0]])
+
+
+def test_no_cause_is_favoured_for_its_usual_size() -> None:
+    """Two that do the same, one by a third of what is usual: a large change is either's alike."""
+    kinds, info = ("frequency",), np.array([[1e8]])
+    causes = [
+        Cause(name, np.array([[unit]]), *sizes_about(1.0, 0.8), misfit=0.03)
+        for name, unit in (("scour", -1e-3), ("soil", -3e-3))
+    ]
+    for change in (-1e-3, -4e-3):
+        one, other = (_judge(changed(info, info[0] * change), cause, kinds)[0] for cause in causes)
+        assert abs(one - other) < 0.1
 
 
 def test_the_mean_of_louder_noise_lies_further_off(rng: np.random.Generator) -> None:
@@ -70,9 +90,5 @@ def test_the_mean_of_louder_noise_lies_further_off(rng: np.random.Generator) -> 
         multivariate_normal(np.zeros(3), wide).logpdf(x)
         - multivariate_normal(np.zeros(3), noise).logpdf(x)
     )  # fmt: skip
-    none = np.zeros(3)
-    change = Change(
-        0.0, "scatter", "any", 0.0, (0.0, 0.0), none > 0.0, none, none, info[None], score[None], np.zeros(1),
-        np.zeros((1, 3, 3)), 0.0, none,
-    )  # fmt: skip
+    change = changed(info, score)
     np.testing.assert_allclose(_moved(change, louder[None], std), [expected], rtol=1e-6)  # the ridge is 1e-9

@@ -30,7 +30,7 @@ def history(s) -> History:  # type: ignore[no-untyped-def]
     labels = tuple(f"bending_{k}" for k in range(1, 5))
     return History(
         s.days, labels, s.frequency, s.frequency_std, s.damping, s.damping_std, beside, tuple(s.conditions),
-        np.zeros(s.days.size, dtype=np.intp),
+        np.zeros(s.days.size, dtype=np.intp), ("all",), s.angle, s.angle_std,
     )  # fmt: skip
 
 

@@ -32,8 +32,8 @@ from jackettwin.watching import (
     Cause,
     Pattern,
     Slope,
-    lognormal_sizes,
     sensor_noise,
+    sizes_about,
 )
 from jackettwin.watching.causes import MISFIT
 
@@ -59,6 +59,9 @@ _ONE_SIZE = 0.1
 """Spread of ln size below which a cause is there or not."""
 _SHOWS = 3e-4
 """A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
+_SOLVED = (3, 5)
+"""So many times an event over, as one, its change is solved anew: sizes reach up to five. Between, cubics
+miss the change of a brace or of the splash zone, whose walls are half gone by then, by some per cent."""
 _KEPT = 0.7
 """A mode's shape has to stay by this share, in kinetic energy, among those of the whole structure."""
 _SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
@@ -177,10 +180,11 @@ def model_causes(
         if np.abs(draws[:, : 2 * MODES] * event.median).max() < _TRACE:
             traceless.append(event.name)
         else:
-            sizes, weights = lognormal_sizes(event.median, event.spread, both_ways=event.both_ways)
+            sizes, weights = sizes_about(event.median, event.spread, both_ways=event.both_ways)
             bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
             cause = Cause(
-                event.name, draws, sizes, weights, event.unit, bend=bend, misfit=min(_MISSES * error, MISFIT)
+                event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
+                misfit=min(_MISSES * error, MISFIT),
             )  # fmt: skip
             found.append((event.family, cause))
     causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
@@ -302,15 +306,21 @@ def _bend(
     eta: float,
     zeta: FloatArray,
     once: FloatArray,
-) -> FloatArray:
-    """Return how an event's direction turns with each further median size, (3·MODES,), if it has sizes."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return sizes, and how the change by a unit differs there from that of the event, if it has sizes.
+
+    Solved at ``_SOLVED`` times the event; towards zero it goes on as between the event and the next of these.
+    """
     if event.spread < _ONE_SIZE:
-        return np.zeros(0)
-    thrice = repeated(event, 3)
-    stands = thrice.apply(standing)
-    after = Modes.of(stands, assemble(stands.structure, gravity=gravity), like=base)
-    often = effect(thrice, base, after, eta, zeta)
-    return np.asarray(0.5 * (often - once) * event.median / event.per)
+        return np.zeros(0), np.zeros((0, once.size))
+    bends = [np.zeros(once.size)]
+    for times in _SOLVED:
+        often = repeated(event, times)
+        stands = often.apply(standing)
+        after = Modes.of(stands, assemble(stands.structure, gravity=gravity), like=base)
+        bends.append(effect(often, base, after, eta, zeta) - once)
+    none = bends[1] / (1 - _SOLVED[0])
+    return event.per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
 
 
 def standings(
@@ -387,7 +397,7 @@ def _cosine(one: Cause, other: Cause) -> float:
 
 def _clock() -> Cause:
     """Return a clock that runs wrong: all frequencies alike, no damping."""
-    sizes, weights = lognormal_sizes(1e-3, 1.2, both_ways=True)
+    sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
     direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
     return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
 
@@ -406,7 +416,7 @@ def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> t
         direction[[2 * MODES + i, 2 * MODES + j]] = np.arcsin(np.sqrt(_MISREAD)) / _MISREAD
     if not direction.any():
         return ()
-    sizes, weights = lognormal_sizes(_MISREAD, 1.0)
+    sizes, weights = sizes_about(_MISREAD, 1.0)
     draws = direction * np.repeat([[1.0, 1.0, 1.0], [1.0, 1.0, -1.0]], MODES, axis=1)
     return (Cause("sensor: yaw misread", draws, sizes, weights, "sin² of the angle", prior=0.5),)
 
@@ -447,7 +457,7 @@ def seen_causes(
     ]
     kept = [pair for pair, good in zip(quantities, known, strict=True) if good]
     causes = tuple(
-        replace(c, draws=c.draws[:, columns], bend=c.bend[columns] if c.bend.size else c.bend)
+        replace(c, draws=c.draws[:, columns], bend=c.bend[:, columns] if c.bend.size else c.bend)
         for c in model.causes
     )
     return SeenCauses((*causes, sensor_noise(kept)), known, tuple(columns), model)

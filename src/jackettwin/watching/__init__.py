@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from jackettwin.watching.causes import (
         Cause as Cause,
         general_causes as general_causes,
-        lognormal_sizes as lognormal_sizes,
+        sizes_about as sizes_about,
         sensor_noise as sensor_noise,
     )
     from jackettwin.watching.diagnosis import (

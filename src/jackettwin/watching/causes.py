@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.watching.directions import PAIR, SIZES
@@ -17,8 +18,10 @@ _SENSOR_SHIFT = 0.002
 """Standard deviation by which the modes of a failing sensor move besides scattering, in ln f; two hundred
 times as much in ln ζ."""
 _DAMPING_OVER_FREQUENCY = 200.0
-BENT = 4.0
-"""Of the median size: up to there the bend of a direction goes on."""
+REACH = 2.0
+"""Spreads of ln size that are thought of, both ways: a factor of 5 for what may be of any size."""
+_STEP = 0.025
+"""Of ln size: a third of what a size is known by if a direction misses as little as any model's."""
 MISFIT = 0.12
 """By how much of its length a direction misses in any quantity, if nothing says how good its model is."""
 _SENSOR_PRIOR = 5.0
@@ -41,8 +44,8 @@ class Cause:
         draws are
         the square root of the covariance of what moves besides
     prior : weight before the data; of all causes they need not add up to one
-    bend : (m,) change of the direction from one unit to the next, if a large one is not many small ones: a
-        brace that carries less and less, soil under ever longer free piles
+    bent_at, bend : (n_bent,) sizes from 0 on, and (n_bent, m) by how much the change by a unit differs from
+        that of the draws there, if a large one is not many small ones: a brace that carries less and less
     misfit : a model's direction is not the structure's: share of its length by which it may miss in any
         quantity
     """
@@ -54,27 +57,33 @@ class Cause:
     unit: str = "-"
     louder: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     prior: float = 1.0
-    bend: FloatArray = field(default_factory=lambda: np.zeros(0))
+    bent_at: FloatArray = field(default_factory=lambda: np.zeros(0))
+    bend: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     misfit: float = MISFIT
 
     def steps(self, sizes: FloatArray) -> FloatArray:
-        """Return the mean change of all quantities, (n_sizes, m), bent up to ``BENT`` medians."""
+        """Return the mean change of all quantities, (n_sizes, m); beyond the last size the bend stays.
+
+        The bend of a negative size is that of a positive one, mirrored at zero.
+        """
         sizes, J = np.asarray(sizes, dtype=np.float64), self.draws.mean(axis=0)
-        if self.bend.size:
-            middle = float(np.median(np.abs(self.sizes)))
-            J = J + np.clip(np.abs(sizes)[:, None] / middle - 1.0, -1.0, BENT - 1.0) * self.bend
+        if self.bent_at.size:
+            at = np.minimum(np.abs(sizes), self.bent_at[-1])
+            bend = PchipInterpolator(self.bent_at, self.bend)(at)
+            J = J + np.where(sizes[:, None] < 0.0, 2.0 * self.bend[0] - bend, bend)
         return np.asarray(sizes[:, None] * J)
 
 
-def lognormal_sizes(
-    median: float, spread: float, *, both_ways: bool = False
-) -> tuple[FloatArray, FloatArray]:
-    """Return sizes over ±2.5 standard deviations of ln size, a third of one apart or less, and ln weights."""
-    z = np.linspace(-2.5, 2.5, 31)
-    sizes, weights = median * np.exp(spread * z), np.exp(-0.5 * z**2)
-    if both_ways:
-        sizes, weights = np.concatenate([-sizes, sizes]), np.concatenate([weights, weights])
-    return sizes, np.log(weights / weights.sum())
+def sizes_about(middle: float, spread: float, *, both_ways: bool = False) -> tuple[FloatArray, FloatArray]:
+    """Return sizes within ``REACH`` spreads of ln size about a middle, and ln weights: all alike.
+
+    Of a size no more is known than its order of magnitude; equal odds of each factor favour no cause whose
+    usual size happens to explain a change (Jeffreys 1961, section 3.1).
+    """
+    reach = REACH * spread
+    sizes = middle * np.exp(np.linspace(-reach, reach, 2 * int(np.ceil(reach / _STEP)) + 1))
+    sizes = np.concatenate([-sizes, sizes]) if both_ways else sizes
+    return sizes, np.full(sizes.size, -np.log(sizes.size))
 
 
 def general_causes(
@@ -93,8 +102,7 @@ def general_causes(
 
     def add(name: str, kind: str, chosen: BoolArray, prior: float) -> None:
         size = np.array(SIZES[kind])
-        # equal chances to each factor of two, both ways
-        fine, weights = lognormal_sizes(float(np.sqrt(size[0] * size[-1])), 0.8, both_ways=True)
+        fine, weights = sizes_about(float(np.sqrt(size[0] * size[-1])), 0.8, both_ways=True)
         found.append(Cause(name, chosen[None].astype(np.float64), fine, weights, "-", prior=prior))
 
     for kind, what in (("frequency", ""), ("damping", "damping of "), ("angle", "direction of ")):

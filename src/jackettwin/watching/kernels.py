@@ -1,4 +1,4 @@
-"""The filter that removes what conditions and slow processes explain, compiled.
+"""The filter that removes what conditions and slow processes explain, and the bets on its steps, compiled.
 
 The state of m quantities with p regressors each is
 
@@ -132,3 +132,62 @@ def filter_rows(
             spread[r, q] = s
             log_likelihood -= 0.5 * (np.log(2.0 * np.pi * s) + nu * nu / s)
     return log_likelihood
+
+
+@compiled
+def _log_sum(x):
+    """Return ln Σ exp."""
+    most = x.max()
+    total = 0.0
+    for one in x:
+        total += np.exp(one - most)
+    return most + np.log(total)
+
+
+@compiled
+def log_mixed(a, c, mu, square, log_weight, out):
+    """Fill out (n,) with ln of the Bayes factors of steps δ ~ N(μ, v²), mixed over sizes.
+
+    Parameters
+    ----------
+    a, c : (n,) uᵀAu and uᵀb of each
+    mu, square, log_weight : (n_sizes,) μ, v², and ln of the weights
+    """
+    each = np.empty(mu.size)
+    for i in range(a.size):
+        for k in range(mu.size):
+            wide = 1.0 + a[i] * square[k]
+            bent = c[i] * c[i] * square[k] + 2.0 * c[i] * mu[k] - a[i] * mu[k] * mu[k]
+            each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]
+        out[i] = _log_sum(each)
+
+
+@compiled
+def log_any(info, score, std, log_weight, out):
+    """Fill out (n,) with ln of the Bayes factors of δ ~ N(0, s²I), mixed over sizes.
+
+    ½ s²bᵀ(I + s²A)⁻¹b − ½ ln det (I + s²A), by Cholesky factors.
+
+    Parameters
+    ----------
+    info, score : (n, m, m), (n, m) A and b
+    std, log_weight : (n_sizes,) s, and ln of the weights
+    """
+    m = score.shape[1]
+    each, root, turned = np.empty(std.size), np.empty((m, m)), np.empty(m)
+    for t in range(out.size):
+        for k in range(std.size):
+            square = std[k] * std[k]
+            each[k] = log_weight[k]
+            for i in range(m):
+                for j in range(i + 1):
+                    x = square * info[t, i, j] + (1.0 if i == j else 0.0)
+                    for q in range(j):
+                        x -= root[i, q] * root[j, q]
+                    root[i, j] = np.sqrt(x) if i == j else x / root[j, j]
+                x = std[k] * score[t, i]
+                for q in range(i):
+                    x -= root[i, q] * turned[q]
+                turned[i] = x / root[i, i]
+                each[k] += 0.5 * turned[i] * turned[i] - np.log(root[i, i])
+        out[t] = _log_sum(each)
