@@ -8,8 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from sqlalchemy import Engine, func, select
 
+from jackettwin.cli.restore import restore_command
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
 from jackettwin.store import (
@@ -120,3 +122,10 @@ def as_written_by(schema: str, new: Path, old: Path) -> None:
                 content = json.dumps(row).encode()
             member.size = len(content)
             target.addfile(member, io.BytesIO(content))
+
+
+def test_a_failed_restore_leaves_no_store_behind(tmp_path: Path) -> None:
+    (tmp_path / "none.tar.gz").write_bytes(b"no backup")
+    found = CliRunner().invoke(restore_command, [str(tmp_path / "none.tar.gz"), str(tmp_path / "new")])
+    assert isinstance(found.exception, InputError)
+    assert not (tmp_path / "new").exists()

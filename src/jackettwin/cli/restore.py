@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import click
@@ -18,11 +19,18 @@ from jackettwin.cli.store_options import database_option, needs_service, opened
 def restore_command(file: Path, store: Path, database: str | None, as_json: bool) -> None:
     """Fill the empty STORE from a backup FILE; whole or not at all."""
     needs_service()
+    made = not store.exists()
     engine = opened(store, database, make=True)
     from jackettwin.store.backup import restore
 
     messages.print("reading tables and samples …")
-    counts = restore(file, engine, store)
+    try:
+        counts = restore(file, engine, store)
+    except BaseException:
+        engine.dispose()
+        if made:
+            shutil.rmtree(store)
+        raise
     if as_json:
         print_json({"store": str(store), "tables": counts})
     else:

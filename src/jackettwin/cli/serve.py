@@ -38,7 +38,9 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
     Open the address that is printed. Nothing else has to be set up.
     """
     needs_service()
-    messages.print(f"starting {options['workers']} workers and the server …")
+    scheduler = options["scheduler"]
+    workers = f"{options['workers']} workers" if scheduler is None else f"work at {scheduler}"
+    messages.print(f"starting {workers} and the server …")
     from jackettwin.service import Service, ServiceSettings, demonstrate, serve
 
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")

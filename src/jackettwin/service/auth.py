@@ -176,7 +176,7 @@ def unknown() -> ApiError:
         401,
         "log in, or send a token",
         headers={"WWW-Authenticate": "Bearer"},
-        remedy="a server without users answers only to http://127.0.0.1 and localhost, on its own machine",
+        remedy="POST /api/v1/login, or Authorization: Bearer; a server without users is asked as localhost",
     )
 
 

@@ -20,6 +20,7 @@ import dask
 from distributed import Client, Future, LocalCluster
 from distributed.core import Status
 
+from jackettwin.errors import InputError
 from jackettwin.service.begun import NoWorker, begun
 from jackettwin.service.settings import ServiceSettings
 
@@ -83,7 +84,16 @@ class Compute:
                 silence_logs=logging.ERROR,
             )
             self._cluster.scale(settings.workers)
-        self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
+        try:
+            self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
+        except (OSError, ValueError):
+            raise InputError(
+                "no scheduler of Dask answers there",
+                field="scheduler",
+                value=settings.scheduler,
+                allowed="tcp://HOST:PORT",
+                remedy="see that `dask scheduler` runs there and may be reached",
+            ) from None
         self.client.subscribe_topic(self._topic, self._note)
         self._ever, self._ended = set[str](), 0
 

@@ -83,7 +83,8 @@ class Dispatcher(Thread):
         """Stop, and leave the list of servers so that others take over at once."""
         self._stop_asked.set()
         self.wake.set()
-        self.join(timeout=10.0)
+        if self.is_alive():
+            self.join(timeout=10.0)
         try:
             with writing(self.service.database) as connection:
                 work.bury(connection, self.service.server_id)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import json
 import logging
+import signal
+import socket
+import ssl
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
@@ -14,6 +18,7 @@ from typing import Any
 import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
+from jackettwin.errors import InputError
 from jackettwin.service.app import create_app
 from jackettwin.service.begun import NoWorker, one_heap
 from jackettwin.service.chores import Housekeeping
@@ -43,38 +48,43 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
         If the database cannot be opened, or others could reach a server without users or TLS.
     """
     one_heap()
-    service = open_service(settings)
-    try:
+    with ExitStack() as in_the_end:
+        service = open_service(settings)
+        in_the_end.callback(service.database.dispose)
+        in_the_end.callback(service.compute.close)
         with reading(service.database) as connection:
             refuse_exposed(settings, people.any_user(connection))
-        mqtt = None if settings.mqtt is None else MqttIntake(service, settings.mqtt)
         service.chores.append(Housekeeping(service))
-        if mqtt is not None:
+        dispatcher, stop = Dispatcher(service), Event()
+        service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
+        in_the_end.callback(dispatcher.stop)
+        if settings.mqtt is not None:
+            mqtt = MqttIntake(service, settings.mqtt)
             service.chores.append(mqtt)
             service.broker_connected = lambda: mqtt.connected
             mqtt.start()
-        dispatcher, stop = Dispatcher(service), Event()
-        service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
+            in_the_end.callback(mqtt.stop)
         dispatcher.start()
-        inbox = Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True)
-        inbox.start()
+        Thread(target=_watch_inbox, args=(service, stop.is_set), name="inbox", daemon=True).start()
+        in_the_end.callback(stop.set)
         yield service
-        stop.set()
-        if mqtt is not None:
-            mqtt.stop()
-        dispatcher.stop()
-    finally:
-        service.compute.close()
-        service.database.dispose()
 
 
 def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _: None) -> None:
-    """Serve until told to stop; requests under way are answered, work under way is leased again later."""
-    with running(settings) as service:
+    """Serve until told to stop; requests under way are answered, work under way is leased again later.
+
+    SIGTERM, which managers of services send, ends it as Ctrl-C does.
+
+    Raises
+    ------
+    InputError
+        If nothing can be opened, or listened at, where the settings say; or it would be reached unprotected.
+    """
+    signal.signal(signal.SIGTERM, _interrupt)
+    _check_tls(settings)
+    with _listening(settings) as door, running(settings) as service:
         config = uvicorn.Config(
             create_app(service),
-            host=settings.host,
-            port=settings.port,
             log_level="warning",
             access_log=False,
             proxy_headers=settings.behind_proxy,
@@ -87,7 +97,7 @@ def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _
         server = uvicorn.Server(config)
 
         async def main() -> None:
-            task = asyncio.create_task(server.serve())
+            task = asyncio.create_task(server.serve([door]))
             while not server.started and not task.done():
                 await asyncio.sleep(0.02)
             if server.started:
@@ -95,6 +105,39 @@ def serve(settings: ServiceSettings, ready: Callable[[Service], None] = lambda _
             await task
 
         asyncio.run(main())
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _listening(settings: ServiceSettings) -> socket.socket:
+    """Return a socket at the address of a server, which connections wait at until it is ready."""
+    try:
+        family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+        return socket.create_server((settings.host, settings.port), family=family, backlog=2048)
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            remedy = "end the other server, or choose another --port"
+            raise InputError("is taken", field="port", value=settings.port, remedy=remedy) from None
+        problem = f"nobody can listen there ({(error.strerror or '').partition(' (')[0]})"
+        remedy = "give an address of this machine"
+        raise InputError(problem, field="host", value=settings.host, remedy=remedy) from None
+
+
+def _check_tls(settings: ServiceSettings) -> None:
+    if settings.tls_certificate is None:
+        return
+    try:
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(settings.tls_certificate, settings.tls_key)
+    except ssl.SSLError:
+        raise InputError(
+            "not a certificate with its key",
+            file=settings.tls_certificate,
+            field="tls-key",
+            value=None if settings.tls_key is None else settings.tls_key.name,
+            allowed="PEM, the key in it or by --tls-key",
+        ) from None
 
 
 def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:

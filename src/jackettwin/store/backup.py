@@ -66,7 +66,7 @@ def restore(source: Path, database: Engine, store: Path) -> dict[str, int]:
     with writing(database) as connection:
         if connection.scalar(select(func.count()).select_from(tables.assets)):
             raise InputError(
-                "the store is not empty", field="store", value=store, remedy="restore into a new folder"
+                "the store is not empty", field="store", value=str(store), remedy="restore into a new folder"
             )
         try:
             with tarfile.open(source, "r:gz") as archive:

@@ -108,6 +108,13 @@ class MqttIntake:
         self._last_chore = 0.0
         self.refused = 0
         place = urlsplit(url if "//" in url else f"mqtt://{url}")
+        if place.scheme not in ("mqtt", "mqtts"):
+            raise InputError(
+                "not a broker's address",
+                field="mqtt",
+                value=url,
+                allowed="mqtt[s]://[USER:PASSWORD@]HOST[:PORT]",
+            )
         self._client = mqtt.Client(
             CallbackAPIVersion.VERSION2,
             client_id=f"jackettwin-{service.settings.store.resolve().name}-{service.settings.port}",
@@ -121,6 +128,7 @@ class MqttIntake:
             self._client.tls_set(cert_reqs=ssl.CERT_REQUIRED)
         self._client.reconnect_delay_set(1, 30)
         self._client.on_connect = self._subscribe
+        self._client.on_connect_fail = lambda *_: log.warning("the broker does not answer; it is asked again")
         self._client.on_message = lambda _client, _data, message: self._inbox.put(message)
         self._client.connect_async(place.hostname or "127.0.0.1", place.port or 1883, keepalive=30)
 
@@ -145,8 +153,11 @@ class MqttIntake:
             self._last_chore = time.monotonic()
             close_windows(self.service, self._silent)
 
-    def _subscribe(self, client: mqtt.Client, *_: Any) -> None:
-        client.subscribe(f"{TOPIC}/#", qos=1)
+    def _subscribe(self, client: mqtt.Client, _data: Any, _flags: Any, reason: Any, *_: Any) -> None:
+        if reason.is_failure:
+            log.warning("the broker refuses us: %s", reason)
+        else:
+            client.subscribe(f"{TOPIC}/#", qos=1)
 
     def _commit(self) -> None:
         """Commit what came; a message that could not be committed is held until it can be."""
