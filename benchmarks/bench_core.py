@@ -1,6 +1,6 @@
 """Speed of the core: assembly and modes of the reference jacket at three mesh sizes.
 
-Bar: sparse assembly within 50 ms at 5,000 degrees of freedom.
+Bars: sparse assembly within 50 ms at 5,000 degrees of freedom; a springpot's modes as fast as Maxwell's.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from statistics import median
-from time import perf_counter
+from time import process_time
 
 from jackettwin.response.condensed import condense
 from jackettwin.response.modal import damped_modes, undamped_modes
@@ -24,15 +24,16 @@ LAWS = {
     "maxwell-3": maxwell_3(2.5e9, 0.2, 0.183),
     "springpot": Springpot(2.5e9, 0.1, 1.15),
 }
+BELOW_HZ = (0.8, 1.5, 3.0)
 
 
 def milliseconds(work: Callable[[], object], repeats: int = 5) -> float:
-    """Median wall time."""
+    """Median CPU time."""
     times = []
     for _ in range(repeats):
-        start = perf_counter()
+        start = process_time()
         work()
-        times.append(1e3 * (perf_counter() - start))
+        times.append(1e3 * (process_time() - start))
     return median(times)
 
 
@@ -46,8 +47,9 @@ def main() -> None:
         report("  ten undamped modes", milliseconds(partial(undamped_modes, free, 10)))
         for name, law in LAWS.items():
             system = build_system(assembly, on_translations(structure, law), rayleigh=rayleigh)
-            work = partial(damped_modes, system, below_hz=0.8)
-            report(f"  damped modes below 0.8 Hz, {name}", milliseconds(work, 3))
+            for below_hz in BELOW_HZ:
+                work = partial(damped_modes, system, below_hz=below_hz)
+                report(f"  damped modes below {below_hz:g} Hz, {name}", milliseconds(work, 3))
         system = build_system(assembly, on_translations(structure, LAWS["zener"]), rayleigh=rayleigh)
         report("  condensed to the feet", milliseconds(partial(condense, system, below_hz=0.95)))
 

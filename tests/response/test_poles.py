@@ -5,6 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from scipy.sparse.linalg import LinearOperator
 from tests.response.conftest import monopile_structure, on_law
 
 from jackettwin.response import poles
@@ -12,7 +13,7 @@ from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Pencil, System, build_system
 from jackettwin.soil.support import Spring, Support, on_translations
-from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, prony_fit, zener
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.structure.model import PointMass
 
@@ -119,16 +120,52 @@ def test_springpot_poles_are_all_there(assembly, alpha: float) -> None:
 
 
 @pytest.mark.parametrize("alpha", [0.03, 0.3, 0.7])
-def test_a_coarse_start_finds_what_a_fine_one_does(assembly, alpha: float, monkeypatch) -> None:
+def test_a_start_of_one_branch_finds_what_many_do(assembly, alpha: float, monkeypatch) -> None:
     """Stiff and soft ground, up to the third bending modes: the same poles, and none twice."""
+
+    def many(row: np.ndarray, radius: float) -> Prony:
+        return prony_fit(law, 1e-4 * radius, 1e3 * radius)
+
     for k in (3e8, 5e9):
         law = Springpot(k, alpha, 1.15)
         pencil = build_system(assembly, on_law(assembly.structure, law), rayleigh=RAYLEIGH).pencil
         found = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
         with monkeypatch.context() as patched:
-            patched.setattr(poles, "_COARSE", poles._FINE)
+            patched.setattr(poles, "one_branch", many)
             fine = [value for value, _ in poles.poles_below(pencil, 2.0 * pi * 1.5)]
         np.testing.assert_allclose(found, fine, rtol=1e-7)
+
+
+@pytest.mark.parametrize("below_hz", [1.5, 3.0])
+@pytest.mark.parametrize("alpha", [0.1, 0.4])
+def test_a_springpot_costs_what_maxwell_branches_do(jacket15, alpha, below_hz, monkeypatch) -> None:
+    """Factorisations of the whole system and solutions of Arnoldi's iteration are no more."""
+    counted = {"factorised": 0, "solved": 0}
+
+    def factorised(F):
+        counted["factorised"] += 1
+        return by_superlu(F)
+
+    def shifted_inverse(pencil, sigma):
+        operator, size = inverse(pencil, sigma)
+
+        def solve(b):
+            counted["solved"] += 1
+            return operator.matvec(b)
+
+        return LinearOperator((size, size), matvec=solve, dtype=np.float64), size
+
+    by_superlu, inverse = poles.factorised, poles.shifted_inverse
+    monkeypatch.setattr(poles, "factorised", factorised)
+    monkeypatch.setattr(poles, "shifted_inverse", shifted_inverse)
+    costs = []
+    for law in (maxwell_3(2.5e9, 0.2, 0.183), Springpot(2.5e9, alpha, 1.15)):
+        counted.update(factorised=0, solved=0)
+        system = build_system(jacket15, on_law(jacket15.structure, law), rayleigh=RAYLEIGH)
+        damped_modes(system, below_hz=below_hz)
+        costs.append(tuple(counted.values()))
+    assert costs[1][0] <= 1.1 * costs[0][0]
+    assert costs[1][1] <= 1.1 * costs[0][1]
 
 
 def test_springpot_with_exponent_zero_is_a_spring(monopile) -> None:

@@ -21,8 +21,8 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.refined import kernels, refined
 from jackettwin.response.state import state_matrix
-from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C, law_stiffness
-from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
+from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C
+from jackettwin.soil.viscoelastic import Prony, Springpot, one_branch, prony_fit
 from jackettwin.structure.damping import Rayleigh
 
 _INNER = 0.9
@@ -165,7 +165,7 @@ def _finite_law(row: FloatArray, model: Condensed, *, exact: bool) -> Prony:
     k, tau = row[BRANCHES::2], row[BRANCHES + 1 :: 2]
     live = (k > 0.0) & (tau > 0.0)
     if live.sum() > 1 and not exact or row[K_ALPHA] > 0.0 and not exact:
-        return _one_branch(row, model.radius)
+        return one_branch(row, model.radius)
     k0, c = float(row[K0]), float(row[C])
     # branches far above the band are dashpots, far below it springs: their states would spoil the scaling
     fast, slow = live & (tau * model.radius < _FAR), live & (tau * model.radius > 1.0 / _FAR)
@@ -177,19 +177,6 @@ def _finite_law(row: FloatArray, model: Condensed, *, exact: bool) -> Prony:
         fit = prony_fit(springpot, 0.001 * band_hz, 10.0 * band_hz, per_decade=2)
         k0, c, k_all, tau_all = k0 + fit.k0, c + fit.c, k_all + fit.k, tau_all + fit.tau
     return Prony(k0, c, k_all, tau_all)
-
-
-def _one_branch(row: FloatArray, radius: float) -> Prony:
-    """Return spring, dashpot and one branch with its corner in mid band, least squares on D(iω)."""
-    omega = radius * np.array([0.1, 0.2, 0.4, 0.8])
-    s = np.asarray(1j * omega, dtype=np.complex128)
-    tau = 2.0 / radius
-    D = law_stiffness(row, s)
-    A = np.stack([np.ones_like(s), s / radius, tau * s / (1.0 + tau * s)], axis=1) / np.abs(D)[:, None]
-    D = D / np.abs(D)
-    fit = np.linalg.lstsq(np.vstack([A.real, A.imag]), np.concatenate([D.real, D.imag]))[0]
-    k0, c, k1 = np.maximum(fit, 0.0)
-    return Prony(float(k0), float(c / radius), (float(k1),), (tau,))
 
 
 def _distinct(poles: ComplexArray, shapes: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

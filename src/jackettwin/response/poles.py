@@ -4,11 +4,14 @@ The first-order system of the thesis, (7.2) and (7.5), is never formed. Arnoldi 
 about a small positive real shift σ, where F(σ) is real, symmetric and positive definite for any passive
 support. What it found is projected out and it runs again, until nothing is left inside the disc: that is what
 finds multiple poles. Each pole, or cluster of nearly equal poles, is then refined on the non-linear F(λ)x = 0
-itself, which keeps their number. A springpot starts from a Prony series and is refined on its own law.
+itself, which keeps their number. A springpot starts from a law of few states; what that finds is refined
+on the springpot's own law in the space of all the shapes found, and there alone on the whole.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -19,8 +22,8 @@ from scipy.sparse.csgraph import connected_components
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import NumericalError
 from jackettwin.response.state import factorised, shifted_inverse
-from jackettwin.response.system import Pencil
-from jackettwin.soil.viscoelastic import Prony, Springpot, prony_fit
+from jackettwin.response.system import Matrix, Pencil
+from jackettwin.soil.viscoelastic import Prony, Springpot, one_branch, prony_fit
 
 Pair = tuple[complex, ComplexArray]
 """A pole and its shape on the pencil's DOFs."""
@@ -35,12 +38,15 @@ _AT_REST = 1e-10
 """A pole that a Newton step moves less than this (relative) is found."""
 _ROUNDING = 1e-7
 """What rounding may leave in a pole of a finely cut mesh, whose stiffness spans many decades."""
-_COARSE, _FINE = (1e-2, 10.0, 1), (1e-4, 1e3, 4)
-"""Fit of a springpot to start from: range over the radius and branches a decade. Every branch inside the disc
-brings a real pole for every degree of freedom it holds, and all of these have to be found: the coarse one
-(within 2 % of the law) costs what three Maxwell branches do, the fine one ten times that."""
-_OFF = 0.02
-"""By which the starts of a coarse law may miss."""
+_FINE = (1e-4, 1e3, 4)
+"""Range over the radius and branches a decade of a springpot's fit where one branch did not do. Every branch
+inside the disc brings a real pole for every degree of freedom it holds, all of which have to be found."""
+_OFF = 0.05
+"""By which the starts of one branch, within 10 % of the law over a decade and a half, may miss."""
+_IN_SPACE = 1e-7
+"""Where a Newton step among the shapes found ends: they are not the springpot's own to more than this."""
+_STALE = 1e-3
+"""A pole that moved further (relative) wants new factors."""
 _ALIKE = 0.9
 """Cosine of two shapes of unit length from which they are one."""
 _CLUSTER = 1e-5
@@ -58,25 +64,31 @@ def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
     if all(isinstance(group.law, Prony) for group in pencil.groups):
         pairs, _ = _from_start(pencil, pencil, radius)
     else:
-        pairs, whole = _from_start(pencil, _finite(pencil, radius, _COARSE), radius)
+        coarse = _fitted(pencil, lambda law: one_branch(law.row, radius))
+        pairs, whole = _from_start(pencil, coarse, radius)
         if not whole:
-            pairs, _ = _from_start(pencil, _finite(pencil, radius, _FINE), radius)
+            low, high, per_decade = _FINE
+            hz = radius / (2.0 * pi)
+            fine = _fitted(pencil, lambda law: prony_fit(law, low * hz, high * hz, per_decade))
+            pairs, _ = _from_start(pencil, fine, radius)
     inside = [pair for pair in pairs if abs(pair[0]) <= radius and pair[0].imag >= -REAL * abs(pair[0])]
     return sorted(inside, key=lambda pair: abs(pair[0]))
 
 
 def _from_start(pencil: Pencil, start: Pencil, radius: float) -> tuple[list[Pair], bool]:
     """Return the poles of ``pencil`` from those of ``start``, and whether each start had its own."""
+    if start is pencil:
+        values, vectors = _poles_within(pencil, radius * (1.0 + _CLUSTER))
+        pairs = [pair for at in _clusters(values) for pair in _exactly(pencil, values[at], vectors[:, at])]
+        return pairs, True
     # a start law is off by some hundredths: what it has just outside may lie inside
-    room = _CLUSTER if start is pencil else _OFF
-    values, vectors = _poles_within(start, radius * (1.0 + room))
-    pairs: list[Pair] = []
-    whole = True
-    for members in _clusters(values):
-        found = _refined(pencil, values[members], vectors[:, members], exact=start is pencil)
-        whole &= bool(found) or not values[members].imag.any()
-        pairs += found
-    return pairs, whole and not _doubled(pairs)
+    values, vectors = _poles_within(start, radius * (1.0 + _OFF))
+    space = _extended(np.zeros((pencil.n, 0)), vectors)
+    small = _on_space(pencil, space)
+    clusters = [at for at in _clusters(values) if values[at].imag.any()]  # the others are the start law's own
+    found = [_nearly(pencil, small, space, values[at], space.T @ vectors[:, at]) for at in clusters]
+    pairs = [pair for part in found for pair in part]
+    return pairs, all(found) and not _doubled(pairs)
 
 
 def _doubled(pairs: list[Pair]) -> bool:
@@ -89,17 +101,16 @@ def _doubled(pairs: list[Pair]) -> bool:
     )
 
 
-def _finite(pencil: Pencil, radius: float, fit: tuple[float, float, int]) -> Pencil:
-    """Return the pencil with every springpot fitted over a share of the radius, some branches a decade."""
-    low, high, per_decade = fit
-    hz = radius / (2.0 * pi)
-    laws = [
-        prony_fit(group.law, low * hz, high * hz, per_decade)
-        if isinstance(group.law, Springpot)
-        else group.law
-        for group in pencil.groups
-    ]
+def _fitted(pencil: Pencil, fit: Callable[[Springpot], Prony]) -> Pencil:
+    """Return the pencil with a law of few states for every springpot."""
+    laws = [fit(g.law) if isinstance(g.law, Springpot) else g.law for g in pencil.groups]
     return pencil.with_laws(laws)
+
+
+def _on_space(pencil: Pencil, V: FloatArray) -> Pencil:
+    """Return the pencil on the coordinates of a basis (n, n_vectors)."""
+    groups = tuple(replace(group, S=V.T @ (group.S @ V)) for group in pencil.groups)
+    return Pencil(V.T @ (pencil.M @ V), V.T @ (pencil.K @ V), pencil.rayleigh, groups)
 
 
 def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexArray]:
@@ -136,7 +147,7 @@ def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: floa
         known = Q
 
         def rest(b: FloatArray, known: FloatArray = known) -> FloatArray:
-            y = inverse.matvec(b - known @ (known.T @ b))
+            y = inverse.matvec(b)
             return np.asarray(y - known @ (known.T @ y))
 
         k = min(k, size - Q.shape[1] - 2)
@@ -177,49 +188,76 @@ def _clusters(values: ComplexArray) -> list[IntArray]:
     return [np.flatnonzero(group == g) for g in range(n_groups)]
 
 
-def _refined(pencil: Pencil, values: ComplexArray, x: ComplexArray, *, exact: bool) -> list[Pair]:
-    """Return the poles of one cluster on the pencil itself; ``exact`` if the starts come from its own laws.
+def _exactly(pencil: Pencil, values: ComplexArray, x: ComplexArray) -> list[Pair]:
+    """Return the poles of one cluster that Arnoldi found on the pencil's own laws.
 
     Raises
     ------
     NumericalError
-        If a pole of the pencil does not come to rest where Arnoldi found it.
+        If a pole does not come to rest where Arnoldi found it.
     """
-    if not values.imag.any():  # real poles are as exact as Arnoldi made them; the start law's are none
-        return [(complex(v), y) for v, y in zip(values, x.T, strict=True)] if exact else []
+    if not values.imag.any():  # real poles are as exact as Arnoldi made them
+        return list(zip(map(complex, values), x.T, strict=True))
     found, y, at_rest = _newton(pencil, values, x)
-    moved = np.abs(found.mean() - values.mean()) > (1e-6 if exact else 0.1) * np.abs(values.mean())
-    if at_rest and not moved:
-        return list(zip(map(complex, found), y.T, strict=True))
-    if exact:
+    if not at_rest or abs(found.mean() - values.mean()) > 1e-6 * abs(values.mean()):
         raise NumericalError(f"the pole near λ = {values.mean():.6g} rad/s could not be refined")
-    return []  # an artefact of the start law near the branch cut
+    return list(zip(map(complex, found), y.T, strict=True))
+
+
+def _nearly(
+    pencil: Pencil, small: Pencil, space: FloatArray, values: ComplexArray, x: ComplexArray
+) -> list[Pair]:
+    """Return the poles of one cluster from a start law's; none if it was an artefact near the branch cut.
+
+    Parameters
+    ----------
+    small : the pencil on the coordinates of ``space`` (n, n_vectors)
+    x : (n_vectors, n_values)
+    """
+    near, y, _ = _newton(small, values, x, rest=_IN_SPACE)
+    found, y, at_rest = _newton(pencil, near, space @ y)
+    if not at_rest or abs(found.mean() - values.mean()) > 0.1 * abs(values.mean()):
+        return []
+    return list(zip(map(complex, found), y.T, strict=True))
 
 
 def _newton(
-    pencil: Pencil, values: ComplexArray, x: ComplexArray, steps: int = 20
+    pencil: Pencil, values: ComplexArray, x: ComplexArray, *, rest: float = _AT_REST, steps: int = 20
 ) -> tuple[ComplexArray, ComplexArray, bool]:
     r"""Refine a cluster of poles together: inverse iteration and Rayleigh–Ritz on F(λ) about their mean.
 
     With one pole this is Newton's method; F is symmetric, so that
-    :math:`δ = -u^T F u / u^T F' u` with :math:`u = F^{-1} F' x` converges cubically.
+    :math:`δ = -u^T F u / u^T F' u` with :math:`u = F^{-1} F' x` converges cubically. Near the pole the
+    factors serve on, by residual inverse iteration (Neumaier 1985): :math:`x - F(σ)^{-1} F(λ) x`.
     """
-    last = np.inf
+    change = last = np.inf
     for _ in range(steps):
         mean = complex(values.mean())
         F, dF = pencil.F(mean), pencil.dF(mean)
         try:
-            x = factorised(F).solve(dF @ x)
-        except RuntimeError:  # F is singular to the last digit: the vectors are as good as they get
-            pass
+            if change > min(_STALE, 0.1 * last):
+                solve = _solver(F)
+                x = solve(dF @ x)
+            else:
+                x = x - solve(F @ x + dF @ (x * (values - mean)))
+        except (RuntimeError, np.linalg.LinAlgError):
+            pass  # F is singular to the last digit: the vectors are as good as they get
+        last = change
         Q = np.linalg.qr(x)[0]
         delta, y = la.eig(-(Q.T @ (F @ Q)), Q.T @ (dF @ Q))
         values, x = mean + delta, Q @ y
         change = abs(values.mean() - mean) / abs(mean)
-        if change <= _AT_REST or 0.5 * last <= change <= _ROUNDING:
+        if change <= rest or 0.5 * last <= change <= _ROUNDING:
             break
-        last = change
     return values, x / np.linalg.norm(x, axis=0), change <= _ROUNDING
+
+
+def _solver(F: Matrix) -> Callable[[ComplexArray], ComplexArray]:
+    """Return what solves F x = b, F sparse or dense."""
+    if isinstance(F, np.ndarray):
+        return lambda b: np.asarray(np.linalg.solve(F, b), dtype=np.complex128)
+    factors = factorised(F)
+    return lambda b: np.asarray(factors.solve(b), dtype=np.complex128)
 
 
 def _start(n: int, seed: int = 0) -> FloatArray:

@@ -335,6 +335,28 @@ def prony_fit(law: Springpot, low_hz: float, high_hz: float, per_decade: int = 4
     )
 
 
+def one_branch(row: FloatArray, radius: float) -> Prony:
+    """Return spring, dashpot and one branch with its corner in mid band, least squares on a law's D(iω).
+
+    A start for exact solvers: within 10 % of a springpot, its exponent 0.1, from ``radius``/30 [rad/s] up.
+
+    Parameters
+    ----------
+    row : (width,) numbers of the law, as :mod:`jackettwin.soil.coefficients` orders them
+    radius : float
+        End of the band [rad/s].
+    """
+    omega = radius * np.array([0.1, 0.2, 0.4, 0.8])
+    s = np.asarray(1j * omega, dtype=np.complex128)
+    tau = 2.0 / radius
+    D = law_stiffness(row, s)
+    A = np.stack([np.ones_like(s), s / radius, tau * s / (1.0 + tau * s)], axis=1) / np.abs(D)[:, None]
+    D = D / np.abs(D)
+    fit = np.linalg.lstsq(np.vstack([A.real, A.imag]), np.concatenate([D.real, D.imag]))[0]
+    k0, c, k1 = np.maximum(fit, 0.0)
+    return Prony(float(k0), float(c / radius), (float(k1),), (tau,))
+
+
 def _step_response(A: FloatArray, b: FloatArray, x0: FloatArray, t: FloatArray) -> FloatArray:
     """Return x(t) of ẋ = Ax + b, shape (n, n_times)."""
     n = x0.size
