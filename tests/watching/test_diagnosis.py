@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import multivariate_normal
 
 from jackettwin.watching.causes import Cause, sizes_about
-from jackettwin.watching.diagnosis import _free, _judge, _likelihood, _misfit, _moved
+from jackettwin.watching.diagnosis import TAIL, _free, _judge, _likelihood, _misfit, _moved
 from jackettwin.watching.watch import Change
 
 KINDS = ("frequency", "damping", "frequency")
@@ -66,6 +66,22 @@ def test_a_large_step_is_not_many_small_ones_where_it_is_bent() -> None:
     cause = Cause("bent", np.array([[1.0, 0.0]]), np.ones(1), np.zeros(1), bent_at=at, bend=bend)
     found = cause.steps(np.array([-1.0, 0.5, 1.0, 3.0, 5.0]))
     np.testing.assert_allclose(found, [[-1.0, 1.0], [0.5, -0.125], [1.0, 0.0], [3.0, 3.0], [5.0, 5.0]])
+
+
+def test_a_direction_may_miss_by_more_than_is_usual(rng: np.random.Generator) -> None:
+    """The evidence is the mean over sizes and over how far a direction may miss."""
+    info, score, cause = case(rng)
+    cause = replace(cause, log_size_weights=np.full(3, -np.log(3.0)))
+    noise, J = np.linalg.inv(info), cause.draws.mean(axis=0)
+    x = noise @ score
+    roots = {times: _misfit(cause, KINDS, times) for times in TAIL}
+    density = sum(
+        share / 3.0 * multivariate_normal(size * J, noise + size**2 * roots[times] @ roots[times].T).pdf(x)
+        for times, share in TAIL.items()
+        for size in cause.sizes
+    )
+    none = multivariate_normal(np.zeros(3), noise).pdf(x)
+    np.testing.assert_allclose(_judge(changed(info, score), cause, KINDS)[0], np.log(density / none))
 
 
 def test_no_cause_is_favoured_for_its_usual_size() -> None:

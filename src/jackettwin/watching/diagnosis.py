@@ -25,6 +25,9 @@ from jackettwin.watching.watch import Change
 INSEPARABLE = 2.0
 """Causes that differ by fewer than so many standard deviations of data and model are not told apart."""
 _OTHER_PRIOR = 1.0
+TAIL = {1.0: 0.68, 3.0: 0.22, 9.0: 0.1}
+"""How many times as much as usual a direction may miss, and how often: of some five hundred measured ones
+68 % miss by less than the usual, 90 % by less than three times as much (docs/verification/directions.md)."""
 SHIFTS = (0.1, 0.3, 1.0)
 """What moves beside louder noise, as shares of the most: how much of it there is depends on the sensor."""
 
@@ -90,7 +93,11 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
     begins = change.log_stake - np.logaddexp.reduce(change.log_stake)
     if cause.louder.size:
         return _noisy(change, cause, begins), np.nan, (np.nan, np.nan)
-    logs = _likelihood(change.info, change.score, cause, kinds) + begins[:, None]
+    by_miss = [
+        _likelihood(change.info, change.score, cause, kinds, times) + np.log(share)
+        for times, share in TAIL.items()
+    ]
+    logs = np.logaddexp.reduce(by_miss, axis=0) + begins[:, None]
     by_size = np.logaddexp.reduce(logs, axis=0) + cause.log_size_weights
     total = float(np.logaddexp.reduce(by_size))
     order = np.argsort(cause.sizes)
@@ -101,7 +108,9 @@ def _judge(change: Change, cause: Cause, kinds: Sequence[str]) -> tuple[float, f
     return total, float(mid), (float(low), float(high))
 
 
-def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str]) -> FloatArray:
+def _likelihood(
+    info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequence[str], times: float = 1.0
+) -> FloatArray:
     r"""Return ln Λ by begin and size, (n_begins, n_sizes); the direction is as uncertain as the structure.
 
     With δ = θ(J(θ) + Rε), ε ~ N(0, I) and RᵀAR = QΛQᵀ, c = QᵀRᵀ(b − θAJ):
@@ -109,7 +118,7 @@ def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequen
     .. math:: \ln Λ = θ J^T b - \tfrac12 θ^2 J^T A J + \tfrac12 Σ \frac{θ^2 c_i^2}{1 + θ^2 Λ_i}
               - \tfrac12 Σ \ln (1 + θ^2 Λ_i)
     """
-    size, root, steps = cause.sizes, _misfit(cause, kinds), cause.steps(cause.sizes)
+    size, root, steps = cause.sizes, _misfit(cause, kinds, times), cause.steps(cause.sizes)
     moved = steps @ info  # (n_begins, n_sizes, m)
     plain = score @ steps.T - 0.5 * np.einsum("tsi,si->ts", moved, steps)
     values, vectors = np.linalg.eigh(root.T @ info @ root)
@@ -119,16 +128,17 @@ def _likelihood(info: FloatArray, score: FloatArray, cause: Cause, kinds: Sequen
     return np.asarray(plain + 0.5 * np.sum(square / wide - np.log(wide), axis=-1))
 
 
-def _misfit(cause: Cause, kinds: Sequence[str]) -> FloatArray:
+def _misfit(cause: Cause, kinds: Sequence[str], times: float = 1.0) -> FloatArray:
     """Return R, (m, r), by which a unit of a cause may miss its mean direction: RRᵀ is the covariance.
 
-    Draws of the structure's state tell how quantities miss together; what no state explains is independent.
+    Draws of the structure's state tell how quantities miss together; what no state explains is independent,
+    and ``times`` what is usual.
     """
     draws = cause.draws
     kind, J = np.array(kinds), draws.mean(axis=0)
     alone = np.zeros(len(kind))
     for one in np.unique(kind):
-        alone[kind == one] = cause.misfit * np.sqrt(np.mean(draws[:, kind == one] ** 2))
+        alone[kind == one] = times * cause.misfit * np.sqrt(np.mean(draws[:, kind == one] ** 2))
     return np.concatenate([np.diag(alone), (draws - J).T / np.sqrt(max(len(draws) - 1, 1))], axis=1)
 
 
