@@ -50,7 +50,7 @@ def main() -> None:
     report("OC4, ours", ours(oc4_scenario()))
     report(
         "jacket15, OpenFAST",
-        theirs(program, feet, openfast.turbine(), openfast.KELVIN_VOIGT, openfast.DEPTH_M),
+        theirs(program, feet, openfast.turbine(), openfast.KELVIN_VOIGT, feet.sea_level_z_m),
     )
     report("jacket15, ours (with wind)", ours(read_scenario("parked")))
 

@@ -1,8 +1,8 @@
 """What we write, read and run by OpenFAST itself; runs where ``OPENFAST=/path/to/openfast`` is set.
 
-Writes docs/verification/openfast.md. jacket15 as ExtPtfm superelement under an ElastoDyn tower and the IEA
-15 MW rotor, with rigid and with bending blades, linearised and in free decay, against ``modes --gravity``;
-and the exported SubDyn deck's frequencies against our own.
+Writes docs/verification/openfast.md. jacket15 and a jacket of three legs as ExtPtfm superelements under an
+ElastoDyn tower and the IEA 15 MW rotor, with rigid and with bending blades, linearised and in free decay,
+against ``modes --gravity``; and the frequencies of exported SubDyn decks against our own.
 """
 
 from __future__ import annotations
@@ -26,14 +26,16 @@ from jackettwin.records.readers.openfast import read_text
 from jackettwin.response.modal import damped_modes, undamped_modes
 from jackettwin.response.own_damping import own_damping
 from jackettwin.response.static import self_weight, static_displacement
-from jackettwin.response.superelement import superelement
+from jackettwin.response.superelement import INTERFACE, Superelement, interface_centroid, superelement
 from jackettwin.response.superelement_files import write_superelement
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support, with_static_reactions
 from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil.support import Spring
 from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
 from jackettwin.structure.blade_files import read_flexible_rotor
 from jackettwin.structure.cut import at_interface
+from jackettwin.structure.model import Reaction
 from jackettwin.structure.rotor_modes import with_rotor
 from jackettwin.structure.subdyn_deck import write_subdyn
 
@@ -41,9 +43,10 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 KELVIN_VOIGT, SOFTER = "kelvin-voigt:k=2.5e9,c=7.6e8", "kelvin-voigt:k=8e8,c=1e8"
+SPRINGPOTS = "springpot:k=1e9,alpha=0.06,f0=0.2"
+DECKS = Path(__file__).parent / "decks"
 PITCHES_DEG = (45.0, 0.0)
 """Of blades that are not feathered: the flap bends fore-aft then."""
-DEPTH_M = 72.0
 MODES = 24
 BAND_HZ = 1.0
 DECAY_S = 150.0
@@ -73,9 +76,10 @@ def introduction() -> list[str]:
     return [
         "# OpenFAST reads and runs what we write",
         "",
-        "`jacket15` as an ExtPtfm superelement (24 coordinates, `--layout openfast5`, gravity) under an",
-        "ElastoDyn tower with the IEA 15 MW rotor, parked and feathered, the steel undamped: OpenFAST 5.0.0,",
-        "linearised at rest and in free decay at steps of 0.01 s, beside `modes --gravity` of the whole.",
+        "`jacket15`, and a jacket of three legs that is turned or leans (`qualify/decks/three_legs.yaml`),",
+        "as ExtPtfm superelements (24 coordinates, `--layout openfast5`, gravity) under an ElastoDyn tower",
+        "with the IEA 15 MW rotor, parked and feathered, the steel undamped: OpenFAST 5.0.0, linearised at",
+        "rest and in free decay at steps of 0.01 s, beside `modes --gravity` of the whole.",
         "`ModCoupling` is 3: with 1 that version writes beyond its arrays, whatever the superelement.",
         "ElastoDyn's tower has two shapes in each direction, its blades three: what is left is mostly",
         "theirs. `OPENFAST=/path make qualify` writes this page.",
@@ -107,13 +111,32 @@ def cases() -> Iterator[tuple[Asset, bool]]:
     for pitch in PITCHES_DEG:
         yield on_feet(f"{feet}, pitch {pitch:g}°", KELVIN_VOIGT, pitch), True
     yield on_feet(f"softer feet ({SOFTER.removeprefix('kelvin-voigt:')})", SOFTER), True
+    yield (
+        on_feet(
+            f"three legs, turned by 20°, on {SPRINGPOTS}", SPRINGPOTS, structure=three_legs(turn_deg=20.0)
+        ),
+        False,
+    )
+    yield on_feet(f"three legs, leaning by 0.1, on {SOFTER}", SOFTER, structure=three_legs(lean=0.1)), False
 
 
-def on_feet(title: str, support: str, pitch_deg: float = 90.0) -> Asset:
+def on_feet(title: str, support: str, pitch_deg: float = 90.0, structure: Structure | None = None) -> Asset:
     machine = turbine(pitch_deg)
-    steel = read_structure("jacket15")
+    steel = structure or read_structure("jacket15")
     steel = steel.with_masses((machine.body(steel.top_node),))
     return Asset(title, machine, steel, read_support(support, steel))
+
+
+def three_legs(*, turn_deg: float = 0.0, lean: float = 0.0) -> Structure:
+    """Return a jacket of three legs, turned about the vertical or leaning along x."""
+    steel = read_structure(DECKS / "three_legs.yaml")
+    top = steel.nodes[steel.interface_nodes[0]][2]
+    c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    nodes = {
+        name: (c * x - s * y + lean * max(0.0, top - z), s * x + c * y, z)
+        for name, (x, y, z) in steel.nodes.items()
+    }
+    return replace(steel, nodes=nodes)
 
 
 def on_piles() -> Asset:
@@ -130,11 +153,7 @@ def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> lis
     base = build_system(assemble(foundation, gravity=True, weight=rigid.weight), support)
     element = superelement(base, number=MODES, band_hz=BAND_HZ)
     write_superelement(element, folder / "jacket.dat")
-    u = static_displacement(build_system(rigid, support), self_weight(rigid))
-    rest = tuple(
-        float(v) for node in (structure.interface_nodes[0], structure.top_node) for v in u[rigid.dofs(node)]
-    )
-    run = Run(flexible=flexible, linearise=True, rest=rest)
+    run = Run(flexible=flexible, linearise=True, rest=at_rest(structure, element))
     columns = {"linearised": linearised(program, folder, asset, run)}
     if not flexible:
         decay = replace(run, linearise=False, duration_s=DECAY_S, offset_m=0.3)
@@ -144,6 +163,19 @@ def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> lis
     system = build_system(assembly, support, spread=own_damping(assembly, Rayleigh()))
     heading = f"{asset.title}, {'bending' if flexible else 'rigid'} blades"
     return table(heading, pairs(system, structure), columns)
+
+
+def at_rest(structure: Structure, element: Superelement) -> tuple[float, ...]:
+    """Return the motions of the interface and of the tower top under the weight, on the element's springs."""
+    _, tower = at_interface(structure)
+    assert tower is not None
+    base = structure.interface_nodes[0]
+    assembly = assemble(replace(tower, reactions=(Reaction(base),)), gravity=True)
+    load = self_weight(assembly)
+    load[assembly.dofs(base)] += element.weight_n[:INTERFACE]
+    springs = Support(springs=(Spring(base, element.interface_stiffness),))
+    u = static_displacement(build_system(assembly, springs), load)
+    return tuple(float(v) for node in (base, structure.top_node) for v in u[assembly.dofs(node)])
 
 
 def pairs(system: System, structure: Structure) -> dict[str, complex]:
@@ -205,7 +237,12 @@ def execute(program: str, primary: Path) -> None:
 def ready(folder: Path, asset: Asset, run: Run) -> Path:
     """Write the files of a case; return its ``.fst``."""
     return write_case(
-        folder, asset.structure, asset.turbine, run, foundation="jacket_ExtPtfm.dat", depth_m=DEPTH_M
+        folder,
+        asset.structure,
+        asset.turbine,
+        run,
+        foundation="jacket_ExtPtfm.dat",
+        depth_m=asset.structure.sea_level_z_m,
     )
 
 
@@ -244,24 +281,57 @@ def _poles_of_decay(x: FloatArray, step: float, *, order: int = 12, rows: int = 
 
 
 def subdyn(program: str, folder: Path) -> list[str]:
-    """Return the frequencies of the exported deck, by SubDyn and by us."""
-    place = folder / "subdyn"
-    place.mkdir()
-    structure = read_structure("jacket15")
-    structure = structure.with_masses((turbine().body(structure.top_node),))
-    support = read_support("kelvin-voigt:k=2.5e9,c=0", structure)
+    """Return how far apart the frequencies of exported decks are, by SubDyn and by us."""
+    machine = turbine()
+    tower = read_structure("jacket15")
+    tower = tower.with_masses((machine.body(tower.top_node),))
+    lines = [
+        "**SubDyn: `export`**",
+        "",
+        "| foundation | modes below 3 Hz | furthest apart [%] |",
+        "|---|---|---|",
+    ]
+    for k, (title, structure) in enumerate(
+        {
+            "jacket15": read_structure("jacket15"),
+            "three legs, turned by 20°": three_legs(turn_deg=20.0),
+            "three legs, leaning by 0.1": three_legs(lean=0.1),
+            "OC4 (its own SubDyn deck)": read_structure(DECKS / "oc4_jacket.dat"),
+        }.items()
+    ):
+        place = folder / f"subdyn{k}"
+        place.mkdir()
+        number, apart = exported(program, place, structure, tower)
+        lines.append(f"| {title} | {number} | {100 * apart:.4f} |")
+    return [
+        *lines,
+        "",
+        "Feet on springs of 2.5e9 N/m; frequencies of the exported foundation, free at its top, by SubDyn's",
+        "own finite elements (its summary file) and by ours on the deck read back.",
+        "",
+    ]
+
+
+def exported(program: str, place: Path, structure: Structure, tower: Structure) -> tuple[int, float]:
+    """Return how many frequencies below 3 Hz the exported foundation has, and how far SubDyn's are off.
+
+    A tower stands on it at the height of its interface: SubDyn runs under ElastoDyn, and its own frequencies
+    know nothing of that.
+    """
     foundation, _ = at_interface(structure)
-    held = with_static_reactions(foundation, support)
-    write_subdyn(held, place / "deck.dat")
+    support = read_support("kelvin-voigt:k=2.5e9,c=0", foundation)
+    write_subdyn(with_static_reactions(foundation, support), place / "deck.dat")
     deck = read_structure(place / "deck.dat")
     ours = undamped_modes(build_system(assemble(deck), read_support(None, deck)), 60).frequency_hz
+    above = interface_centroid(structure)[2] - structure.sea_level_z_m
+    base = tower.nodes[tower.interface_nodes[0]][2]
     primary = write_case(
         place,
-        structure,
+        replace(tower, sea_level_z_m=base - above),
         turbine(),
         Run(duration_s=0.1, step_s=0.002, sub=1),
         foundation="deck.dat",
-        depth_m=DEPTH_M,
+        depth_m=structure.sea_level_z_m - min(z for _, _, z in structure.nodes.values()),
     )
     execute(program, primary)
     summary = yaml.safe_load(next(place.glob("*.SD.sum.yaml")).read_text())
@@ -270,14 +340,7 @@ def subdyn(program: str, folder: Path) -> list[str]:
     )
     theirs = np.sort(theirs[theirs > 1e-3])
     wanted = ours[(ours > 1e-3) & (ours < 3.0)]
-    apart = np.abs(wanted / theirs[: wanted.size] - 1.0)
-    return [
-        "**SubDyn: `export`**",
-        "",
-        f"{wanted.size} modes of the exported foundation below 3 Hz, by SubDyn's own finite elements (its",
-        f"summary file) and by ours on the deck read back: at most {100 * apart.max():.4f} % apart.",
-        "",
-    ]
+    return wanted.size, float(np.abs(wanted / theirs[: wanted.size] - 1.0).max())
 
 
 if __name__ == "__main__":
