@@ -49,8 +49,8 @@ def new_store(folder: Path, twin: str, database: str | None = None, *others: str
     return store
 
 
-def fill(store: Path, *, turbines: int) -> None:
-    """Give a store many turbines, each with the 143 records of a day, their modes, findings and state."""
+def fill(store: Path, *, turbines: int, days: int = 1) -> None:
+    """Give a store many turbines, each with 143 records a day, their modes, findings and states."""
     with opened(sqlite_url(store)) as made, writing(made) as connection:
         like = assets.found_version(connection, "wtg")
         files = assets.unpack(assets.bundle_of(connection, "wtg", 1))
@@ -60,10 +60,11 @@ def fill(store: Path, *, turbines: int) -> None:
             hashes = {"model_hash": like.model_hash, "settings_hash": like.settings_hash}
             assets.add_version(connection, name, files, **hashes, by="fill", now=DAY)
             key = {"asset": name, "model_hash": like.model_hash}
-            connection.execute(tables.records.insert(), [_record(name, i) for i in range(143)])
-            connection.execute(tables.modes.insert(), [_mode(key, i) for i in range(3 * 143)])
-            connection.execute(tables.findings.insert(), [_finding(key, i) for i in range(15)])
-            results.put_state(connection, results.StoredState(**key, day=f"{DAY:%Y-%m-%d}", **state))
+            for day in (DAY - timedelta(days=before) for before in range(days)):
+                connection.execute(tables.records.insert(), [_record(name, day, i) for i in range(143)])
+                connection.execute(tables.modes.insert(), [_mode(key, day, i) for i in range(3 * 143)])
+                connection.execute(tables.findings.insert(), [_finding(key, day, i) for i in range(15)])
+                results.put_state(connection, results.StoredState(**key, day=f"{day:%Y-%m-%d}", **state))
 
 
 def _state_of_a_day(model_hash: str) -> dict[str, Any]:
@@ -91,28 +92,32 @@ class _Bare:
         self.model_hash = model_hash
 
 
-def _record(asset: str, i: int) -> dict[str, Any]:
+def _number(asset: str, day: datetime, i: int) -> str:
+    return f"{asset[-2:]}{day:%Y%m%d}{i:014x}"
+
+
+def _record(asset: str, day: datetime, i: int) -> dict[str, Any]:
     return {
         "asset": asset,
-        "record_id": f"{asset[-2:]}{i:022x}",
+        "record_id": _number(asset, day, i),
         "status": "observed",
-        "start_utc": DAY + timedelta(minutes=10 * i),
+        "start_utc": day + timedelta(minutes=10 * i),
         "duration_s": 600.0,
         "sample_rate_hz": 20.0,
         "channels": [{"name": name, "quantity": "acceleration"} for name in ("x", "y")],
         "conditions": {"mean_wind_speed_m_s": 8.0, "state": "operating"},
         "source_name": f"r{i}.parquet",
-        "received_utc": DAY + timedelta(minutes=10 * i),
+        "received_utc": day + timedelta(minutes=10 * i),
         "size_bytes": 48_000,
     }
 
 
-def _mode(key: dict[str, Any], i: int) -> dict[str, Any]:
+def _mode(key: dict[str, Any], day: datetime, i: int) -> dict[str, Any]:
     return {
         **key,
         "model_version": 1,
-        "record_id": f"{key['asset'][-2:]}{i // 3:022x}",
-        "time_utc": DAY + timedelta(minutes=10 * (i // 3)),
+        "record_id": _number(key["asset"], day, i // 3),
+        "time_utc": day + timedelta(minutes=10 * (i // 3)),
         "label": ("fore_aft_1", "side_side_1", "fore_aft_2")[i % 3],
         "frequency_hz": 0.18,
         "frequency_std_hz": 1e-4,
@@ -124,13 +129,13 @@ def _mode(key: dict[str, Any], i: int) -> dict[str, Any]:
     }
 
 
-def _finding(key: dict[str, Any], i: int) -> dict[str, Any]:
+def _finding(key: dict[str, Any], day: datetime, i: int) -> dict[str, Any]:
     return {
         **key,
-        "record_id": f"{key['asset'][-2:]}{i:022x}",
+        "record_id": _number(key["asset"], day, i),
         "origin": "observe",
-        "time_utc": DAY + timedelta(minutes=10 * i),
-        "day": f"{DAY:%Y-%m-%d}",
+        "time_utc": day + timedelta(minutes=10 * i),
+        "day": f"{day:%Y-%m-%d}",
         "code": "rotor_order_removed",
         "severity": "warning",
         "subject": "3P",

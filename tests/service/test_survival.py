@@ -15,9 +15,9 @@ import pytest
 from tests.service.conftest import description, hour, record_file
 from tests.service.servers import Broker, Database, Server, opened, publish
 
-from jackettwin.service import add_twin, engine
+from jackettwin.service import add_twin, engine, take_here
 from jackettwin.service.tasks import read_file
-from jackettwin.store import sqlite_url
+from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
 
 RECORDS = 5
@@ -57,13 +57,13 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {f"wtg {day}": hashlib.sha256(text.encode()).hexdigest() for day, text in days.items()}
 
 
-def new_store(folder: Path, database: str | None = None) -> Path:
+def new_store(folder: Path) -> Path:
     store = folder / "store"
     store.mkdir()
     twin = folder / "twin.yaml"
     twin.write_text(TWIN)
-    with opened(database or sqlite_url(store)) as engine:
-        add_twin(engine, store, "wtg", twin)
+    with opened(sqlite_url(store)) as database:
+        add_twin(database, store, "wtg", twin)
     return store
 
 
@@ -74,9 +74,6 @@ def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[
     try:
         for i, sent in enumerate(records()):
             server.send(*sent)
-            if i == 0:
-                with opened(sqlite_url(store)) as database:
-                    backup(database, store, tmp_path / "yesterday.tar.gz")
             if i == 1:
                 assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
                 assert server.kill_a_worker()
@@ -89,29 +86,32 @@ def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[
     finally:
         server.stop()
     assert not server.workers_alive()
-    restored_and_sent_again(tmp_path, expected)
 
 
-def restored_and_sent_again(folder: Path, expected: dict[str, str]) -> None:
-    """Restore the backup of the first record into a new store; send all again."""
-    again = folder / "again"
-    again.mkdir()
-    with opened(sqlite_url(again)) as database:
-        assert restore(folder / "yesterday.tar.gz", database, again)["records"] == 1
-    with Server(again, "--workers", "1") as server:
-        for sent in records():
-            server.send(*sent)
-        server.wait_until_observed(RECORDS)
-        assert server.states() == expected
-        assert server.counts() == {"records": RECORDS, "observations": RECORDS}
+def restored_store(folder: Path, database: str) -> Path:
+    """Return a store restored from the backup of another, in which a record was under way."""
+    before = new_store(folder)
+    name, content, beside = records()[0]
+    (folder / name).write_bytes(content)
+    (folder / name).with_suffix(".json").write_text(beside)
+    with opened(sqlite_url(before)) as old:
+        assert take_here(old, before, "wtg", folder / name).new
+        with writing(old) as connection:
+            assert len(work.lease(connection, "a server that is gone", 1, hour(6))) == 1
+        backup(old, before, folder / "yesterday.tar.gz")
+    again = folder / "again" / "store"
+    again.mkdir(parents=True)
+    with opened(database) as new:
+        assert restore(folder / "yesterday.tar.gz", new, again)["records"] == 1
+    return again
 
 
 def test_a_database_that_dies_is_waited_for_by_two_servers(tmp_path: Path, expected: dict[str, str]) -> None:
-    """One of them dies for good, too, with what it had taken."""
+    """It was restored from a backup; one of them dies for good, too, with what it had taken."""
     database = Database(tmp_path / "postgresql")
     database.start()
     try:
-        store = new_store(tmp_path, database.url)
+        store = restored_store(tmp_path, database.url)
         options = ("--workers", "1", "--database", database.url)
         with Server(store, *options) as server, Server(store, *options) as dying:
             sent = records()

@@ -11,6 +11,10 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.morison import MorisonPoints, point_forces, spread
 
+TOWER_DRAG = 0.5
+"""Of a tower beyond the drag crisis; the reference turbine's own aeroelastic deck has it (TwrCd of
+IEA-15-240-RWT_AeroDyn15.dat)."""
+
 REFERENCE_INTENSITY = {"A+": 0.18, "A": 0.16, "B": 0.14, "C": 0.12}
 """Expected turbulence intensity at 15 m/s, IEC 61400-1 (2019) table 1."""
 

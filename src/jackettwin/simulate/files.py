@@ -29,13 +29,11 @@ from jackettwin.simulate.schema import (
     WavesSchema,
     WindSchema,
 )
-from jackettwin.simulate.water_files import WaterSchema, water_members
+from jackettwin.simulate.water_files import WaterSchema, depth_of, water_members
 from jackettwin.structure import Structure, assemble
 
 REGULAR = ("airy", "stokes5", "stream")
 GIVEN = ("elevation", "kinematics")
-_GAP_M = 5.0
-"""How far above the bed feet may end, as those of piles that stick out do."""
 _MOST_SAMPLES = 1e7
 _LONGEST_LOAD_STEP_S = 0.05
 
@@ -244,27 +242,6 @@ def _filed(w: WavesSchema, folder: Path) -> Elevation | Kinematics | None:
     if w.file is None:
         return None
     return read_elevation(folder / w.file) if w.type == "elevation" else read_kinematics(folder / w.file)
-
-
-def depth_of(w: WaterSchema, structure: Structure) -> float:
-    """Return the depth [m] as stated; else down to the lowest foot."""
-    feet = structure.reaction_nodes or tuple(structure.nodes)
-    reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
-    if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
-        return w.depth_m
-    if not reach > 0.0:
-        raise InputError(
-            "water depth is not known", field="water.depth_m", value=reach, remedy="state it in metres"
-        )
-    if w.depth_m is not None:
-        raise InputError(
-            "the structure does not reach the bed",
-            field="water.depth_m",
-            value=w.depth_m,
-            allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
-            remedy="state the depth of this structure, or leave it out",
-        )
-    return reach
 
 
 def _size(w: WavesSchema) -> tuple[float, float]:

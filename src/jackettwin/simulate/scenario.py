@@ -19,7 +19,7 @@ from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.turbulence import Coherent
 from jackettwin.loads.water import Water
-from jackettwin.loads.wind import Wind
+from jackettwin.loads.wind import TOWER_DRAG, Wind
 from jackettwin.response.sensors import Sensor
 from jackettwin.soil.foundation import Foundation
 from jackettwin.soil.support import Support
@@ -77,9 +77,6 @@ class Sea:
     """At which given kinematics travel; None is that of their peak period."""
 
 
-TOWER_DRAG = 0.5
-"""Of a tower beyond the drag crisis; the reference turbine's own aeroelastic deck has it (TwrCd of
-IEA-15-240-RWT_AeroDyn15.dat)."""
 GRID_M = 19.1
 """Between the nodes of the wind field that the OpenFAST records were made in [m]."""
 _HEADINGS = 9

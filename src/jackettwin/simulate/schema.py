@@ -8,7 +8,7 @@ from pydantic import Field
 
 from jackettwin.files import Schema
 from jackettwin.files.limits import Angle, ForceCoefficient, Frequency, Height, Seed
-from jackettwin.simulate.scenario import TOWER_DRAG
+from jackettwin.loads.wind import TOWER_DRAG
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.soil.foundation import (
     CurvesSchema,

@@ -25,6 +25,8 @@ from jackettwin.loads.hydrodyn_deck import read_hydrodyn
 from jackettwin.loads.water import Water
 from jackettwin.structure import Structure
 
+_GAP_M = 5.0
+"""How far above the bed feet may end, as those of piles that stick out do."""
 Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
 """Density of marine growth [kg/m³]."""
 
@@ -199,3 +201,24 @@ def _band(g: GrowthSchema, density: float) -> GrowthBand:
             remedy="give top_z_m and bottom_z_m, or z_m at every height of a table",
         )
     return GrowthBand(g.top_z_m, g.bottom_z_m, g.thickness_m, density_kg_m3=density)
+
+
+def depth_of(w: WaterSchema, structure: Structure) -> float:
+    """Return the depth [m] as stated; else down to the lowest foot."""
+    feet = structure.reaction_nodes or tuple(structure.nodes)
+    reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
+    if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
+        return w.depth_m
+    if not reach > 0.0:
+        raise InputError(
+            "water depth is not known", field="water.depth_m", value=reach, remedy="state it in metres"
+        )
+    if w.depth_m is not None:
+        raise InputError(
+            "the structure does not reach the bed",
+            field="water.depth_m",
+            value=w.depth_m,
+            allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
+            remedy="state the depth of this structure, or leave it out",
+        )
+    return reach

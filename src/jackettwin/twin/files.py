@@ -19,8 +19,7 @@ from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.mode_words import read_mode_label
-from jackettwin.simulate.files import depth_of
-from jackettwin.simulate.water_files import WaterSchema, water_members
+from jackettwin.simulate.water_files import WaterSchema, depth_of, water_members
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.assigned import assigned_modes
