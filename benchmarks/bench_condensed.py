@@ -1,7 +1,7 @@
 """Three modes with all gradients: the condensed model against the thesis's dense state-space eigenvalues.
 
-And ``damped_modes`` of a finer model with springpots beside three Maxwell branches. Run by ``make bench``;
-prints Markdown tables. One BLAS thread; processor time, best of several runs, for the machine may be shared.
+Run by ``make bench``; prints a Markdown table. One BLAS thread; processor time, best of several runs, for the
+machine may be shared.
 n ≈ 950: jacket15 with two elements a member.
 """
 
@@ -10,16 +10,13 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
 from jackettwin.response.modal import damped_modes
 from jackettwin.response.numbered import Status, numbered_poles
 from jackettwin.response.state import state_matrix
-from jackettwin.response.system import build_system
-from jackettwin.soil import on_translations
-from jackettwin.soil.viscoelastic import Prony, Springpot, maxwell_3
+from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Rayleigh, assemble, read_structure
 from jackettwin.updating import SupportModel, family, support_model
 
@@ -31,8 +28,6 @@ POINTS = {
     "maxwell-3": [3e9, 0.2],
     "springpot": [3e9, 0.06],
 }
-FINE = {"maxwell-3": maxwell_3(2.5e9, 0.2, 0.183), "springpot": Springpot(2.5e9, 0.1, 1.15)}
-BANDS_HZ = (0.6, 1.0, 1.5, 3.0)
 
 
 def best(action: Callable[[], object], repeats: int) -> float:
@@ -92,21 +87,6 @@ def main() -> None:
             f"| {name} | {dense:.2f} | {1e3 * cold:.2f} | {ratio[0]} "
             f"| {1e3 * warm:.3f} | {ratio[1]} | {r['batch']:,.0f} | {r['error']:.1e} |\n"
         )
-    fine(steel)
-
-
-def fine(steel: Rayleigh) -> None:
-    """Print what all damped modes of jacket15 with nine elements a member cost by either law [CPU-s]."""
-    assembly = assemble(read_structure("jacket15"), subdivide=9)
-    sys.stdout.write(
-        f"\nAll damped modes, n = {assembly.n_dof} [s]\n\n| below | {' | '.join(FINE)} |\n|---|---|---|\n"
-    )
-    for band in BANDS_HZ:
-        spent = []
-        for law in FINE.values():
-            system = build_system(assembly, on_translations(assembly.structure, law), rayleigh=steel)
-            spent.append(best(partial(damped_modes, system, below_hz=band), 2))
-        sys.stdout.write(f"| {band:g} Hz | {' | '.join(f'{t:.2f}' for t in spent)} |\n")
 
 
 if __name__ == "__main__":

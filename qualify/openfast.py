@@ -148,10 +148,7 @@ def on_piles() -> Asset:
 def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> list[str]:
     """Return the table of a case: linearised, and with rigid blades in free decay."""
     structure, support = asset.structure, asset.support
-    rigid = assemble(structure, gravity=True)
-    foundation, _ = at_interface(structure)
-    base = build_system(assemble(foundation, gravity=True, weight=rigid.weight), support)
-    element = superelement(base, number=MODES, band_hz=BAND_HZ)
+    element = reduced_to_interface(asset)
     write_superelement(element, folder / "jacket.dat")
     run = Run(flexible=flexible, linearise=True, rest=at_rest(structure, element))
     columns = {"linearised": linearised(program, folder, asset, run)}
@@ -163,6 +160,14 @@ def compared(program: str, folder: Path, asset: Asset, *, flexible: bool) -> lis
     system = build_system(assembly, support, spread=own_damping(assembly, Rayleigh()))
     heading = f"{asset.title}, {'bending' if flexible else 'rigid'} blades"
     return table(heading, pairs(system, structure), columns)
+
+
+def reduced_to_interface(asset: Asset) -> Superelement:
+    """Return the foundation under the weight of all that stands on it."""
+    foundation, _ = at_interface(asset.structure)
+    weight = assemble(asset.structure, gravity=True).weight
+    base = build_system(assemble(foundation, gravity=True, weight=weight), asset.support)
+    return superelement(base, number=MODES, band_hz=BAND_HZ)
 
 
 def at_rest(structure: Structure, element: Superelement) -> tuple[float, ...]:

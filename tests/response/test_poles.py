@@ -168,6 +168,12 @@ def test_a_springpot_costs_what_maxwell_branches_do(jacket15, alpha, below_hz, m
     assert costs[1][1] <= 1.1 * costs[0][1]
 
 
+def test_a_springpot_may_have_no_pole_below_the_limit(monopile) -> None:
+    system = build_system(monopile, on_law(monopile.structure, LAWS["springpot"]))
+    found = damped_modes(system, below_hz=0.01)
+    assert found.eigenvalues.size == found.real_poles.size == 0
+
+
 def test_springpot_with_exponent_zero_is_a_spring(monopile) -> None:
     systems = [
         build_system(monopile, on_law(monopile.structure, law), rayleigh=RAYLEIGH)

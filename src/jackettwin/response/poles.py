@@ -62,7 +62,8 @@ def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
         If the iteration does not converge or a refined pole does not come to rest.
     """
     if all(isinstance(group.law, Prony) for group in pencil.groups):
-        pairs, _ = _from_start(pencil, pencil, radius)
+        values, vectors = _poles_within(pencil, radius * (1.0 + _CLUSTER))
+        pairs = [pair for at in _clusters(values) for pair in _exactly(pencil, values[at], vectors[:, at])]
     else:
         coarse = _fitted(pencil, lambda law: one_branch(law.row, radius))
         pairs, whole = _from_start(pencil, coarse, radius)
@@ -76,16 +77,14 @@ def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
 
 
 def _from_start(pencil: Pencil, start: Pencil, radius: float) -> tuple[list[Pair], bool]:
-    """Return the poles of ``pencil`` from those of ``start``, and whether each start had its own."""
-    if start is pencil:
-        values, vectors = _poles_within(pencil, radius * (1.0 + _CLUSTER))
-        pairs = [pair for at in _clusters(values) for pair in _exactly(pencil, values[at], vectors[:, at])]
-        return pairs, True
+    """Return the poles of ``pencil`` from those on other laws, and whether each start had its own."""
     # a start law is off by some hundredths: what it has just outside may lie inside
     values, vectors = _poles_within(start, radius * (1.0 + _OFF))
+    clusters = [at for at in _clusters(values) if values[at].imag.any()]  # the others are the start law's own
+    if not clusters:
+        return [], True
     space = _extended(np.zeros((pencil.n, 0)), vectors)
     small = _on_space(pencil, space)
-    clusters = [at for at in _clusters(values) if values[at].imag.any()]  # the others are the start law's own
     found = [_nearly(pencil, small, space, values[at], space.T @ vectors[:, at]) for at in clusters]
     pairs = [pair for part in found for pair in part]
     return pairs, all(found) and not _doubled(pairs)
