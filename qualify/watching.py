@@ -2,6 +2,7 @@
 
 Usage: python qualify/watching.py [quiet turbines a kind of seasons] [turbines a change]
        [of a kind without conditions] [folder of pieces]
+       python qualify/watching.py speed
 
 Each turbine is a piece that is kept in a file; a run that was stopped goes on where it was. Pieces of other
 source code are not used.
@@ -425,7 +426,8 @@ def speed() -> list[str]:
     return [
         "## Speed",
         "",
-        f"CPU time where a dense 800×800 `numpy.linalg.eig` takes {unit:.2f} s; in brackets, 0.8 s.",
+        "`python qualify/watching.py speed`, with the directions of pairs: CPU time where a dense 800×800",
+        f"`numpy.linalg.eig` takes {unit:.2f} s; in brackets, 0.8 s.",
         "",
         "| what | CPU |",
         "|---|---|",
@@ -468,6 +470,9 @@ def source(*, named: bool) -> str:
 
 
 def main() -> None:
+    if sys.argv[1:] == ["speed"]:
+        sys.stdout.write("\n".join(speed()))
+        return
     kinds, number, without = (int(x) for x in (*sys.argv[1:4], *("15", "20", "7")[len(sys.argv) - 1 :]))
     folder = Path(sys.argv[4] if len(sys.argv) > 4 else "out/qualify")
     folder.mkdir(parents=True, exist_ok=True)
