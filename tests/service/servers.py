@@ -28,7 +28,7 @@ from paho.mqtt.enums import CallbackAPIVersion
 from sqlalchemy import Engine, select
 from tests.service.conftest import record_file
 
-from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables
+from jackettwin.store import assets, open_database, reading, results, sqlite_url, streams, tables
 
 
 @contextmanager
@@ -227,8 +227,8 @@ class Server:
         )
 
     def send(self, name: str, file: bytes, description: str, asset: str = "wtg") -> None:
-        """Send a record until it is taken, as a client does that must not lose it."""
-        end = time.monotonic() + 120.0
+        """Send a record until it is taken, as a client does that must not lose it, and has the time."""
+        end = time.monotonic() + 600.0
         while time.monotonic() < end:
             with suppress(httpx.TransportError):
                 answer = self.post(name, file, description, asset)
@@ -252,6 +252,17 @@ class Server:
                     return
             time.sleep(0.3)
         raise TimeoutError(f"{counts}: {self._log.read_text()[-2000:]}")
+
+    def wait_for_windows(self, seconds: float = 600.0) -> None:
+        """Wait until every packet of a stream is in a record."""
+        end = time.monotonic() + seconds
+        with self._database() as database:
+            while time.monotonic() < end:
+                with reading(database) as connection:
+                    if not streams.open_windows(connection):
+                        return
+                time.sleep(1.0)
+        raise TimeoutError("packets wait for their record")
 
     def records(self) -> Counter[str]:
         """Return how many records have each status, of all turbines."""
