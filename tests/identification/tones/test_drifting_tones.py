@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.identification import identify
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.identification.tones.drifting_tones import drifting_tones, tone_at
+from jackettwin.identification.tones.drifting_tones import drifting_tones, tones_at
 from jackettwin.identification.tones.sinusoid import transform
 
 RATE = 5.0
@@ -76,7 +76,7 @@ def test_a_drifting_tone_is_told_beside_a_strong_pair(tower, rng, drift, period_
     f = 0.38 * (1.0 + drift * np.sin(2.0 * np.pi * T / period_s))
     shape = tower.mode_shapes[0] + tower.mode_shapes[1]
     wave = 0.6 * np.sqrt(2.0) * record.data.std(axis=1).max() * np.sin(2.0 * np.pi * np.cumsum(f) / 5.0)
-    tone = tone_at(transform(record.data + shape[:, None] * wave), 600.0, 0.38)
+    (tone,) = tones_at(transform(record.data + shape[:, None] * wave), 600.0, np.array([0.38]))
     assert tone is not None
     assert tone.swept_hz == pytest.approx((f.min(), f.max()), abs=0.01)
 

@@ -10,7 +10,7 @@ from scipy import signal
 
 from jackettwin.identification import identify
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.identification.tones.drifting_tones import tone_at
+from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import (
     envelope_variance,
     is_steady_tone,
@@ -82,7 +82,7 @@ def test_a_mode_beside_a_steady_tone_is_no_drifting_tone(tower, rng):
     record = simulate(tower, rng, sample_rate_hz=RATE)
     t = np.arange(record.data.shape[1]) / RATE
     loud = record.data + record.data.std() * np.sin(2 * np.pi * 0.275 * t)
-    assert tone_at(transform(loud), loud.shape[1] / RATE, 0.30) is None
+    assert list(tones_at(transform(loud), loud.shape[1] / RATE, np.array([0.30]))) == [None]
 
 
 def test_a_channel_frozen_halfway_makes_no_tone_of_a_mode(tower, rng):
@@ -125,7 +125,8 @@ def test_modes_of_short_records_are_no_tones(tower):
         lines = transform(y)
         for f, zeta, shape in zip(tower.frequency_hz, tower.damping_ratio, shapes, strict=True):
             steady += envelope_variance(lines, 180.0, f, shape) < 0.25
-            taken += is_steady_tone(lines, 180.0, f, zeta, shape) or tone_at(lines, 180.0, f) is not None
+            (drifting,) = tones_at(lines, 180.0, np.array([f]))
+            taken += is_steady_tone(lines, 180.0, f, zeta, shape) or drifting is not None
     # a threshold that does not know the length of the record takes several of 160
     assert steady >= 3
     # 0.1 % each: two or more once in eighty such tests

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy import ndimage
+from scipy.fft import next_fast_len
 
 from jackettwin.arrays import FloatArray
 
@@ -113,7 +114,8 @@ def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
     n = y.shape[1]
     if n < 64:
         return None
-    f, density = scipy.signal.periodogram(y, sample_rate_hz, window="hann", axis=1)
+    padded = next_fast_len(n, real=True)
+    f, density = scipy.signal.periodogram(y, sample_rate_hz, window="hann", nfft=padded, axis=1)
     density = density.mean(axis=0)
     density[f < 4.0 * sample_rate_hz / n] = 0.0
     k = int(np.argmax(density))

@@ -23,7 +23,7 @@ import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy.interpolate import CubicSpline
 
 from jackettwin.arrays import FloatArray, Int64Array
-from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
+from jackettwin.identification.preparation.spectra import densities, lowest_peak_hz
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -131,7 +131,7 @@ def _more(record: Record, declared: Int64Array) -> int:
         record.data.shape[1] < 2 * HALF_LENGTH
     ):  # too short to be identified; whoever looks for its band says so
         return 0
-    spectrum = welch(record.data, record.sample_rate_hz)
+    spectrum = densities(record.data, record.sample_rate_hz)
     for more in range(MOST_DERIVATIVES - int(declared.min()), -int(declared.max()) - 1, -1):
         if more <= 0 and _exponent(spectrum, declared + more) <= STEEPEST_RISE:
             break

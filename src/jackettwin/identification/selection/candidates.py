@@ -13,7 +13,7 @@ from jackettwin.identification.estimate import ModalEstimate, Rejected
 from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.identification.status import ModeStatus
-from jackettwin.identification.tones.drifting_tones import tone_at
+from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import is_steady_tone
 from jackettwin.identification.tones.sinusoid import transform
 from jackettwin.identification.tones.steady_tones import without_tones
@@ -146,18 +146,21 @@ def find_tones(
     f, zeta = poles.frequency_hz, poles.damping_ratio
     clean, lines, followed, steady = y, transform(y), list(drifting), []
     duration_s = y.shape[1] / sample_rate_hz
-    for k in sorted(likely):
-        if any(tone.passes(f[k]) for tone in followed):
-            continue
-        track = tone_at(lines, duration_s, f[k])
-        if track is not None:
-            followed.append(track)
-            clean = less_phase(clean, track.phase(y.shape[1]))
+    left = sorted(likely)
+    while left := [k for k in left if not any(tone.passes(f[k]) for tone in followed)]:
+        for n, (k, track) in enumerate(zip(left, tones_at(lines, duration_s, f[left]), strict=True), start=1):
+            if track is not None:
+                followed.append(track)
+                clean = less_phase(clean, track.phase(y.shape[1]))
+            elif is_steady_tone(lines, duration_s, f[k], zeta[k], poles.mode_shape[k] / scale):
+                steady.append(k)
+                clean = without_tones(clean, sample_rate_hz, [f[k]])
+            else:
+                continue
+            # the others are held against what this tone leaves
             lines = transform(clean)
-        elif is_steady_tone(lines, duration_s, f[k], zeta[k], poles.mode_shape[k] / scale):
-            steady.append(k)
-            clean = without_tones(clean, sample_rate_hz, [f[k]])
-            lines = transform(clean)
+            break
+        left = left[n:]
     passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
 

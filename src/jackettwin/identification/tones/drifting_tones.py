@@ -20,6 +20,8 @@ from jackettwin.identification.tones.sinusoid import lines_around, transform
 from jackettwin.records.tones import less_phase
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from jackettwin.identification.tones.phase_track import PhaseTrack
 
 
@@ -99,25 +101,37 @@ def _tone_in(lines: ComplexArray, duration_s: float, band: Band, share: float) -
     return phase_track(wide, first_phase(signal), share=share)
 
 
-def tone_at(lines: ComplexArray, duration_s: float, frequency_hz: float) -> PhaseTrack | None:
-    """Return the tone in the bands around the frequency of a pole, if there is one.
+def tones_at(
+    lines: ComplexArray, duration_s: float, frequency_hz: FloatArray
+) -> Iterator[PhaseTrack | None]:
+    """Yield the tone in the bands around the frequency of each pole, None where there is none.
 
-    Less is asked than of one of all the bands of a record.
+    Less is asked than of one of all the bands of a record. The bands of all poles are combined at once, and
+    a tone is followed when it is asked for.
 
     Parameters
     ----------
     lines : (n_channels, n_lines)
         Of the channels' transforms, from zero frequency.
+    frequency_hz : (n_poles,)
     """
-    half = np.maximum(np.array(DRIFTS) * frequency_hz, FEWEST_LINES / duration_s)
-    for band in bands_of(lines, duration_s, np.full(len(half), frequency_hz), half):
-        if band.variance > WORTH_A_LOOK:
-            continue
-        share = STEADY_SHARE if band.variance < band.expected else 1.0
-        track = _tone_in(lines, duration_s, band, share)
-        if track is not None and track.passes(frequency_hz):
-            return track
-    return None
+    half = np.maximum(np.outer(frequency_hz, DRIFTS), FEWEST_LINES / duration_s)
+    bands = bands_of(lines, duration_s, np.repeat(frequency_hz, len(DRIFTS)), half.ravel())
+    for k, f in enumerate(frequency_hz):
+        around = bands[k * len(DRIFTS) : (k + 1) * len(DRIFTS)]
+        yield next(_passing(lines, duration_s, around, float(f)), None)
+
+
+def _passing(
+    lines: ComplexArray, duration_s: float, bands: list[Band], frequency_hz: float
+) -> Iterator[PhaseTrack]:
+    """Yield the tones of bands that pass a frequency."""
+    for band in bands:
+        if band.variance <= WORTH_A_LOOK:
+            share = STEADY_SHARE if band.variance < band.expected else 1.0
+            track = _tone_in(lines, duration_s, band, share)
+            if track is not None and track.passes(frequency_hz):
+                yield track
 
 
 def _bands(lines: ComplexArray, duration_s: float, highest_hz: float) -> list[Band]:
