@@ -146,9 +146,9 @@ def find_tones(
     f, zeta = poles.frequency_hz, poles.damping_ratio
     clean, lines, followed, steady = y, transform(y), list(drifting), []
     duration_s = y.shape[1] / sample_rate_hz
-    left = sorted(likely)
-    while left := [k for k in left if not any(tone.passes(f[k]) for tone in followed)]:
-        for n, (k, track) in enumerate(zip(left, tones_at(lines, duration_s, f[left]), strict=True), start=1):
+    k = -1
+    while left := [n for n in sorted(likely) if n > k and not any(tone.passes(f[n]) for tone in followed)]:
+        for k, track in zip(left, tones_at(lines, duration_s, f[left]), strict=True):
             if track is not None:
                 followed.append(track)
                 clean = less_phase(clean, track.phase(y.shape[1]))
@@ -160,7 +160,6 @@ def find_tones(
             # the others are held against what this tone leaves
             lines = transform(clean)
             break
-        left = left[n:]
     passed = {k for k in likely if any(tone.passes(f[k]) for tone in followed)}
     return Tones(frozenset(passed.union(steady)), tuple(float(f[k]) for k in steady), tuple(followed), clean)
 

@@ -101,9 +101,7 @@ def _tone_in(lines: ComplexArray, duration_s: float, band: Band, share: float) -
     return phase_track(wide, first_phase(signal), share=share)
 
 
-def tones_at(
-    lines: ComplexArray, duration_s: float, frequency_hz: FloatArray
-) -> Iterator[PhaseTrack | None]:
+def tones_at(lines: ComplexArray, duration_s: float, frequency_hz: FloatArray) -> Iterator[PhaseTrack | None]:
     """Yield the tone in the bands around the frequency of each pole, None where there is none.
 
     Less is asked than of one of all the bands of a record. The bands of all poles are combined at once, and
