@@ -37,7 +37,7 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
 
 
 def densities(y: FloatArray, sample_rate_hz: float) -> Spectrum:
-    """Return the spectra of :func:`welch` channel by channel, without singular values: a third of the work."""
+    """Return the spectra of :func:`welch` channel by channel, without singular values: a third of it."""
     f, x, norm = _transforms(y, sample_rate_hz, _length(y))
     density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
     return Spectrum(f, density, np.empty((0, f.size)))
