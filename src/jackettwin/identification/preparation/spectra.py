@@ -66,7 +66,7 @@ def spectral_matrix(
 
 def _length(y: FloatArray) -> int:
     """Return the samples of a segment."""
-    return max(y.shape[1] // SEGMENTS, 16)
+    return max(int(y.shape[1]) // SEGMENTS, 16)
 
 
 def _transforms(
