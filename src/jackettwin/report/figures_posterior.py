@@ -106,27 +106,31 @@ def _histogram(figure: go.Figure, z: FloatArray, prior: FloatArray, i: int, colo
 
 def _corner_axes(figure: go.Figure, parameters: Sequence[Parameter], z: FloatArray) -> None:
     n = len(parameters)
+    # all axes at once: one by one, Plotly seeks each among all of them
+    axes: dict[str, dict[str, object]] = {}
     for i in range(n):
         for j in range(n):
-            cell = {"row": i + 1, "col": j + 1}
+            number = str(i * n + j + 1) if i or j else ""
             if j > i:
-                figure.update_xaxes(visible=False, **cell)
-                figure.update_yaxes(visible=False, **cell)
+                axes[f"xaxis{number}"] = axes[f"yaxis{number}"] = {"visible": False}
                 continue
-            figure.update_xaxes(range=_reach(z[:, j]), showticklabels=i == n - 1, **cell)
-            if j == i:
-                figure.update_yaxes(
-                    showticklabels=False, ticks="", showgrid=False, rangemode="tozero", **cell
-                )
-            else:
-                figure.update_yaxes(range=_reach(z[:, i]), showticklabels=j == 0, **cell)
-        unit = parameters[i].unit
-        title = {"text": style.title(f"log₁₀<br>{parameters[i].name}<br>", unit), "font": {"size": 11}}
-        figure.update_xaxes(title=title, row=n, col=i + 1)
-        if i > 0:
-            figure.update_yaxes(title=title, row=i + 1, col=1)
-    figure.update_xaxes(nticks=4, tickangle=0, tickfont_size=11)
-    figure.update_yaxes(nticks=4, tickfont_size=11)
+            across: dict[str, object] = {"range": _reach(z[:, j]), "showticklabels": i == n - 1}
+            up: dict[str, object] = (
+                {"showticklabels": False, "ticks": "", "showgrid": False, "rangemode": "tozero"}
+                if j == i
+                else {"range": _reach(z[:, i]), "showticklabels": j == 0}
+            )
+            if i == n - 1:
+                across["title"] = _corner_title(parameters[j])
+            if j == 0 and i > 0:
+                up["title"] = _corner_title(parameters[i])
+            axes[f"xaxis{number}"] = {**across, "nticks": 4, "tickangle": 0, "tickfont": {"size": 11}}
+            axes[f"yaxis{number}"] = {**up, "nticks": 4, "tickfont": {"size": 11}}
+    figure.update_layout(axes)
+
+
+def _corner_title(parameter: Parameter) -> dict[str, object]:
+    return {"text": style.title(f"log₁₀<br>{parameter.name}<br>", parameter.unit), "font": {"size": 11}}
 
 
 def _reach(z: FloatArray) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 import numpy as np
 import plotly.graph_objects as go
@@ -14,6 +15,8 @@ from jackettwin.twin.watched import Alarm, Watched
 from jackettwin.watching import CauseVerdict
 
 _BAND = 1.645
+_CAUSE_WIDTH = 18
+"""Letters a line of a cause's name beside its alarm."""
 _SHOWN_IN = {"frequency": (100.0, "%"), "damping": (100.0, "%"), "angle": (180.0 / np.pi, "°")}
 """What changes of each kind are drawn in."""
 _SYMBOLS = ("diamond-open", "square-open", "triangle-up-open")
@@ -87,8 +90,7 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
         best = alarm.diagnosis.verdicts[0]
         figure.add_annotation(
             x=at, y=1.0, yref="y domain", xanchor="left", yanchor="top", xshift=6, showarrow=False,
-            bgcolor="white",
-            text=_cause(best), row=row, col=1,
+            bgcolor="white", align="left", text=_cause(best), row=row, col=1,
         )  # fmt: skip
     if change.kind == "scatter" or not change.members[i]:
         return
@@ -102,7 +104,9 @@ def _mark(figure: go.Figure, watched: Watched, alarm: Alarm, i: int, row: int, *
 
 
 def _cause(best: CauseVerdict) -> str:
-    return f"{best.cause}, {100.0 * best.probability:.0f} %" if best.is_clear else "cause not clear"
+    """Return the cause in short lines: the alarm may stand at the end of the axis of a small figure."""
+    text = f"{best.cause}, {100.0 * best.probability:.0f} %" if best.is_clear else "cause not clear"
+    return "<br>".join(wrap(text, _CAUSE_WIDTH))
 
 
 def evidence_through_time(watched: Watched) -> go.Figure:

@@ -167,7 +167,7 @@ def _plots(sections: Iterable[PageSection]) -> Iterable[Plot]:
 
 def packed(text: str) -> str:
     """Return a text compressed (gzip, base64), as the page's script unpacks it; always the same."""
-    return b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+    return b64encode(gzip.compress(text.encode(), compresslevel=6, mtime=0)).decode()
 
 
 def _rendered(template: str, **context: object) -> str:

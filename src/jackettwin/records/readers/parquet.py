@@ -26,7 +26,8 @@ BUFFER_BYTES = 1 << 20
 
 def read(path: Path) -> ReadTable:
     """Read every column; nulls are missing samples."""
-    return _table(pq.read_table(path))
+    with pq.ParquetFile(path) as file:
+        return _table(file.read())
 
 
 def pieces(path: Path) -> Iterator[ReadTable]:
@@ -56,4 +57,6 @@ def _values(column: Any) -> npt.NDArray[Any]:
         return stamps
     if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
         return np.full(len(column), "")  # not a signal
-    return np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=np.float64)
+    numbers = column.cast(pa.float64(), safe=False).combine_chunks()
+    # ``to_numpy``, like ``read_table`` and a scalar to fill with, loads pandas: 0.2 s in every process
+    return np.from_dlpack(numbers.fill_null(np.nan) if numbers.null_count else numbers)
