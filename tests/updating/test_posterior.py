@@ -88,6 +88,30 @@ def test_log_evidence_of_valleys(model: SupportModel, data: str) -> None:
     assert posterior.log_evidence_std < 0.03
 
 
+def test_two_hills_hold_their_shares(jacket15: Assembly) -> None:
+    """A dashpot of the ground damps little where it yields and where it locks; the prior likes less."""
+    model = support_model(
+        jacket15,
+        family=family("kelvin-voigt"),
+        rayleigh=Rayleigh.minimum(0.0055, 0.1832),
+        highest_mode=1,
+        bounds={"k": (5e8, 2e9), "c": (1e7, 1e11)},
+        priors={"c": (3e8, 1.5)},
+    )
+    problem = single(model, Residuals((Target(1, 0.1815, 0.0015, 0.01, 0.0005),), relative=False))
+    between = np.log(1e9)
+    axes = [np.linspace(*ends, 100) for ends in zip(problem.prior.low, problem.prior.high, strict=True)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    log_l, _ = problem.log_likelihood(grid, problem.anchor(grid.mean(axis=0)))
+    density = np.exp(log_l + problem.prior.log_density(grid) - log_l.max())
+    locked = density[grid[:, 1] > between].sum() / density.sum()
+    drawn = sample_posterior(problem, particles=150, islands=4, seed=3)
+    # four standard deviations of a share told by so many effective draws
+    within = 4.0 * np.sqrt(locked * (1.0 - locked) / drawn.convergence.ess_bulk.min())
+    assert (drawn.log_theta[:, 1] > between).mean() == pytest.approx(locked, abs=within)
+    assert 0.2 < locked < 0.4 and within < 0.1
+
+
 def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
     low, high = posterior.interval(0.9).T
     assert (low < TRUTH).all() and (high > TRUTH).all()
