@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import zoneinfo
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -15,9 +16,11 @@ from jackettwin.errors import InputError
 
 _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 _SOFTWARE = tuple(
-    Path(place).resolve() for place in (sys.prefix, sys.base_prefix, Path(jackettwin.__file__).parent)
+    Path(place).resolve()
+    for place in (sys.prefix, sys.base_prefix, str(Path(jackettwin.__file__).parent), *zoneinfo.TZPATH)
 )
-"""Where modules are loaded from, and what is shipped with them: nobody's secrets."""
+"""Where modules are loaded from, what is shipped with them, and time zones: nobody's secrets."""
+_KNOWN_OF_MODULES = (".dist-info", ".egg-info")
 
 
 @contextmanager
@@ -40,7 +43,8 @@ def _watch(event: str, arguments: tuple[Any, ...]) -> None:
     if event != "open" or (folder := _folder.get()) is None or isinstance(arguments[0], int):
         return
     path = Path(os.fsdecode(arguments[0])).resolve()
-    if not any(path.is_relative_to(place) for place in (folder, *_SOFTWARE)):
+    known = any(path.is_relative_to(place) for place in (folder, *_SOFTWARE))
+    if not known and path.parent.suffix not in _KNOWN_OF_MODULES:
         raise InputError(
             "a file is named that was not sent with it",
             field="files",
