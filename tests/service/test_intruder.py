@@ -73,6 +73,15 @@ def test_a_body_is_bounded_whether_it_says_its_length_or_not(
     assert (answer.status_code, answer.headers["content-type"]) == (413, "application/problem+json")
 
 
+def test_a_file_of_somebody_who_may_send_none_is_refused_for_that(
+    stranger: TestClient, users: Service
+) -> None:
+    answer = stranger.post(
+        "/api/v1/assets/wtg/records", content=pieces(5), headers={**FORM, **token(users, "viewer")}
+    )
+    assert answer.status_code == 403 and "engineer" in answer.json()["detail"]
+
+
 def test_an_upload_is_bounded_if_it_does_not_say_its_length(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(web, "_FIELDS_BYTES", 1000)
     for small in make_service(tmp_path, None, monkeypatch, upload_limit_bytes=20_000):

@@ -120,15 +120,16 @@ class Guard:
         Raises
         ------
         ApiError
-            If it says itself that it is larger, or nobody may send anything there without login.
+            If it says itself that it is larger, or who asks may send no files, or nothing without login.
         """
         who = request.state.who
         if who is None and request.method not in auth.SAFE_METHODS and request.url.path != f"{API}/login":
             raise auth.unknown()
-        most = _TEXT_BYTES
-        if who is None or not who.may("engineer"):
-            most = _FEW_BYTES
-        elif request.headers.get("content-type", "").startswith("multipart/"):
+        sends = who is not None and who.may("engineer")
+        most = _TEXT_BYTES if sends else _FEW_BYTES
+        if who is not None and request.headers.get("content-type", "").startswith("multipart/"):
+            if not sends:
+                raise auth.too_little(who, "engineer")
             most = self._service.settings.upload_limit_bytes + _FIELDS_BYTES
         length = request.headers.get("content-length", "0")
         if not length.isdecimal() or int(length) > most:

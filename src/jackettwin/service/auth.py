@@ -180,6 +180,11 @@ def unknown() -> ApiError:
     )
 
 
+def too_little(who: Who, role: str) -> ApiError:
+    """Return the answer to somebody whose role does not do."""
+    return ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
+
+
 def allowed(role: str) -> Callable[..., Awaitable[Who]]:
     """Return the dependency of a route that asks for a role."""
 
@@ -188,7 +193,7 @@ def allowed(role: str) -> Callable[..., Awaitable[Who]]:
         if who is None:
             raise unknown()
         if not who.may(role):
-            raise ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
+            raise too_little(who, role)
         return who
 
     check.role = role  # type: ignore[attr-defined]  # read by the test that walks over all routes
