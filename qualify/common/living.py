@@ -186,7 +186,7 @@ def _observed(
         path = folder / name
         path.write_bytes(content)
         path.with_suffix(".json").write_text(beside)
-        take_file(made, now, lambda p, a: read_file(str(p), a, str(store), 10**9, 2**31), "wtg", path, name)
+        take_file(service, read_file, "wtg", path, name)
         dispatcher._turn()
     for _ in range(2 * len(sent)):
         dispatcher._turn()

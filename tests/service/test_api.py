@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pyarrow as pa
@@ -74,10 +75,59 @@ def test_a_record_without_a_start_is_refused(client: TestClient) -> None:
     assert sent.json()["field"] == "start_utc"
 
 
+@pytest.mark.parametrize("start", [datetime(1970, 1, 1, tzinfo=UTC), datetime.now(UTC) + timedelta(days=30)])
+def test_a_record_of_a_clock_that_was_wrong_is_refused(client: TestClient, start: datetime) -> None:
+    """It would stand at the beginning of what is normal, or make a turbine seem to send for years."""
+    sent = upload(client, 1, start=start)
+    assert (sent.status_code, sent.json()["field"]) == (422, "start_utc")
+    assert client.get("/api/v1/assets/wtg").json()["last_record_utc"] is None
+
+
+def test_what_a_file_does_not_say_its_twin_does(client: TestClient, service: Service) -> None:
+    twin = "structure: jacket15\nlogger: {unit: mg, clock: Europe/Berlin}\n"
+    assert client.put("/api/v1/assets/wtg", json={"twin": twin}).status_code == 200
+    rows = [f"2025-03-01 12:00:{k / 20:06.3f},{2 + k % 2}" for k in range(1000)]
+    table = "\n".join(["time,acc_top_x", *rows])
+    file = {"file": ("logger.csv", table)}
+    refused = client.post("/api/v1/assets/wtg/records", files=file)
+    assert (refused.status_code, refused.json()["field"]) == (422, "channels.acc_top_x.unit")
+    client.post("/api/v1/assets/wtg/versions/2/adopt")
+    taken = client.post("/api/v1/assets/wtg/records", files=file).json()
+    assert client.get(f"/api/v1/records/{taken['record_id']}").json()["start_utc"] == "2025-03-01T11:00:00Z"
+    signal = client.get(f"/api/v1/records/{taken['record_id']}/signal?points=1").json()
+    assert signal["channels"]["acc_top_x"]["max"] == [pytest.approx(3 * 9.80665e-3)]
+
+
+def test_a_file_of_more_than_an_hour_is_records_of_ten_minutes(client: TestClient, service: Service) -> None:
+    """As ``jackettwin identify`` cuts it; one of the records that came by itself is known."""
+    two_hours = record_file(1, samples=20 * 7200)
+
+    def send(file: bytes) -> Any:
+        described = {"description": description(hour(0))}
+        return client.post(
+            "/api/v1/assets/wtg/records", files={"file": ("day.parquet", file)}, data=described
+        )
+
+    first = pq.read_table(io.BytesIO(two_hours)).slice(0, 20 * 600)
+    pq.write_table(first, buffer := io.BytesIO())
+    alone = send(buffer.getvalue()).json()
+    sent = [send(two_hours), send(two_hours)]
+    assert [(answer.status_code, answer.json()["records"]) for answer in sent] == [(202, 12), (200, 12)]
+    turn(service, 12)
+    listed = client.get("/api/v1/assets/wtg/records").json()["items"]
+    assert [one["start_utc"][11:16] for one in listed] == [
+        f"{12 + k // 6}:{k % 6}0" for k in reversed(range(12))
+    ]
+    assert {(one["status"], one["duration_s"]) for one in listed} == {("observed", 600.0)}
+    assert listed[-1]["record_id"] == alone["record_id"]
+    assert listed[0]["record_id"] == sent[0].json()["record_id"]
+
+
 @pytest.mark.parametrize(
     "name", ["../../../etc/passwd", "..\\..\\x.parquet", "/etc/shadow", ".bashrc", "a" * 500]
 )
 def test_no_name_leads_out_of_the_store(client: TestClient, service: Service, name: str) -> None:
+    client.post("/api/v1/assets/wtg/records", files={"file": ("first", b"not a record")})  # lays the twin out
     before = {p for p in service.settings.store.parent.rglob("*") if p.is_file()}
     client.post("/api/v1/assets/wtg/records", files={"file": (name, b"not a record")})
     after = {p for p in service.settings.store.parent.rglob("*") if p.is_file()}
@@ -216,6 +266,13 @@ def test_metrics_name_what_an_operator_alarms_on(client: TestClient) -> None:
     text = client.get("/api/v1/metrics").text
     for name in ("queue_age_seconds", "last_record_age_seconds", "worker_restarts_total", "disk_free_bytes"):
         assert f"jackettwin_{name}" in text
+
+
+def test_a_disk_that_is_read_only_has_no_room(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.access", lambda *_: False)
+    assert client.get("/api/v1/ready").status_code == 503
+    assert "jackettwin_disk_free_bytes 0.0" in client.get("/api/v1/metrics").text
+    assert upload(client, 1).status_code == 507
 
 
 def test_health_and_readiness_need_no_login(client: TestClient) -> None:

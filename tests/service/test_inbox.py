@@ -65,7 +65,9 @@ def test_a_file_of_no_asset_is_said_and_waits_for_one(service: Service) -> None:
     assert list(path.parent.iterdir()) == []
 
 
-@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), NoWorker()])
+@pytest.mark.parametrize(
+    "error", [OSError(errno.ENOSPC, "full"), OSError(errno.EROFS, "read-only"), NoWorker()]
+)
 def test_a_full_disk_or_no_worker_is_not_the_files_fault(
     service: Service, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:

@@ -13,14 +13,14 @@ import pyarrow.parquet as pq
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
-from tests.service.conftest import PASSWORD, Done, make_service, upload
+from tests.service.conftest import NOON, PASSWORD, Done, make_service, upload
 
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, auth, pages
 from jackettwin.service.app import API, ROUTERS, create_app
 from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
-from jackettwin.service.tasks import read_file
+from jackettwin.service.tasks import File, read_file
 from jackettwin.store import people, results, writing
 
 OPEN = {
@@ -194,7 +194,7 @@ def test_a_file_is_stopped_while_it_expands(tmp_path: Path) -> None:
     assert path.stat().st_size < 200_000
     held = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     limit = resource.getrlimit(resource.RLIMIT_DATA)
-    parsed = read_file(str(path), "wtg", str(tmp_path), 10**9, memory_bytes=0)
+    (parsed,) = read_file(File(str(path), "wtg", str(tmp_path), 10**9, memory_bytes=0, latest_utc=NOON))
     assert parsed.problem is not None and "expands" in parsed.problem["detail"]
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - held < 150_000
     assert resource.getrlimit(resource.RLIMIT_DATA) == limit

@@ -16,7 +16,7 @@ from tests.service.conftest import description, hour, record_file
 from tests.service.servers import Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin, engine, take_here
-from jackettwin.service.tasks import read_file
+from jackettwin.service.tasks import File, read_file
 from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
 
@@ -49,7 +49,7 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     for name, content, beside in records():
         (folder / name).write_bytes(content)
         (folder / name).with_suffix(".json").write_text(beside)
-        parsed = read_file(str(folder / name), "wtg", str(folder), 10**9, 2**31)
+        (parsed,) = read_file(File(str(folder / name), "wtg", str(folder), 10**9, 2**31, hour(48)))
         assert parsed.waveform is not None
         observed = engine.observed(model, folder / parsed.waveform, {})[0]
         documents.setdefault(parsed.about["start_utc"][:10], []).append(observed)

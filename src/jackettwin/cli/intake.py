@@ -30,7 +30,8 @@ def intake_command(
                 f"{path.name}: refused: {took.problem['detail']}; {took.problem.get('remedy') or ''}"
             )
         elif not as_json:
-            output.print(f"{path.name}: {took.record_id} {'taken' if took.new else 'known already'}")
+            several = f" and {took.records - 1} before it" if took.records > 1 else ""
+            output.print(f"{path.name}: {took.record_id}{several} {'taken' if took.new else 'known already'}")
         return took
 
     if watch:
@@ -38,12 +39,8 @@ def intake_command(
         watch_folders(paths, take)
         return
     took = [(path, take(path)) for path in record_files(paths)]
-    rows = [
-        {"file": p.name, "record_id": t.record_id, "new": t.new, "job_id": t.job_id, "problem": t.problem}
-        for p, t in took
-    ]
     if as_json:
-        print_json({"asset": asset, "files": rows})
+        print_json({"asset": asset, "files": [{"file": file.name, **vars(one)} for file, one in took]})
     if not took:
         messages.print("there is no file to take")
     refused = sum(t.problem is not None for _, t in took)

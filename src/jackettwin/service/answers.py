@@ -17,7 +17,7 @@ from sqlalchemy import Connection, select
 from jackettwin.errors import InputError
 from jackettwin.intervals import NORMAL_90
 from jackettwin.service import engine
-from jackettwin.service.consequences import twin_folder
+from jackettwin.service.bundles import twin_folder
 from jackettwin.service.schemas import AlarmOut, ChangeOut, ComparisonOut, FindingOut, ModeOut, Page, TwinOut
 from jackettwin.store import assets, results, tables
 from jackettwin.store.records import read_cursor, write_cursor

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import errno
 import time
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +12,8 @@ from jackettwin.errors import InputError
 
 LOST_WORKER = ("KilledWorker", "CancelledError", "FutureCancelledError")
 """Errors that say that a worker ended over a task, whatever of."""
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""What the system says where nothing can be written."""
 _SAID_S = 0.01
 """Until what a worker says is on its way, even if it dies of the task at once: Dask collects for 2 ms."""
 

@@ -1,17 +1,22 @@
-"""A twin file and every file it names, gathered into one bundle."""
+"""A twin file and every file it names, gathered into one bundle, and laid out again."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
+from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.files import read_yaml
-from jackettwin.service.engine import TWIN_FILE
+from jackettwin.service.engine import TWIN_FILE, Twin, load_twin
+from jackettwin.store import assets
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
 
 _LARGEST = 50 * 2**20
 """Bytes of one file; structures, soil profiles and rotors are text of kilobytes."""
@@ -52,6 +57,20 @@ def bundle(twin: Path) -> dict[str, bytes]:
         text = yaml.safe_dump(rewritten, sort_keys=False, allow_unicode=True).encode()
     files[TWIN_FILE] = text
     return files
+
+
+def twin_folder(connection: Connection, service: Place, asset: str, version: int | None = None) -> Path:
+    """Return the folder in which the files of a version stand, by default of the adopted one."""
+    found = assets.found_version(connection, asset, version)
+    place = service.settings.models / found.bundle_hash
+    if not place.is_dir():
+        assets.lay_out(assets.bundle_of(connection, asset, found.version), place)
+    return place
+
+
+def adopted_twin(connection: Connection, service: Place, asset: str) -> Twin:
+    """Return the twin whose answers count."""
+    return load_twin(twin_folder(connection, service, asset))
 
 
 def _walked(data: Any, take: Any) -> Any:

@@ -9,19 +9,18 @@ import json
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection, select
 
 from jackettwin.service import engine
+from jackettwin.service.bundles import twin_folder
 from jackettwin.service.intake.files import living, queue
 from jackettwin.service.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
 
 if TYPE_CHECKING:
-    from jackettwin.records import Channel
     from jackettwin.service.context import Place, Service
 
 
@@ -44,22 +43,6 @@ def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
         conditions={**site, **record.conditions},
         picks=record.picks,
     )
-
-
-def twin_folder(connection: Connection, service: Place, asset: str, version: int) -> Path:
-    """Return the folder in which a version's files stand."""
-    found = assets.found_version(connection, asset, version)
-    place = service.settings.models / found.bundle_hash
-    if place.is_dir():
-        return place
-    bundle = assets.bundle_of(connection, asset, version)
-    return assets.laid_out(bundle, found.bundle_hash, service.settings.models)
-
-
-def channels_of(connection: Connection, service: Place, asset: str) -> dict[str, Channel]:
-    """Return what the adopted twin says of its channels, {name: channel}."""
-    version = assets.found_version(connection, asset)
-    return engine.channels(twin_folder(connection, service, asset, version.version))
 
 
 def observing(connection: Connection, service: Service, job: work.Job) -> None:

@@ -86,8 +86,9 @@ class Service:
         return {"version": __version__, "pid": os.getpid()}
 
     def free_bytes(self) -> int:
-        """Room left where the store is."""
-        return shutil.disk_usage(self.settings.store).free
+        """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""
+        store = self.settings.store
+        return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
 
 
 def open_service(settings: ServiceSettings) -> Service:

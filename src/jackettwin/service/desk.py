@@ -16,7 +16,7 @@ from jackettwin.service.catalogue import add_version, adopt, archive
 from jackettwin.service.context import Desk
 from jackettwin.service.intake.files import Accepted, queue, take_file
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.service.tasks import Parsed, read_file
+from jackettwin.service.tasks import read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 from jackettwin.store.results import StoredObservation
 from jackettwin.store.tables import observations
@@ -77,15 +77,9 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
     InputError
         If there is no such asset, or it is archived.
     """
-    settings = ServiceSettings(store)
     with reading(database) as connection:
-        assets.found_version(connection, asset)
         _refuse_archived(connection, asset)
-
-    def parse(file: Path, whose: str) -> Parsed:
-        return read_file(str(file), whose, str(store), settings.samples_limit, settings.worker_memory_bytes)
-
-    return take_file(database, Desk(settings, database).now, parse, asset, path, path.name)
+    return take_file(Desk(ServiceSettings(store), database), read_file, asset, path, path.name)
 
 
 def _refuse_archived(connection: Connection, asset: str) -> None:

@@ -65,11 +65,11 @@ def identity(model: TwinModel) -> tuple[str, str]:
     return digest([model.model_hash, settings]), settings
 
 
-def channels(folder: Path) -> dict[str, Channel]:
+def channels(config: TwinConfig) -> dict[str, Channel]:
     """Return what a twin says of its channels, {name: channel}."""
     return {
         s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
-        for s in load_twin(folder).config.sensors
+        for s in config.sensors
     }
 
 

@@ -24,7 +24,7 @@ def readiness(service: Service) -> Ready:
         database = False
     workers, broker = service.compute.workers, service.broker_connected()
     free = service.free_bytes()
-    ready = database and workers > 0 and broker is not False
+    ready = database and workers > 0 and broker is not False and free > 0
     return Ready(ready=ready, database=database, workers=workers, broker=broker, free_bytes=free)
 
 

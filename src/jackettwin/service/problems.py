@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import json
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -15,7 +14,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
-from jackettwin.service.begun import NoWorker, problem_of
+from jackettwin.service.begun import NO_ROOM, NoWorker, problem_of
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -85,8 +84,8 @@ def disk_full() -> ApiError:
     """Return the answer where nothing more can be written."""
     return ApiError(
         507,
-        "the disk of the store is full",
-        remedy="make room, or keep samples for fewer days: `serve --raw-days`",
+        "nothing can be written: the disk of the store is full, or read-only",
+        remedy="make room, or keep samples for fewer days (`serve --raw-days`); see the system's log",
     )
 
 
@@ -140,7 +139,7 @@ def answered(error: ApiError) -> Response:
 
 
 def _disk_full(error: OSError) -> Response:
-    if error.errno != errno.ENOSPC:
+    if error.errno not in NO_ROOM:
         raise error
     return answered(disk_full())
 

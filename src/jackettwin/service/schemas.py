@@ -110,10 +110,14 @@ class VersionOut(BaseModel):
 
 
 class RecordAccepted(BaseModel):
-    """A record that was taken, and the work on it."""
+    """A record that was taken, and the work on it.
+
+    A file of more than an hour is several records of ten minutes; the last one is told.
+    """
 
     record_id: str
     job_id: int | None
+    records: int = 1
 
 
 class RecordOut(BaseModel):

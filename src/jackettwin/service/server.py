@@ -166,7 +166,7 @@ def take_from_inbox(service: Service, inbox: Path, path: Path) -> Accepted | Non
         if not reason.exists():
             _leave(path, reason, _OF_NO_ASSET | {"value": None if path.parent == inbox else asset})
         return None
-    taken = take_file(service.database, service.now, parse_here(service), asset, path, path.name)
+    taken = take_file(service, parse_here(service), asset, path, path.name)
     if taken.problem is None:
         for file in (path, path.with_suffix(".json"), reason):
             file.unlink(missing_ok=True)

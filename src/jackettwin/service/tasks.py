@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from jackettwin.service.begun import problem_of
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
+    from jackettwin.records.readers.channels import Unsaid
 
 
 @dataclass(frozen=True)
@@ -44,8 +46,33 @@ class Outcome:
 
 
 @dataclass(frozen=True)
+class File:
+    """A file to read, and what bounds it.
+
+    Attributes
+    ----------
+    samples_limit : most samples, over all channels, that it may expand to
+    memory_bytes : of the process that reads it, meanwhile
+    latest_utc : when a record may begin at the latest
+    unsaid : what holds for a file that does not say so, by the twin of its asset
+    """
+
+    path: str
+    asset: str
+    store: str
+    samples_limit: int
+    memory_bytes: int
+    latest_utc: datetime
+    unsaid: Unsaid | None = None
+
+
+EARLIEST = datetime(2001, 1, 1, tzinfo=UTC)
+"""Clocks that were never set begin in 1970, 1980 or 2000."""
+
+
+@dataclass(frozen=True)
 class Parsed:
-    """A file that is now a waveform in the store, or the problem with it."""
+    """A record that is now a waveform in the store, or the problem with its file."""
 
     record_id: str
     waveform: str | None = None
@@ -75,44 +102,59 @@ def file_hash(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def read_file(path: str, asset: str, store: str, samples_limit: int, memory_bytes: int) -> Parsed:
+def read_file(file: File) -> tuple[Parsed, ...]:
     """Read a file of any known format and keep its samples in the store.
 
-    What it expands to is bounded by ``memory_bytes`` of this process while it is read, and by the number of
-    samples in the end.
+    A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it.
     """
-    from jackettwin.records import read_record
+    from jackettwin.records.readers import read_record, read_record_pieces
     from jackettwin.service.room import at_most
+    from jackettwin.twin.long_records import LONG, PIECE_S
 
-    source = Path(path)
+    source = Path(file.path)
     try:
-        with at_most(memory_bytes):
-            record = read_record(source)
-        if record.data.size > samples_limit:
-            raise InputError(
-                "the file expands to too many samples",
-                field="file",
-                value=record.data.size,
-                allowed=f"up to {samples_limit}",
-                remedy="send it in pieces of an hour",
-            )
-        if record.start_utc is None:
-            raise InputError(
-                "a record without a start cannot be placed in time",
-                field="start_utc",
-                remedy="give start_utc in the description beside it, or a time column with a date",
-            )
-        return stored(record, asset, Path(store))
+        with at_most(file.memory_bytes):
+            record = read_record(source, file.unsaid)
+            _check(record, file)
+            long = record.duration_s > LONG * PIECE_S
+            records = list(read_record_pieces(source, PIECE_S, file.unsaid)) if long else [record]
+        return tuple(stored(record, file.asset, Path(file.store)) for record in records)
     except InputError as error:
-        return Parsed(file_hash(source), problem=problem_of(error))
+        return (Parsed(file_hash(source), problem=problem_of(error)),)
     except MemoryError:
-        return Parsed(
-            file_hash(source),
-            problem={
-                "detail": "the file expands to more than the memory of a worker",
-                "field": "file",
-                "remedy": "send it in pieces of an hour",
-            },
+        return (Parsed(file_hash(source), problem=_TOO_LARGE),)
+
+
+_TOO_LARGE = {
+    "detail": "the file expands to more than the memory of a worker",
+    "field": "file",
+    "remedy": "send it in pieces of an hour",
+}
+
+
+def _check(record: Record, file: File) -> None:
+    """Refuse a record that expands too far, or of which it is not known when it was."""
+    if record.data.size > file.samples_limit:
+        raise InputError(
+            "the file expands to too many samples",
+            field="file",
+            value=record.data.size,
+            allowed=f"up to {file.samples_limit}",
+            remedy="send it in pieces of an hour",
+        )
+    if record.start_utc is None:
+        raise InputError(
+            "a record without a start cannot be placed in time",
+            field="start_utc",
+            remedy="give start_utc in the description beside it, or a time column with a date",
+        )
+    if not EARLIEST <= record.start_utc <= file.latest_utc:
+        raise InputError(
+            "the clock of the record was wrong",
+            field="start_utc",
+            value=record.start_utc.isoformat(),
+            allowed=f"{EARLIEST:%Y-%m-%d} to {file.latest_utc:%Y-%m-%d}",
+            remedy="set the logger's clock, and give start_utc in the description beside the record",
         )
 
 

@@ -11,7 +11,7 @@ from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.service import conditions, engine
-from jackettwin.service.consequences import twin_folder
+from jackettwin.service.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
 from jackettwin.service.problems import ApiError, disk_full
 from jackettwin.service.routes.common import living_asset
@@ -46,7 +46,7 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
         None if description is None else description.encode(),
     )
     try:
-        taken = take_file(service.database, service.now, parse_here(service), asset, path, name[:255])
+        taken = take_file(service, parse_here(service), asset, path, name[:255])
     finally:
         discard(path)
     if taken.problem is not None:
@@ -95,8 +95,7 @@ def stabilisation(connection: Connection, service: Service, record: records.Stor
     """Return the poles of every model order of a record."""
     if record.waveform is None:
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
-    version = assets.found_version(connection, record.asset)
-    folder = twin_folder(connection, service, record.asset, version.version)
+    folder = twin_folder(connection, service, record.asset)
     waveform = str(service.settings.store / record.waveform)
     future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
     try:

@@ -71,17 +71,14 @@ def unpack(bundle: bytes) -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def laid_out(bundle: bytes, bundle_hash: str, folder: Path) -> Path:
-    """Return the folder in which the files of a bundle stand, laid out if they do not yet."""
-    place = folder / bundle_hash
-    if not place.is_dir():
-        with atomic_folder(place) as temporary:
-            for name, content in unpack(bundle).items():
-                (temporary / name).parent.mkdir(parents=True, exist_ok=True)
-                (temporary / name).write_bytes(content)
-            temporary.rename(place)
-            temporary.mkdir()
-    return place
+def lay_out(bundle: bytes, place: Path) -> None:
+    """Write the files of a bundle into a folder, whole or not at all."""
+    with atomic_folder(place) as temporary:
+        for name, content in unpack(bundle).items():
+            (temporary / name).parent.mkdir(parents=True, exist_ok=True)
+            (temporary / name).write_bytes(content)
+        temporary.rename(place)
+        temporary.mkdir()
 
 
 def add_version(

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-import errno
 import secrets
 import shutil
-from dataclasses import dataclass
-from datetime import datetime
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.begun import LOST_WORKER, NoWorker
-from jackettwin.service.tasks import Parsed, read_file
-from jackettwin.store import assets, journal, records, work, writing
+from jackettwin.service.begun import LOST_WORKER, NO_ROOM, NoWorker
+from jackettwin.service.bundles import adopted_twin
+from jackettwin.service.tasks import File, Parsed, read_file
+from jackettwin.store import assets, journal, reading, records, work, writing
 from jackettwin.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
-    from jackettwin.service.context import Service
+    from jackettwin.service.context import Place, Service
 
+Reader = Callable[[File], tuple[Parsed, ...]]
+"""What reads a file: a worker, or this process."""
+AHEAD = timedelta(days=7)
+"""How far ahead of our clock a record may begin: ours may be wrong, too, but not by years."""
 LIVE = 10
 """Priority of records as they arrive; what is observed anew waits behind them."""
 _SUFFIXES = 60
@@ -30,12 +35,13 @@ _SUFFIXES = 60
 
 @dataclass(frozen=True)
 class Accepted:
-    """What became of a file: its record, the work on it, and whether it was new."""
+    """What became of a file: its record, or the last of several, the work on it, and whether any was new."""
 
     record_id: str
     job_id: int | None
     new: bool
     problem: dict[str, Any] | None = None
+    records: int = 1
 
 
 def spooled(spool: Path, name: str, pieces: Iterator[bytes], description: bytes | None) -> Path:
@@ -67,36 +73,34 @@ def discard(path: Path) -> None:
     shutil.rmtree(path.parent, ignore_errors=True)
 
 
-def parse_here(service: Service) -> Callable[[Path, str], Parsed]:
+def parse_here(service: Service) -> Reader:
     """Return the reader that uses the server's workers.
 
     One that takes too long is ended. A worker that dies may have been killed: the file is read again, as
     often as a record is tried. That there is no worker, or no room on the disk, is not the file's fault: that
     is raised (``NoWorker``, ``OSError``), and the file can be sent again.
     """
-    settings = service.settings
 
-    def parse(path: Path, asset: str) -> Parsed:
-        limits = (settings.samples_limit, settings.worker_memory_bytes)
+    def parse(file: File) -> tuple[Parsed, ...]:
         for _ in range(work.MOST_TRIES):
-            future = service.compute.submit(
-                read_file, str(path), asset, str(settings.store), *limits, priority=100
-            )
+            future = service.compute.submit(read_file, file, priority=100)
             try:
-                found: Parsed = service.compute.result(future, settings.parse_limit_s)
+                found: tuple[Parsed, ...] = service.compute.result(future, service.settings.parse_limit_s)
                 return found
             except NoWorker:
                 raise
             except TimeoutError:
-                return Parsed("", problem={"detail": "the file could not be read in time", "field": "file"})
+                problem = {"detail": "the file could not be read in time", "field": "file"}
+                return (Parsed("", problem=problem),)
             except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
-                if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+                if isinstance(error, OSError) and error.errno in NO_ROOM:
                     raise
                 name = type(error).__name__
                 if name not in LOST_WORKER:
                     break
         detail = f"the file could not be read ({name})"
-        return Parsed("", problem={"detail": detail, "field": "file", "remedy": "see which program wrote it"})
+        problem = {"detail": detail, "field": "file", "remedy": "see which program wrote it"}
+        return (Parsed("", problem=problem),)
 
     return parse
 
@@ -166,17 +170,15 @@ def queue(
     )
 
 
-def take_file(
-    service_database: Any,
-    now: Callable[[], datetime],
-    parse: Callable[[Path, str], Parsed],
-    asset: str,
-    path: Path,
-    source_name: str,
-) -> Accepted:
-    """Read a file and keep its record."""
-    parsed = parse(path, asset)
-    if parsed.problem is not None:
-        return Accepted(parsed.record_id, None, False, parsed.problem)
-    with writing(service_database) as connection:
-        return accept(now(), connection, asset, parsed, source_name)
+def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: str) -> Accepted:
+    """Read a file and keep its record, or those that a long one is cut into: all or none."""
+    settings = place.settings
+    with reading(place.database) as connection:
+        unsaid = adopted_twin(connection, place, asset).config.unsaid
+    limits = (settings.samples_limit, settings.worker_memory_bytes, place.now() + AHEAD)
+    parsed = parse(File(str(path), asset, str(settings.store), *limits, unsaid))
+    if parsed[0].problem is not None:
+        return Accepted(parsed[0].record_id, None, False, parsed[0].problem)
+    with writing(place.database) as connection:
+        taken = [accept(place.now(), connection, asset, one, source_name) for one in parsed]
+    return replace(taken[-1], new=any(one.new for one in taken), records=len(taken))

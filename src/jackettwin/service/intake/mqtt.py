@@ -20,7 +20,7 @@ from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 from jackettwin.errors import InputError
 from jackettwin.service.intake.files import accept
 from jackettwin.service.intake.packets import assembled
-from jackettwin.service.tasks import stored
+from jackettwin.service.tasks import EARLIEST, stored
 from jackettwin.store import assets, reading, streams, writing
 from jackettwin.store.streams import KEPT, LONGEST, WINDOW, Packet
 
@@ -79,7 +79,7 @@ def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
         )
     if (
         not all(packet.channel and packet.channel.isprintable() for packet in found)
-        or not 1900 <= start.year <= 9000
+        or not EARLIEST.year <= start.year <= 9000
     ):
         raise InputError("a channel's name or a clock is out of range", field="payload", value=topic)
     longest = max((p.samples.size for p in found), default=0)
@@ -208,11 +208,11 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
 
     In place of an earlier one of fewer packets, with all consequences at once.
     """
-    from jackettwin.service import consequences
+    from jackettwin.service import bundles, consequences, engine
 
     with reading(service.database) as connection:
         packets = streams.packets_of(connection, window.asset, window.window_utc)
-        channels = consequences.channels_of(connection, service, window.asset)
+        channels = engine.channels(bundles.adopted_twin(connection, service, window.asset).config)
     record = assembled(
         packets, window.window_utc, channels, f"{window.asset}_{window.window_utc:%Y%m%dT%H%M}"
     )

@@ -62,7 +62,7 @@ def add_record(
     if not taken.new:
         response.status_code = 200
     parts.wake()
-    return RecordAccepted(record_id=taken.record_id, job_id=taken.job_id)
+    return RecordAccepted(record_id=taken.record_id, job_id=taken.job_id, records=taken.records)
 
 
 @router.get("/assets/{asset}/records", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
