@@ -12,10 +12,12 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.service.conftest import description, hour, record_file
+from fastapi.testclient import TestClient
+from tests.service.conftest import description, hour, make_service, record_file, upload
 from tests.service.servers import Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin, engine, take_here
+from jackettwin.service.app import create_app
 from jackettwin.service.tasks import File, read_file
 from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
@@ -57,40 +59,61 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return {f"wtg {day}": hashlib.sha256(text.encode()).hexdigest() for day, text in days.items()}
 
 
-def new_store(folder: Path) -> Path:
+def new_store(folder: Path, *names: str) -> Path:
     store = folder / "store"
     store.mkdir()
     twin = folder / "twin.yaml"
     twin.write_text(TWIN)
     with opened(sqlite_url(store)) as database:
-        add_twin(database, store, "wtg", twin)
+        for name in names:
+            add_twin(database, store, name, twin)
     return store
 
 
-def test_kills_of_server_and_workers_do_not_show(tmp_path: Path, expected: dict[str, str]) -> None:
-    store = new_store(tmp_path)
-    server = Server(store, "--workers", "1")
+def test_kills_of_server_worker_and_broker_do_not_show(tmp_path: Path, expected: dict[str, str]) -> None:
+    """Records, and a stream of two windows that comes shuffled and doubled."""
+    broker = Broker(tmp_path / "broker")
+    broker.start()
+    server = Server(
+        new_store(tmp_path, "wtg", "stream"), "--workers", "1", "--mqtt", f"mqtt://127.0.0.1:{broker.port}"
+    )
     server.start()
+    sent = records()
     try:
-        for i, sent in enumerate(records()):
-            server.send(*sent)
-            if i == 1:
-                assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
-                assert server.kill_a_worker()
-            if i == 3:
-                server.kill()
-                server.start()
-        server.wait_until_observed(RECORDS)
-        assert server.states() == expected
-        assert server.counts() == {"records": RECORDS, "observations": RECORDS}
+        wait_for(lambda: server.get("/api/v1/ready").json()["broker"])
+        server.send(*sent[0])
+        server.send(*sent[1])
+        assert {os.getpriority(os.PRIO_PROCESS, pid) for pid in server.workers()} == {os.nice(0) + 5}
+        assert server.kill_a_worker()
+        publish(broker.port, first_s=0.0, last_s=650.0, seed=1, doubled=True, asset="stream")
+        server.send(*sent[2])
+        server.kill()
+        publish(broker.port, first_s=650.0, last_s=900.0, seed=2, asset="stream")
+        server.start()
+        server.send(*sent[3])
+        broker.kill()
+        broker.start()
+        publish(broker.port, first_s=900.0, last_s=1260.0, seed=3, asset="stream")
+        server.send(*sent[4])
+        server.wait_until_observed(RECORDS + 2)
+        states = server.states()
+        assert {day: states[day] for day in states if day.startswith("wtg ")} == expected
+        counts = server.counts()
+        assert counts["records"] == counts["observations"]
+        assert len(server.get("/api/v1/assets/wtg/records").json()["items"]) == RECORDS
+        rows = server.get("/api/v1/assets/stream/records?status=observed").json()["items"][::-1]
+        assert [r["start_utc"] for r in rows[:2]] == ["2025-03-01T12:00:00Z", "2025-03-01T12:10:00Z"]
+        found = server.get(f"/api/v1/records/{rows[0]['record_id']}/signal?points=1").json()
+        assert set(found["channels"]) == {"acc_top_x", "acc_top_y"}
     finally:
         server.stop()
+        broker.stop()
     assert not server.workers_alive()
 
 
 def restored_store(folder: Path, database: str) -> Path:
     """Return a store restored from the backup of another, in which a record was under way."""
-    before = new_store(folder)
+    before = new_store(folder, "wtg")
     name, content, beside = records()[0]
     (folder / name).write_bytes(content)
     (folder / name).with_suffix(".json").write_text(beside)
@@ -132,49 +155,22 @@ def test_a_database_that_dies_is_waited_for_by_two_servers(tmp_path: Path, expec
         database.stop()
 
 
-def test_streams_survive_broker_and_server(tmp_path: Path) -> None:
-    """Two channels for two windows: shuffled, doubled, with broker and server killed in between."""
-    broker = Broker(tmp_path / "broker")
-    broker.start()
-    store = new_store(tmp_path)
-    server = Server(store, "--workers", "1", "--mqtt", f"mqtt://127.0.0.1:{broker.port}")
-    server.start()
-    try:
-        wait_for(lambda: server.get("/api/v1/ready").json()["broker"])
-        publish(broker.port, first_s=0.0, last_s=650.0, seed=1, doubled=True)
-        server.kill()
-        publish(broker.port, first_s=650.0, last_s=900.0, seed=2)
-        server.start()
-        broker.kill()
-        broker.start()
-        publish(broker.port, first_s=900.0, last_s=1260.0, seed=3)
-        server.wait_until_observed(2)
-        rows = sorted(server.get("/api/v1/assets/wtg/records").json()["items"], key=lambda r: r["start_utc"])
-        assert [r["start_utc"] for r in rows if r["status"] == "observed"] == [
-            "2025-03-01T12:00:00Z",
-            "2025-03-01T12:10:00Z",
-        ]
-        found = server.get(f"/api/v1/records/{rows[0]['record_id']}/signal?points=1").json()
-        assert set(found["channels"]) == {"acc_top_x", "acc_top_y"}
-    finally:
-        server.stop()
-        broker.stop()
-
-
-def test_a_full_disk_is_said_and_nothing_is_half_kept(tmp_path: Path) -> None:
+def test_a_full_disk_is_said_and_nothing_is_half_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """On a file system of its own, where the machine lets us make one."""
     folder = tmp_path / "small"
     folder.mkdir()
     if os.geteuid() != 0 or os.system(f"mount -t tmpfs -o size=40m tmpfs {folder} 2>/dev/null") != 0:
         pytest.skip("needs the right to mount a small file system")
     try:
-        store = new_store(folder)
-        with Server(store, "--workers", "1") as server:
-            answer = server.post(*records()[0])
-            assert answer.status_code == 507
-            assert "full" in answer.json()["detail"]
-            assert server.get("/api/v1/assets/wtg/records").json()["items"] == []
-            assert list((store / "spool").iterdir()) == []
+        for full in make_service(folder / "store", None, monkeypatch):
+            with TestClient(create_app(full), base_url="http://127.0.0.1:8470") as client:
+                answer = upload(client)
+                assert answer.status_code == 507
+                assert "full" in answer.json()["detail"]
+                assert client.get("/api/v1/assets/wtg/records").json()["items"] == []
+            assert list(full.settings.spool.iterdir()) == []
     finally:
         os.system(f"umount -l {folder}")
         shutil.rmtree(folder, ignore_errors=True)
