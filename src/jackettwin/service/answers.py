@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -26,6 +26,7 @@ from jackettwin.version import __version__
 if TYPE_CHECKING:
     from jackettwin.service.context import Service
 
+T = TypeVar("T")
 RowNumber = Path(ge=1, le=2**53)
 """A row's number, as JavaScript can hold it."""
 
@@ -49,18 +50,21 @@ def modes(
     limit: int,
 ) -> Page[ModeOut]:
     """Return a page of modes through time."""
-    rows = results.list_modes(
-        connection,
-        version.asset,
-        version.model_hash,
-        label=label,
-        since=since,
-        until=until,
-        after=_row(cursor),
-        limit=limit + 1,
-    )
-    items = [_mode_out(row) for row in rows[:limit]]
-    return Page(items=items, next_cursor=write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None)
+    chosen: dict[str, Any] = {
+        "label": label,
+        "since": since,
+        "until": until,
+        "after": _row(cursor),
+        "limit": limit + 1,
+    }
+    rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
+    return _page(rows, limit, _mode_out)
+
+
+def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str, Any]], T]) -> Page[T]:
+    """Return a page of rows, one of which, if there are more, is of the next page."""
+    more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
+    return Page(items=[made(row) for row in rows[:limit]], next_cursor=more)
 
 
 def _mode_out(row: Mapping[str, Any]) -> ModeOut:
@@ -73,21 +77,22 @@ def findings(
     connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
 ) -> Page[FindingOut]:
     """Return a page of findings, newest first."""
-    rows = results.list_findings(
-        connection, version.asset, version.model_hash, severity=severity, before=_row(cursor), limit=limit + 1
-    )
-    items = [FindingOut(**{k: row[k] for k in FindingOut.model_fields}) for row in rows[:limit]]
-    return Page(items=items, next_cursor=write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None)
+    rows = _findings(connection, version, severity, cursor, limit)
+    return _page(rows, limit, lambda row: FindingOut(**{k: row[k] for k in FindingOut.model_fields}))
+
+
+def _findings(
+    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
+) -> list[Mapping[str, Any]]:
+    chosen: dict[str, Any] = {"severity": severity, "before": _row(cursor), "limit": limit + 1}
+    return results.list_findings(connection, version.asset, version.model_hash, **chosen)
 
 
 def alarms(connection: Connection, version: assets.Version, cursor: str | None, limit: int) -> Page[AlarmOut]:
     """Return a page of alarms with who took note of them."""
-    rows = results.list_findings(
-        connection, version.asset, version.model_hash, severity="alarm", before=_row(cursor), limit=limit + 1
-    )
+    rows = _findings(connection, version, "alarm", cursor, limit)
     notes = results.acknowledgements_of(connection, version.asset)
-    more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
-    return Page(items=[alarm_out(row, notes) for row in rows[:limit]], next_cursor=more)
+    return _page(rows, limit, lambda row: alarm_out(row, notes))
 
 
 def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) -> AlarmOut:

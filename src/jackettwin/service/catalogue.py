@@ -127,22 +127,19 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
             raise
 
 
-def overview(connection: Connection, *, archived: bool = False) -> list[AssetOut]:
-    """Return the assets, or the archived ones, with their status, by the same few queries however many."""
-    counts, said = records.count_by_status(connection), results.count_findings(connection)
-    unseen = results.unacknowledged_alarms(connection)
+def overview(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[AssetOut]:
+    """Return the assets, the archived ones, or one, with status, by the same few queries however many."""
+    counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
+    unseen = results.unacknowledged_alarms(connection, name)
     return [
         _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
-        for row in assets.summaries(connection, archived=archived)
+        for row in assets.summaries(connection, name, archived=archived)
     ]
 
 
 def one(connection: Connection, name: str) -> AssetOut:
     """Return an asset with its status."""
-    counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
-    unseen = results.unacknowledged_alarms(connection, name).get(name, 0)
-    (row,) = assets.summaries(connection, name)
-    return _asset_out(row, counts.get(name, {}), said.get(name, {}), unseen)
+    return overview(connection, name)[0]
 
 
 def versions_out(connection: Connection, asset: str) -> list[VersionOut]:

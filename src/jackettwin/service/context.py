@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 from sqlalchemy import Engine
 
@@ -21,29 +21,6 @@ from jackettwin.service.rendered import Rendered
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
 from jackettwin.version import __version__
-
-
-class Place(Protocol):
-    """What keeping results needs: where the store is, its database, and the time."""
-
-    @property
-    def settings(self) -> ServiceSettings:
-        """Where things are."""
-
-    @property
-    def database(self) -> Engine:
-        """The database."""
-
-    @property
-    def now(self) -> Callable[[], datetime]:
-        """The clock."""
-
-
-class Chore(Protocol):
-    """Something the dispatcher does now and then besides: windows of streams, old files, old events."""
-
-    def turn(self) -> None:
-        """Do what is due."""
 
 
 def _now() -> datetime:
@@ -71,7 +48,7 @@ class Service:
     guesses: Guesses = field(default_factory=Guesses)
     remembered: Remembered = field(default_factory=Remembered)
     rendered: Rendered = field(default_factory=Rendered)
-    chores: list[Chore] = field(default_factory=list)
+    chores: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
     broker_connected: Callable[[], bool | None] = lambda: None
@@ -89,6 +66,10 @@ class Service:
         """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""
         store = self.settings.store
         return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
+
+
+Place = Desk | Service
+"""What keeping results needs: where the store is, its database, and the time."""
 
 
 def open_service(settings: ServiceSettings) -> Service:

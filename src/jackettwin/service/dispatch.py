@@ -97,7 +97,7 @@ class Dispatcher(Thread):
         self._end_overrun()
         self._lease()
         for chore in self.service.chores:
-            chore.turn()
+            chore()
 
     def _beat(self) -> None:
         """Count our beat up, bury who is dead, come back if we were buried ourselves."""

@@ -79,21 +79,18 @@ class AssetOut(BaseModel):
     status: Literal["ok", "warning", "alarm", "no data"]
 
 
-class NewAsset(BaseModel):
-    """A twin file and the files it names, as text."""
+class NewVersion(BaseModel):
+    """A twin file for an asset and the files it names, as text."""
+
+    twin: str = Field(max_length=1_000_000)
+    files: dict[str, str] = Field(default_factory=dict, max_length=100)
+    comment: str = Field(default="", max_length=1000)
+
+
+class NewAsset(NewVersion):
+    """An asset with the first version of its twin."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")
-    twin: str = Field(max_length=1_000_000)
-    files: dict[str, str] = Field(default_factory=dict, max_length=100)
-    comment: str = Field(default="", max_length=1000)
-
-
-class NewVersion(BaseModel):
-    """Another twin file for an asset."""
-
-    twin: str = Field(max_length=1_000_000)
-    files: dict[str, str] = Field(default_factory=dict, max_length=100)
-    comment: str = Field(default="", max_length=1000)
 
 
 class VersionOut(BaseModel):

@@ -54,13 +54,13 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
         in_the_end.callback(service.compute.close)
         with reading(service.database) as connection:
             refuse_exposed(settings, people.any_user(connection))
-        service.chores.append(Housekeeping(service))
+        service.chores.append(Housekeeping(service).turn)
         dispatcher, stop = Dispatcher(service), Event()
         service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
         in_the_end.callback(dispatcher.stop)
         if settings.mqtt is not None:
             mqtt = MqttIntake(service, settings.mqtt)
-            service.chores.append(mqtt)
+            service.chores.append(mqtt.turn)
             service.broker_connected = lambda: mqtt.connected
             mqtt.start()
             in_the_end.callback(mqtt.stop)

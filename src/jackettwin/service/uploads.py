@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from sqlalchemy import Connection
 
@@ -50,7 +50,7 @@ def take(service: Service, asset: str, name: str, stream: BinaryIO, description:
     finally:
         discard(path)
     if taken.problem is not None:
-        raise ApiError(422, **_members(taken.problem))
+        raise ApiError(422, **taken.problem)
     return taken
 
 
@@ -121,9 +121,3 @@ def _check(description: str) -> None:
         raise ApiError(
             422, "the description is not a JSON object", field="description", value=str(error)[:100]
         ) from None
-
-
-def _members(problem: dict[str, Any]) -> dict[str, Any]:
-    return {
-        key: problem[key] for key in ("detail", "field", "value", "allowed", "remedy") if problem.get(key)
-    }

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, and_, func, or_, select, update
+from sqlalchemy import Column, Connection, Select, Update, func, select, tuple_, update
 
 from jackettwin.errors import InputError
 from jackettwin.store.database import insert_new
@@ -45,7 +45,7 @@ def add_record(connection: Connection, record: StoredRecord) -> bool:
 
 def find_record(connection: Connection, asset: str, record_id: str) -> StoredRecord | None:
     """Return a record of an asset, or None."""
-    query = select(records).where(records.c.asset == asset, records.c.record_id == record_id)
+    query = select(records).filter_by(asset=asset, record_id=record_id)
     row = connection.execute(query).one_or_none()
     return None if row is None else StoredRecord(**row._mapping)
 
@@ -62,14 +62,16 @@ def set_status(
     """Say how far a record got, and why no further."""
     if status not in STATUSES:
         raise ValueError(f"no record has the status {status!r}")
-    where = and_(records.c.asset == asset, records.c.record_id == record_id)
-    connection.execute(update(records).where(where).values(status=status, problem=problem))
+    connection.execute(_change(asset, record_id).values(status=status, problem=problem))
+
+
+def _change(asset: str, record_id: str) -> Update:
+    return update(records).where(records.c.asset == asset, records.c.record_id == record_id)
 
 
 def set_picks(connection: Connection, asset: str, record_id: str, picks: Mapping[str, Any] | None) -> None:
     """Keep the poles that a person chose, who and when among them."""
-    where = and_(records.c.asset == asset, records.c.record_id == record_id)
-    connection.execute(update(records).where(where).values(picks=picks))
+    connection.execute(_change(asset, record_id).values(picks=picks))
 
 
 def list_records(
@@ -83,24 +85,15 @@ def list_records(
     limit: int = 100,
 ) -> tuple[list[StoredRecord], str | None]:
     """Return a page of records, latest first, and the cursor of the next page."""
-    where = [records.c.asset == asset]
-    if since is not None:
-        where.append(records.c.start_utc >= since)
-    if until is not None:
-        where.append(records.c.start_utc < until)
+    query = between(select(records).filter_by(asset=asset), records.c.start_utc, since, until)
     if status is not None:
-        where.append(records.c.status == status)
+        query = query.where(records.c.status == status)
     if cursor is not None:
         start, record_id = read_cursor(cursor)
-        at = datetime.fromisoformat(str(start))
-        where.append(
-            or_(
-                records.c.start_utc < at,
-                and_(records.c.start_utc == at, records.c.record_id < str(record_id)),
-            )
-        )
+        at = (datetime.fromisoformat(str(start)), str(record_id))
+        query = query.where(tuple_(records.c.start_utc, records.c.record_id) < at)
     order = (records.c.start_utc.desc(), records.c.record_id.desc())
-    rows = connection.execute(select(records).where(*where).order_by(*order).limit(limit + 1)).all()
+    rows = connection.execute(query.order_by(*order).limit(limit + 1)).all()
     found = [StoredRecord(**row._mapping) for row in rows[:limit]]
     more = len(rows) > limit
     return found, write_cursor(found[-1].start_utc.isoformat(), found[-1].record_id) if more else None
@@ -110,15 +103,18 @@ def all_with_samples(
     connection: Connection, asset: str, since: datetime | None = None, until: datetime | None = None
 ) -> list[StoredRecord]:
     """Return the records of an asset whose samples are kept and that count, oldest first."""
-    where = [records.c.asset == asset, records.c.waveform.is_not(None), records.c.status != "set_aside"]
-    if since is not None:
-        where.append(records.c.start_utc >= since)
-    if until is not None:
-        where.append(records.c.start_utc < until)
-    rows = connection.execute(
-        select(records).where(*where).order_by(records.c.start_utc, records.c.record_id)
-    )
+    query = between(select(records).filter_by(asset=asset), records.c.start_utc, since, until)
+    query = query.where(records.c.waveform.is_not(None), records.c.status != "set_aside")
+    rows = connection.execute(query.order_by(records.c.start_utc, records.c.record_id))
     return [StoredRecord(**row._mapping) for row in rows]
+
+
+def between(
+    query: Select[Any], time: Column[datetime], since: datetime | None, until: datetime | None
+) -> Select[Any]:
+    """Return a query on rows from one time on and before another."""
+    query = query if since is None else query.where(time >= since)
+    return query if until is None else query.where(time < until)
 
 
 def with_samples_before(connection: Connection, time: datetime) -> list[StoredRecord]:
@@ -129,8 +125,7 @@ def with_samples_before(connection: Connection, time: datetime) -> list[StoredRe
 
 def forget_samples(connection: Connection, record: StoredRecord) -> None:
     """Say that the samples of a record are not kept any more."""
-    where = and_(records.c.asset == record.asset, records.c.record_id == record.record_id)
-    connection.execute(update(records).where(where).values(waveform=None))
+    connection.execute(_change(record.asset, record.record_id).values(waveform=None))
 
 
 def count_by_status(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Select, and_, delete, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Delete, Select, Table, delete, func, insert, select
 
+from jackettwin.store.records import between
 from jackettwin.store.tables import (
     acknowledgements,
     assets,
@@ -70,22 +71,23 @@ def put_observation(
 def drop_observation(connection: Connection, asset: str, model_hash: str, record_id: str) -> None:
     """Forget what a record said under a model."""
     for table in (observations, modes):
-        same = and_(table.c.asset == asset, table.c.model_hash == model_hash, table.c.record_id == record_id)
-        connection.execute(delete(table).where(same))
-    own = and_(
-        findings.c.asset == asset, findings.c.model_hash == model_hash, findings.c.record_id == record_id
-    )
-    connection.execute(delete(findings).where(own, findings.c.origin == "observe"))
+        connection.execute(_deleted(table, asset, model_hash, record_id=record_id))
+    connection.execute(_deleted(findings, asset, model_hash, record_id=record_id, origin="observe"))
+
+
+def _deleted(table: Table, asset: str, model_hash: str, **more: str) -> Delete:
+    """Return the deletion of what an asset has under a model, chosen further by values of columns."""
+    same = {"asset": asset, "model_hash": model_hash, **more}
+    return delete(table).where(*(table.c[name] == value for name, value in same.items()))
 
 
 def observations_between(
     connection: Connection, asset: str, model_hash: str, start: datetime, end: datetime
 ) -> Iterator[StoredObservation]:
     """Yield the observations of records that began in an interval, by start, then by record."""
-    where = [observations.c.asset == asset, observations.c.model_hash == model_hash]
-    where += [observations.c.start_utc >= start, observations.c.start_utc < end]
-    order = (observations.c.start_utc, observations.c.record_id)
-    for row in connection.execute(select(observations).where(*where).order_by(*order)):
+    query = select(observations).filter_by(asset=asset, model_hash=model_hash)
+    query = between(query, observations.c.start_utc, start, end)
+    for row in connection.execute(query.order_by(observations.c.start_utc, observations.c.record_id)):
         yield StoredObservation(**row._mapping)
 
 
@@ -93,9 +95,8 @@ def newest_observations(
     connection: Connection, asset: str, model_hash: str, limit: int
 ) -> list[StoredObservation]:
     """Return the observations of the records that began last, oldest first."""
-    same = (observations.c.asset == asset, observations.c.model_hash == model_hash)
-    order = (observations.c.start_utc.desc(), observations.c.record_id)
-    rows = connection.execute(select(observations).where(*same).order_by(*order).limit(limit)).all()
+    query = select(observations).filter_by(asset=asset, model_hash=model_hash).limit(limit)
+    rows = connection.execute(query.order_by(observations.c.start_utc.desc(), observations.c.record_id)).all()
     return [StoredObservation(**row._mapping) for row in reversed(rows)]
 
 
@@ -112,12 +113,8 @@ def find_observation(
     connection: Connection, asset: str, record_id: str, model_hash: str
 ) -> StoredObservation | None:
     """Return what a record said under a model, or None."""
-    same = and_(
-        observations.c.asset == asset,
-        observations.c.record_id == record_id,
-        observations.c.model_hash == model_hash,
-    )
-    row = connection.execute(select(observations).where(same)).first()
+    query = select(observations).filter_by(asset=asset, record_id=record_id, model_hash=model_hash)
+    row = connection.execute(query).first()
     return None if row is None else StoredObservation(**row._mapping)
 
 
@@ -127,41 +124,40 @@ def count_observations(connection: Connection, asset: str) -> dict[str, int]:
     return {model: n for model, n in connection.execute(query.group_by(observations.c.model_hash))}
 
 
+_STATE = select(*(states.c[name] for name in StoredState.__dataclass_fields__))
+
+
 def put_state(connection: Connection, state: StoredState) -> None:
     """Keep the state of a day in place of the one before."""
-    same = and_(
-        states.c.asset == state.asset, states.c.model_hash == state.model_hash, states.c.day == state.day
-    )
-    connection.execute(delete(states).where(same))
+    connection.execute(_deleted(states, state.asset, state.model_hash, day=state.day))
     connection.execute(insert(states).values(**vars(state), document_hash=state.document_hash))
 
 
 def find_state(connection: Connection, asset: str, model_hash: str, day: str) -> StoredState | None:
     """Return the state of a day, or None."""
-    same = and_(states.c.asset == asset, states.c.model_hash == model_hash, states.c.day == day)
-    row = connection.execute(select(states).where(same)).one_or_none()
-    return None if row is None else _state(dict(row._mapping))
+    query = _STATE.filter_by(asset=asset, model_hash=model_hash, day=day)
+    row = connection.execute(query).one_or_none()
+    return None if row is None else StoredState(*row)
 
 
 def states_until(
     connection: Connection, asset: str, model_hash: str, day: str | None = None, *, after: str | None = None
 ) -> list[StoredState]:
     """Return the states of all days, or of those up to a day or after one, in their order."""
-    where = [states.c.asset == asset, states.c.model_hash == model_hash]
+    query = _STATE.filter_by(asset=asset, model_hash=model_hash).order_by(states.c.day)
     if day is not None:
-        where.append(states.c.day <= day)
+        query = query.where(states.c.day <= day)
     if after is not None:
-        where.append(states.c.day > after)
-    rows = connection.execute(select(states).where(*where).order_by(states.c.day))
-    return [_state(dict(row._mapping)) for row in rows]
+        query = query.where(states.c.day > after)
+    return [StoredState(*row) for row in connection.execute(query)]
 
 
 def state_hashes(
     connection: Connection, asset: str, model_hash: str, day: str | None = None
 ) -> dict[str, str]:
     """Return the content hash of the state of every day, or of those up to a day."""
-    query = select(states.c.day, states.c.document_hash)
-    query = query.where(states.c.asset == asset, states.c.model_hash == model_hash).order_by(states.c.day)
+    query = select(states.c.day, states.c.document_hash).filter_by(asset=asset, model_hash=model_hash)
+    query = query.order_by(states.c.day)
     if day is not None:
         query = query.where(states.c.day <= day)
     return {day: found for day, found in connection.execute(query)}
@@ -179,10 +175,8 @@ def identity_of(hashes: Mapping[str, str]) -> str:
 
 def drop_state(connection: Connection, asset: str, model_hash: str, day: str) -> None:
     """Forget the state of a day, with the findings that advancing made there."""
-    for table in (states, findings):
-        same = and_(table.c.asset == asset, table.c.model_hash == model_hash, table.c.day == day)
-        only = same if table is states else and_(same, findings.c.origin == "advance")
-        connection.execute(delete(table).where(only))
+    connection.execute(_deleted(states, asset, model_hash, day=day))
+    connection.execute(_deleted(findings, asset, model_hash, day=day, origin="advance"))
 
 
 def put_findings(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -198,11 +192,8 @@ def put_watched(
 
     What was said before and holds no more, since a late record changed a day, is taken away.
     """
-    own = and_(findings.c.asset == asset, findings.c.model_hash == model_hash, findings.c.origin == "watch")
-    before = {
-        (alarm_key(row), row["text"]): row["id"]
-        for row in (dict(r._mapping) for r in connection.execute(select(findings).where(own)))
-    }
+    own = select(findings).filter_by(asset=asset, model_hash=model_hash, origin="watch")
+    before = {(alarm_key(row), row["text"]): row["id"] for row in _rows(connection, own)}
     now = {(alarm_key(row), row["text"]): row for row in rows}
     gone = [number for key, number in before.items() if key not in now]
     connection.execute(delete(findings).where(findings.c.id.in_(gone)))
@@ -223,17 +214,12 @@ def list_modes(
     limit: int | None = 1000,
 ) -> list[Mapping[str, Any]]:
     """Return modes through time, in the order in which they were found."""
-    where = [modes.c.asset == asset, modes.c.model_hash == model_hash]
+    query = select(modes).filter_by(asset=asset, model_hash=model_hash).order_by(modes.c.id).limit(limit)
     if label is not None:
-        where.append(modes.c.label == label)
-    if since is not None:
-        where.append(modes.c.time_utc >= since)
-    if until is not None:
-        where.append(modes.c.time_utc < until)
+        query = query.where(modes.c.label == label)
     if after is not None:
-        where.append(modes.c.id > after)
-    rows = connection.execute(select(modes).where(*where).order_by(modes.c.id).limit(limit))
-    return [dict(row._mapping) for row in rows]
+        query = query.where(modes.c.id > after)
+    return _rows(connection, between(query, modes.c.time_utc, since, until))
 
 
 def list_findings(
@@ -246,13 +232,16 @@ def list_findings(
     limit: int = 100,
 ) -> list[Mapping[str, Any]]:
     """Return findings, newest first."""
-    where = [findings.c.asset == asset, findings.c.model_hash == model_hash]
+    query = select(findings).filter_by(asset=asset, model_hash=model_hash).limit(limit)
     if severity is not None:
-        where.append(findings.c.severity == severity)
+        query = query.where(findings.c.severity == severity)
     if before is not None:
-        where.append(findings.c.id < before)
-    rows = connection.execute(select(findings).where(*where).order_by(findings.c.id.desc()).limit(limit))
-    return [dict(row._mapping) for row in rows]
+        query = query.where(findings.c.id < before)
+    return _rows(connection, query.order_by(findings.c.id.desc()))
+
+
+def _rows(connection: Connection, query: Select[Any]) -> list[Mapping[str, Any]]:
+    return [dict(row._mapping) for row in connection.execute(query)]
 
 
 def alarm_key(row: Mapping[str, Any]) -> str:
@@ -270,8 +259,8 @@ def acknowledge(connection: Connection, row: Mapping[str, Any], by: str, comment
 
 def acknowledgements_of(connection: Connection, asset: str) -> dict[str, Mapping[str, Any]]:
     """Return who took note of which alarm, {alarm key: note}."""
-    rows = connection.execute(select(acknowledgements).where(acknowledgements.c.asset == asset))
-    return {row.alarm_key: dict(row._mapping) for row in rows}
+    notes = _rows(connection, select(acknowledgements).filter_by(asset=asset))
+    return {note["alarm_key"]: note for note in notes}
 
 
 def put_knowledge(
@@ -316,15 +305,14 @@ def unacknowledged_alarms(connection: Connection, asset: str | None = None) -> d
     query = _adopted(select(*columns), asset).where(findings.c.severity == "alarm")
     noted = set(connection.scalars(select(acknowledgements.c.alarm_key)))
     counts: dict[str, int] = {}
-    for row in connection.execute(query):
-        counts[row.asset] = counts.get(row.asset, 0) + (alarm_key(dict(row._mapping)) not in noted)
+    for row in _rows(connection, query):
+        counts[row["asset"]] = counts.get(row["asset"], 0) + (alarm_key(row) not in noted)
     return counts
 
 
 def find_finding(connection: Connection, finding_id: int) -> Mapping[str, Any] | None:
     """Return a finding by its number, or None."""
-    row = connection.execute(select(findings).where(findings.c.id == finding_id)).one_or_none()
-    return None if row is None else dict(row._mapping)
+    return next(iter(_rows(connection, select(findings).filter_by(id=finding_id))), None)
 
 
 def count_findings(connection: Connection, asset: str | None = None) -> dict[str, dict[str, int]]:
@@ -342,7 +330,3 @@ def _adopted(query: Select[Any], asset: str | None) -> Select[Any]:
     same = (findings.c.asset == versions.c.asset) & (findings.c.model_hash == versions.c.model_hash)
     query = query.select_from(assets.join(versions, own).join(findings, same))
     return query.where(assets.c.archived_utc.is_(None) if asset is None else assets.c.name == asset)
-
-
-def _state(row: Mapping[str, Any]) -> StoredState:
-    return StoredState(**{name: row[name] for name in StoredState.__dataclass_fields__})

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, CursorResult, delete, func, insert, select, update
+from sqlalchemy import Connection, Update, delete, func, insert, select, update
 
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
@@ -113,32 +113,37 @@ def finish(
     reason: dict[str, Any] | None = None,
 ) -> bool:
     """End a piece of work; return False if it is no longer this server's, and then keep nothing of it."""
-    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
-    ended: CursorResult[Any] = connection.execute(
-        update(work).where(*mine).values(state=state, ended_utc=now, reason=reason, owner=None)
-    )
-    return ended.rowcount == 1
+    ended = {"state": state, "ended_utc": now, "reason": reason, "owner": None}
+    return connection.execute(_mine(job, owner).values(**ended)).rowcount == 1
 
 
 def put_back(connection: Connection, job: Job, owner: str, reason: dict[str, Any]) -> str | None:
     """Return failed work to the queue, or set it aside after the last try; return its new state."""
     state = "queued" if job.tries + 1 < MOST_TRIES else "set_aside"
-    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
-    ended = connection.execute(update(work).where(*mine).values(state=state, owner=None, reason=reason))
+    ended = connection.execute(_mine(job, owner).values(state=state, owner=None, reason=reason))
     return state if ended.rowcount == 1 else None
 
 
 def release(connection: Connection, job: Job, owner: str) -> None:
     """Return work that was not tried after all, without counting the try."""
-    mine = (work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
-    connection.execute(update(work).where(*mine).values(state="queued", owner=None, tries=work.c.tries - 1))
+    connection.execute(_mine(job, owner).values(**_UNTRIED))
+
+
+def _mine(job: Job, owner: str) -> Update:
+    """Return the change of a piece of work that a server still holds."""
+    return update(work).where(work.c.id == job.id, work.c.state == "leased", work.c.owner == owner)
+
+
+_UNTRIED = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
+"""Of work that was leased, and goes back: that a server died says nothing against the record."""
 
 
 def try_again(connection: Connection, job_id: int, now: datetime) -> bool:
     """Queue work anew that is done, was set aside, failed or was cancelled: it is asked for now."""
     ended = work.c.state.in_(("set_aside", "failed", "cancelled", "done"))
-    done = connection.execute(update(work).where(work.c.id == job_id, ended).values(**_anew(now)))
-    return done.rowcount == 1
+    return (
+        connection.execute(update(work).where(work.c.id == job_id, ended).values(**_anew(now))).rowcount == 1
+    )
 
 
 def renew(connection: Connection, job_id: int, now: datetime) -> bool:
@@ -161,12 +166,11 @@ def reorder(connection: Connection, asset: str, priority: int) -> None:
 def cancel(connection: Connection, job_id: int, now: datetime) -> bool:
     """Cancel work that is queued or leased; a result that comes later is not accepted."""
     open_states = work.c.state.in_(("queued", "leased"))
-    done = connection.execute(
-        update(work)
-        .where(work.c.id == job_id, open_states)
-        .values(state="cancelled", ended_utc=now, owner=None)
+    cancelled = {"state": "cancelled", "ended_utc": now, "owner": None}
+    return (
+        connection.execute(update(work).where(work.c.id == job_id, open_states).values(**cancelled)).rowcount
+        == 1
     )
-    return done.rowcount == 1
 
 
 def find_job(connection: Connection, job_id: int) -> Job | None:
@@ -179,19 +183,18 @@ def list_jobs(
     connection: Connection, *, state: str | None = None, before: int | None = None, limit: int = 100
 ) -> list[Job]:
     """Return work, newest first."""
-    where = []
+    query = select(work).order_by(work.c.id.desc()).limit(limit)
     if state is not None:
-        where.append(work.c.state == state)
+        query = query.where(work.c.state == state)
     if before is not None:
-        where.append(work.c.id < before)
-    rows = connection.execute(select(work).where(*where).order_by(work.c.id.desc()).limit(limit))
-    return [Job(**row._mapping) for row in rows]
+        query = query.where(work.c.id < before)
+    return [Job(**row._mapping) for row in connection.execute(query)]
 
 
 def jobs_of(connection: Connection, asset: str, record_id: str) -> list[Job]:
     """Return all work on a record, oldest first."""
-    where = (work.c.asset == asset, work.c.record_id == record_id)
-    return [Job(**row._mapping) for row in connection.execute(select(work).where(*where).order_by(work.c.id))]
+    query = select(work).filter_by(asset=asset, record_id=record_id).order_by(work.c.id)
+    return [Job(**row._mapping) for row in connection.execute(query)]
 
 
 def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool:
@@ -203,9 +206,8 @@ def any_queued(connection: Connection, kind: str, *, gone: bool = False) -> bool
 
 def queue_sizes(connection: Connection) -> dict[str, int]:
     """Return how much work is in each state."""
-    return {
-        state: n for state, n in connection.execute(select(work.c.state, func.count()).group_by(work.c.state))
-    }
+    query = select(work.c.state, func.count()).group_by(work.c.state)
+    return {state: n for state, n in connection.execute(query)}
 
 
 def oldest_queued(connection: Connection) -> datetime | None:
@@ -224,10 +226,8 @@ def join(connection: Connection, server: str, about: dict[str, Any], now: dateti
 
 def beat(connection: Connection, server: str) -> bool:
     """Count a server's beat up; False if it was declared dead meanwhile."""
-    counted = connection.execute(
-        update(servers).where(servers.c.id == server).values(beat=servers.c.beat + 1)
-    )
-    return counted.rowcount == 1
+    counted = update(servers).where(servers.c.id == server).values(beat=servers.c.beat + 1)
+    return connection.execute(counted).rowcount == 1
 
 
 def beats(connection: Connection) -> dict[str, tuple[int, dict[str, Any]]]:
@@ -244,9 +244,7 @@ def bury(connection: Connection, server: str, at_beat: int | None = None) -> Seq
     if connection.execute(delete(servers).where(*where)).rowcount != 1:
         return []
     held = list(connection.scalars(select(work.c.id).where(work.c.state == "leased", work.c.owner == server)))
-    # that a server died says nothing against the record: records are read in workers
-    given_back = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
-    connection.execute(update(work).where(work.c.id.in_(held)).values(**given_back))
+    connection.execute(update(work).where(work.c.id.in_(held)).values(**_UNTRIED))
     return held
 
 
@@ -259,5 +257,4 @@ def take_back_orphans(connection: Connection, me: str, mine: Collection[int]) ->
     alive = select(servers.c.id)
     forgotten = (work.c.owner == me) & work.c.id.not_in(mine)
     orphan = (work.c.state == "leased", work.c.owner.not_in(alive) | forgotten)
-    given_back = {"state": "queued", "owner": None, "tries": work.c.tries - 1}
-    return connection.execute(update(work).where(*orphan).values(**given_back)).rowcount
+    return connection.execute(update(work).where(*orphan).values(**_UNTRIED)).rowcount
