@@ -32,7 +32,12 @@ RECORDS = {
 }
 """The shipped records with rigid blades: scenario of the same asset, and wind [m/s]."""
 SEEDS = 12
-BANDS = {"0.14–0.21 Hz, the first pair": (0.14, 0.21), "0.3–0.6 Hz, between the modes": (0.3, 0.6)}
+BANDS = {
+    "0.14–0.21 Hz, the first pair": (0.14, 0.21),
+    "0.3–0.6 Hz, between the modes": (0.3, 0.6),
+    "0.6–1.0 Hz, the second pair": (0.6, 1.0),
+    "0.70–0.73 Hz, the lower flank of the second pair": (0.70, 0.73),
+}
 DIRECTIONS = {"fore-aft": "x", "side-side": "y"}
 
 

@@ -41,3 +41,13 @@ def test_an_unknown_foundation_is_refused() -> None:
     result = run("sands")
     assert result.exit_code == 2
     assert "jacket15_records" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("--frequency-hz", "nan"), ("--arm", "nan"), ("--arm", "inf"), ("--arm", "1e9")]
+)
+def test_numbers_that_are_none_and_far_arms_are_refused(option: str, value: str, tmp_path: Path) -> None:
+    result = run("jacket15", option, value, "--out", str(tmp_path / "page.html"))
+    assert result.exit_code == 2
+    assert option in result.stderr
+    assert not list(tmp_path.iterdir())

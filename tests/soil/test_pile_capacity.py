@@ -9,6 +9,7 @@ from jackettwin.soil.pile_capacity import axial_capacity, pushover
 from jackettwin.soil.pile_curves import PileCurves, pile_curves
 from jackettwin.soil.piles import Pile, stations
 from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.pushover import push
 from jackettwin.structure import Section
 from jackettwin.structure.model import STEEL, Material
 
@@ -53,6 +54,17 @@ def test_a_stiff_short_pile_turns_over_as_broms_says(arm: float) -> None:
     assert found.ultimate_n == pytest.approx(wanted, rel=0.015)
     assert (np.diff(found.head_m) > 0.0).all() and (np.diff(found.load_n) > 0.0).all()
     assert found.head_m[-1] <= 0.1 * D
+
+
+@pytest.mark.parametrize("arm", [300.0, -30.0])
+def test_a_far_load_and_a_deep_one_stop_at_the_limit_too(arm: float) -> None:
+    """Small beside all that resists, or so deep that the head goes backwards: the load is found to 0.1 %."""
+    pile = Pile(40.0, Section(D, 0.05))
+    curves = pile_curves(pile, SoilProfile((Layer(60.0, 9e3, Clay(1e5, 1e5)),)))
+    found = pushover(pile, curves, arm_m=arm, steps=2)
+    more = 1.001 * found.ultimate_n
+    beyond = push(pile, curves, np.array([more, 0.0, 0.0, 0.0, arm * more, 0.0])).displacement[0, 0]
+    assert abs(found.head_m[-1]) <= 0.1 * D < abs(beyond)
 
 
 def test_moments_are_those_of_the_loads_below_the_head() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.cli.console import fixed, numbers_of, output, print_json
+from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
@@ -49,9 +49,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
     help="A factored force [N, N·m]; may be repeated.",
 )
 @click.option("--no-weight", is_flag=True, help="Leave the self-weight out.")
-@click.option(
-    "--yield-strength", default=355e6, show_default=True, type=click.FloatRange(min=1e6), help="[Pa]"
-)
+@click.option("--yield-strength", default=355e6, show_default=True, type=FiniteFloat(min=1e6), help="[Pa]")
 @click.option(
     "--edition", default="2007", show_default=True, type=click.Choice(EDITIONS), help="Of ISO 19902."
 )

@@ -119,6 +119,17 @@ class Commands(click.Group):
             ctx.exit(OUR_FAULT)
 
 
+class FiniteFloat(click.FloatRange):
+    """A number of an option: click's own range lets "nan" through, and "inf" where it is open."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number; refuse what is not finite."""
+        value = float(super().convert(value, param, ctx))
+        if not isfinite(value):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return value
+
+
 class _Messages(logging.Handler):
     """Prints what the package logs among the messages, the same line once."""
 

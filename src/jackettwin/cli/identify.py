@@ -12,7 +12,7 @@ import click
 from rich.table import Table
 
 from jackettwin.cli.cache import MOST_RECORDS, keeping, kept_in
-from jackettwin.cli.console import messages, number, output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import check_room, read_mapping, read_yaml, validate, write_json
 from jackettwin.identification import IdentificationSettings
@@ -64,10 +64,12 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
     "every record, so that a run that was stopped goes on where it was.",
 )
 @click.option(
-    "--sample-rate", type=click.FloatRange(min=0.0, min_open=True), help="Hz, of files that do not say it."
+    "--sample-rate", type=FiniteFloat(min=0.0, min_open=True), help="Hz, of files that do not say it."
 )
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s; tells what they measure, too.")
-@click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
+@click.option(
+    "--gain", type=FiniteFloat(), help="What one count or volt of unscaled channels is worth in --unit."
+)
 @click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
 @click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
 @click.option(

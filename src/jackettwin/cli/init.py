@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import messages, output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, messages, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_path, check_room
 from jackettwin.records import Record, read_record
@@ -43,9 +43,11 @@ _QUESTIONS = {
     help="Twin file to write.",
 )
 @click.option("--unit", help="Of channels without one, e.g. g or mm/s.")
-@click.option("--gain", type=float, help="What one count or volt of unscaled channels is worth in --unit.")
 @click.option(
-    "--sample-rate", type=click.FloatRange(min=0.0, min_open=True), help="Hz, of files that do not say it."
+    "--gain", type=FiniteFloat(), help="What one count or volt of unscaled channels is worth in --unit."
+)
+@click.option(
+    "--sample-rate", type=FiniteFloat(min=0.0, min_open=True), help="Hz, of files that do not say it."
 )
 @click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
 @click.option("--force", is_flag=True, help="Write over an existing file.")

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from jackettwin.cli.console import messages, print_json
+from jackettwin.cli.console import FiniteFloat, messages, print_json
 from jackettwin.cli.store_options import needs_service
 
 
@@ -27,7 +27,7 @@ from jackettwin.cli.store_options import needs_service
 @click.option("--trusted-header", help="Header in which the proxy names the user it authenticated.")
 @click.option(
     "--raw-days",
-    type=click.FloatRange(0.0),
+    type=FiniteFloat(0.0),
     help="Days for which samples of observed records are kept, from now on; 0: for ever, the default.",
 )
 @click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")

@@ -10,7 +10,7 @@ import click
 import numpy as np
 from rich.table import Table
 
-from jackettwin.cli.console import messages, output, print_json, working
+from jackettwin.cli.console import FiniteFloat, messages, output, print_json, working
 from jackettwin.soil.curves import Curve
 from jackettwin.soil.foundation import Foundation, read_foundation
 from jackettwin.soil.impedance import head_impedance
@@ -29,10 +29,17 @@ _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
     "--frequency-hz",
     default=0.18,
     show_default=True,
-    type=click.FloatRange(min=0.0, max=100.0),
+    type=FiniteFloat(min=0.0, max=100.0),
     help="Of the head's stiffness and loss.",
 )
-@click.option("--arm", "arm_m", default=0.0, show_default=True, help="Height of the lateral load [m].")
+@click.option(
+    "--arm",
+    "arm_m",
+    default=0.0,
+    show_default=True,
+    type=FiniteFloat(-300.0, 300.0),
+    help="Height of the lateral load [m].",
+)
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
 @click.option(
     "--out", type=click.Path(dir_okay=False, path_type=Path), help="The page; default out/NAME_soil.html."

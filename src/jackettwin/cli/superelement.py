@@ -10,7 +10,7 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.cli.console import messages, numbers_of, output, print_json
+from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
 from jackettwin.response.extptfm_layouts import DEFAULT, LAYOUTS, Layout
@@ -66,14 +66,14 @@ from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
 )
 @click.option(
     "--band-hz",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=FiniteFloat(min=0.0, min_open=True),
     help="Damping is met up to here; default: five modes of the structure.",
 )
 @click.option(
     "--time-step",
     "step_s",
     metavar="S",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=FiniteFloat(min=0.0, min_open=True),
     help="Slow the fastest poles until explicit steps this long are stable.",
 )
 @click.option(

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.records.readers.description import parse_time
@@ -30,11 +30,11 @@ _SHOWN = 4
     "--baseline-days",
     default=365.0,
     show_default=True,
-    type=click.FloatRange(min=1.0),
+    type=FiniteFloat(min=1.0),
     help="The healthy time.",
 )
 @click.option(
-    "--arl-years", default=10.0, show_default=True, type=click.FloatRange(min=0.1, max=1e4),
+    "--arl-years", default=10.0, show_default=True, type=FiniteFloat(min=0.1, max=1e4),
     help="Mean time between false alarms, at least.",
 )  # fmt: skip
 @click.option(

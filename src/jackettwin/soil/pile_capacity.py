@@ -94,18 +94,19 @@ def _ultimate(pile: Pile, curves: PileCurves, arm_m: float) -> float:
 
     def stands(load: float) -> bool:
         try:
-            return bool(push(pile, curves, _head_load(load, arm_m)).displacement[0, 0] <= limit)
+            return bool(abs(push(pile, curves, _head_load(load, arm_m)).displacement[0, 0]) <= limit)
         except NumericalError:
             return False
 
     # no load above the sum of all that resists can stand
-    low, high = 0.0, total
-    while high > 1e-9 * total and stands(high):
-        low, high = high, 2.0 * high
+    low = total
+    while not stands(low):
+        low *= 0.5
+    high = 2.0 * low
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stands(middle) else (low, middle)
-    return low if low > 0.0 else high
+    return low
 
 
 def _largest_moment(pile: Pile, curves: PileCurves, loaded: LoadedPile) -> float:
