@@ -39,12 +39,15 @@ BANDS = {
     "0.70–0.73 Hz, the lower flank of the second pair": (0.70, 0.73),
 }
 DIRECTIONS = {"fore-aft": "x", "side-side": "y"}
+SECOND = {"fore-aft": "fore_aft_2", "side-side": "side_side_2"}
 
 
 def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         simulated = {case: levels_of(Path(folder), *case) for case in dict.fromkeys(RECORDS.values())}
-    write_page("response_level", [*introduction(), *tables(simulated)])
+    levels = {case: found for case, (found, _) in simulated.items()}
+    modes = {case: known for case, (_, known) in simulated.items()}
+    write_page("response_level", [*introduction(), *tables(levels), "", *second_pair(modes)])
 
 
 def power(record: Record) -> FloatArray:
@@ -57,8 +60,8 @@ def power(record: Record) -> FloatArray:
     )
 
 
-def levels_of(folder: Path, scenario: str, speed: int) -> FloatArray:
-    """Return the powers of some seeds, (seeds, bands, directions)."""
+def levels_of(folder: Path, scenario: str, speed: int) -> tuple[FloatArray, Record]:
+    """Return the powers of some seeds, (seeds, bands, directions), and one of the records."""
     data = yaml.safe_load((DATA / "scenarios" / f"{scenario}.yaml").read_text(encoding="utf-8"))
     data = {key: value for key, value in data.items() if key not in ("waves", "water")}
     # 0.57 % of the first modes without wind, as the records' own linearised model has
@@ -71,8 +74,9 @@ def levels_of(folder: Path, scenario: str, speed: int) -> FloatArray:
         data["wind"] = {"speed_m_s": speed, "turbulence": "B", "seed": 1000 + first + seed}
         path = folder / "case.yaml"
         path.write_text(yaml.safe_dump(data), encoding="utf-8")
-        found.append(power(simulate(read_scenario(path)).record))
-    return np.array(found)
+        record = simulate(read_scenario(path)).record
+        found.append(power(record))
+    return np.array(found), record
 
 
 def introduction() -> list[str]:
@@ -116,6 +120,46 @@ def tables(simulated: dict[tuple[str, int], FloatArray]) -> list[str]:
             error = 0.5 * np.sqrt(np.mean(np.square(scatter)) / len(shares))
             lines += [f"| mean ratio | | | | **{mean:.2f}** ± {mean * error:.2f} |", ""]
     return lines[:-1]
+
+
+def second_pair(simulated: dict[tuple[str, int], Record]) -> list[str]:
+    """Return the second pair of both programs, and what its f and ζ alone make of the level."""
+    bands = list(BANDS.items())[2:]
+    lines = [
+        "**The second pair itself**: the linear models of both programs, and the ratio of levels that",
+        "f and ζ alone would make, one mode driven by the same white force.",
+        "",
+        "| record | | OpenFAST f [Hz], ζ [%] | simulated f [Hz], ζ [%] | "
+        + " | ".join(name.partition(",")[0] for name, _ in bands)
+        + " |",
+        "|---|---|---|---|" + "---|" * len(bands),
+    ]
+    for record, case in RECORDS.items():
+        known = read_record(DATA / "records" / f"{record}.parquet")
+        for direction, label in SECOND.items():
+            (f, zeta), (own_f, own_zeta) = (mode(one, label) for one in (known, simulated[case]))
+            ratios = [
+                np.sqrt(amplified(own_f, own_zeta, *limits) / amplified(f, zeta, *limits))
+                for _, limits in bands
+            ]
+            lines.append(
+                f"| {record} | {direction} | {f:.4f}, {100 * zeta:.2f} | {own_f:.4f}, {100 * own_zeta:.2f} | "
+                + " | ".join(f"{ratio:.2f}" for ratio in ratios)
+                + " |"
+            )
+    return lines
+
+
+def mode(record: Record, label: str) -> tuple[float, float]:
+    """Return f [Hz] and ζ of a mode that a record states as true."""
+    one = next(mode for mode in record.metadata["true_modes"] if mode["label"] == label)
+    return float(one["frequency_hz"]), float(one["damping_ratio"])
+
+
+def amplified(f: float, zeta: float, low: float, high: float) -> float:
+    """Return the mean square of a mode's acceleration under a white force, between two frequencies."""
+    at = np.linspace(low, high, 4001)
+    return float(np.mean(at**4 / ((f**2 - at**2) ** 2 + (2.0 * zeta * f * at) ** 2)))
 
 
 if __name__ == "__main__":

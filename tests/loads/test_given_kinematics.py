@@ -63,15 +63,20 @@ def test_files_that_are_no_kinematics_are_refused(file: Path, tmp_path: Path) ->
         "not a number": [*cells[:3], "fast", *cells[4:]],
         "no velocity of water": [*cells[:3], "1e4", *cells[4:]],
         "depends on the height": [*cells[:2], "9", *cells[3:]],
+        "no acceleration of water .got nan": [*cells[:5], "nan", *cells[6:]],
+        "no pressure of water .got nan": [*cells[:7], "nan"],
     }
     wrong = {message: [header, ",".join(row), *rows[1:]] for message, row in first.items()}
     wrong["columns are missing"] = [header.replace("velocity_m_s", "speed"), *rows]
     wrong["no grid"] = [header, *rows[:-1]]
+    wrong["no rows"] = [header]
+    wrong["a gap after 0 s"] = [header, *rows[:85], *rows[85 * 25 :]]
     for message, lines in wrong.items():
         path = tmp_path / "wrong.csv"
         path.write_text("\n".join(lines))
-        with pytest.raises(InputError, match=message):
+        with pytest.raises(InputError, match=message) as refused:
             read_kinematics(path)
+        assert (refused.value.file, refused.value.field) == (path, "file")
 
 
 def test_ends_need_a_pressure(file: Path, tmp_path: Path) -> None:

@@ -45,3 +45,27 @@ def test_a_short_elevation_is_refused() -> None:
     t = np.arange(0.0, 100.0)
     with pytest.raises(InputError, match="does not cover"):
         given_sea(Elevation(t, np.sin(t)), depth=DEPTH, duration=200.0)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (
+            lambda t, eta: (np.delete(t, slice(100, 130)), np.delete(eta, slice(100, 130))),
+            "a gap after 9.9 s",
+        ),
+        (lambda t, eta: (1000.0 * t, eta), "times in seconds"),
+        (lambda t, eta: (t[::-1], eta[::-1]), "do not grow"),
+        (lambda t, eta: (t, np.where(t == 5.0, np.nan, eta)), "no elevation of water .got nan"),
+        (lambda t, eta: (t, 1000.0 * eta), "no elevation of water .got 1000"),
+    ],
+)
+def test_gaps_units_and_holes_are_refused(spoil, message: str, tmp_path: Path) -> None:
+    """Each names the file and its key; a gap is not bridged by a straight line."""
+    t = np.arange(400) / 10.0
+    path = tmp_path / "eta.csv"
+    np.savetxt(path, np.column_stack(spoil(t, np.cos(t))), delimiter=",")
+    with pytest.raises(InputError, match=message) as refused:
+        read_elevation(path)
+    assert (refused.value.file, refused.value.field) == (path, "file")
+    assert refused.value.allowed

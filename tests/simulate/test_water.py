@@ -21,6 +21,7 @@ from jackettwin.simulate.water import (
     water_points,
     wave_field,
 )
+from jackettwin.structure import assemble
 
 FEET = {"support": "pinned", "damping": {"rayleigh": {"ratio": 0.001, "frequency_hz": 0.2}}}
 
@@ -97,6 +98,18 @@ def test_a_given_elevation_drives_the_asset(tmp_path: Path, scenario_file) -> No
         read_scenario(scenario_file(waves={**waves, "hs_m": 2.0}, water={}, time=time))
     with pytest.raises(InputError, match="file belongs to waves of type elevation or kinematics"):
         read_scenario(scenario_file(waves={"type": "elevation"}, water={}, time=time))
+
+
+def test_a_lone_crest_loads_all_that_it_wets(tmp_path: Path, scenario_file) -> None:
+    """10 m in ten calm minutes, 4σ being 3 m: members up to the crest have points, however short they are."""
+    t = np.arange(0.0, 601.0, 0.5)
+    eta = 10.0 * np.exp(-(((t - 300.0) / 8.0) ** 2)) * np.cos(2.0 * np.pi * (t - 300.0) / 10.0)
+    np.savetxt(tmp_path / "eta.csv", np.column_stack([t, eta]), delimiter=",")
+    waves = {"type": "elevation", "file": str(tmp_path / "eta.csv")}
+    scenario = read_scenario(scenario_file(waves=waves, water={}, time={"duration_s": 600.0, "step_s": 0.05}))
+    assert scenario.sea is not None and scenario.sea.height_m < 4.0
+    assembly = assemble(scenario.asset.structure, subdivide=20)
+    assert water_points(assembly, scenario.sea).points[:, 2].max() > 10.0
 
 
 def test_given_kinematics_load_as_the_wave_they_were_taken_from(tmp_path: Path, scenario_file) -> None:

@@ -43,6 +43,23 @@ def test_strength_factors_by_hand(d, tension, compression, in_plane, out_of_plan
     assert (q.in_plane, q.out_of_plane) == pytest.approx((in_plane, out_of_plane), rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("d", "kind", "axial", "Q_u", "P_a"), [(0.4, 1, 1.0, 24.0, 3351.8), (0.475, 2, -1.0, 23.289, 3255.7)]
+)
+def test_published_worked_examples_of_api_joints(d, kind, axial, Q_u, P_a) -> None:
+    """Bentley, STAAD.Pro verification manual (2026), "V. API Y Joint" and "V. API X Joint", their hand sums.
+
+    D 500, T 20 mm, θ = atan 2, F_y 500 MPa: a Y joint in tension and an X joint in compression, for which API
+    RP 2A-WSD (21st edition, supplements 2 and 3) has ISO 19902's Q_u. P_a holds its factor of safety 1.6 and
+    a Q_f within 0.1 % of 1; for moments and chord stresses API has other formulas.
+    """
+    one = Joint(0.5, 0.02, d, 0.02, np.arctan(2.0), 500e6, 500e6)
+    shares, none = np.eye(3)[:, [kind]], np.zeros(1)
+    use = joint_use(one, forces(axial * 1e6), shares, none, none)
+    assert float(use.Q_u[0]) == pytest.approx(Q_u, rel=1e-4)
+    assert 1e6 / float(use.utilisation[0]) * 1.05 == pytest.approx(1.6e3 * P_a, rel=2e-3)
+
+
 def test_the_branches_of_the_table_meet() -> None:
     """X in tension at β = 0.9, Q_β at 0.6 (0.3/(0.6·0.5002) = 0.9996)."""
     for beta, rel in ((0.9, 1e-4), (0.6, 1e-3)):

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files.yaml import read_text
-from jackettwin.loads.given_waves import Elevation
+from jackettwin.loads.given_waves import FIELD, Elevation, require_physical
 
-_FIELD = "waves.file"
 _LONGEST = 5_000_000
 """Rows that a file may have: ten minutes at 10 Hz on a hundred levels are 600,000."""
 _FASTEST_M_S2 = 200.0
 """No water moves or turns faster than twenty times gravity: such a column has another unit."""
+_HIGHEST_PA = 1e8
 REQUIRED = (
     "time_s",
     "z_m",
@@ -53,15 +53,10 @@ class Kinematics:
     pressure_pa: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        for name, values in (("velocity", self.velocity), ("acceleration", self.acceleration)):
-            if not (np.isfinite(values).all() and np.abs(values).max() <= _FASTEST_M_S2):
-                raise InputError(
-                    f"no {name} of water",
-                    field=_FIELD,
-                    value=float(np.nanmax(np.abs(values))),
-                    allowed=f"numbers up to {_FASTEST_M_S2:g} in SI units",
-                    remedy="give a value at every height, also above the surface: repeat the highest",
-                )
+        require_physical("velocity", self.velocity, _FASTEST_M_S2, "m/s")
+        require_physical("acceleration", self.acceleration, _FASTEST_M_S2, "m/s²")
+        if self.pressure_pa is not None:
+            require_physical("pressure", self.pressure_pa, _HIGHEST_PA, "Pa")
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +106,7 @@ class TravellingKinematics:
         if self.given.pressure_pa is None:
             raise InputError(
                 "the pressure on the ends of members is not given",
-                field=_FIELD,
+                field=f"waves.{FIELD}",
                 remedy=f"add the column {PRESSURE}, or leave water.ends.pressure out",
             )
         p = self._between(self.given.pressure_pa, points[:, 2], self._local(points, t))
@@ -147,7 +142,7 @@ def read_kinematics(path: Path) -> Kinematics:
         raise InputError(
             "columns are missing",
             file=path,
-            field=_FIELD,
+            field=FIELD,
             value=", ".join(missing),
             allowed=f"{', '.join(REQUIRED)}, and {PRESSURE} if ends are loaded",
             remedy="name the columns in the first line",
@@ -155,13 +150,20 @@ def read_kinematics(path: Path) -> Kinematics:
     try:
         table = np.array([[float(cell) for cell in row] for row in reader if row])
     except ValueError as error:
-        raise InputError("not a number", file=path, field=_FIELD, value=str(error)) from None
+        raise InputError("not a number", file=path, field=FIELD, value=str(error)) from None
     if table.ndim != 2 or table.shape[1] != len(header):
-        raise InputError("rows differ in length", file=path, field=_FIELD, value=len(header))
-    return _gridded(path, {name: table[:, k] for k, name in enumerate(header)})
+        raise InputError(
+            "no rows, or rows of other lengths",
+            file=path,
+            field=FIELD,
+            value=len(table),
+            allowed=f"{len(header)} numbers a row",
+        )
+    with located(file=path):
+        return _gridded({name: table[:, k] for k, name in enumerate(header)})
 
 
-def _gridded(path: Path, column: dict[str, FloatArray]) -> Kinematics:
+def _gridded(column: dict[str, FloatArray]) -> Kinematics:
     """Return the kinematics of columns whose rows are a grid in any order."""
     order = np.lexsort((column["z_m"], column["time_s"]))
     times, heights = np.unique(column["time_s"]), np.unique(column["z_m"])
@@ -171,16 +173,13 @@ def _gridded(path: Path, column: dict[str, FloatArray]) -> Kinematics:
     if not whole or np.any(grid["z_m"].reshape(shape) != heights):
         raise InputError(
             "rows are no grid of times and heights",
-            file=path,
-            field=_FIELD,
+            field=FIELD,
             value=f"{order.size} rows, {times.size} times, {heights.size} heights",
             allowed="the same two or more heights at every time",
         )
     eta = grid["elevation_m"].reshape(shape)
     if np.ptp(eta, axis=1).max() > 1e-6:
-        raise InputError(
-            "the elevation depends on the height", file=path, field=_FIELD, value=float(np.ptp(eta))
-        )
+        raise InputError("the elevation depends on the height", field=FIELD, value=float(np.ptp(eta)))
     velocity, acceleration = (
         np.stack([grid[name].reshape(shape) for name in pair], axis=-1)
         for pair in (REQUIRED[3:5], REQUIRED[5:7])

@@ -8,12 +8,18 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, located
 from jackettwin.files.yaml import read_text
 from jackettwin.loads.waves import AirySea
 
 _LONGEST = 2_000_000
 """Rows that a file of elevations may have."""
+FIELD = "file"
+"""Of ``waves`` in a scenario."""
+_STEP_S = 1.0
+"""Longest step between rows: the shortest wave that is kept lasts 1.7 s."""
+_HIGHEST_M = 100.0
+_COLUMNS = "give two columns, time [s] and elevation [m]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,17 +30,24 @@ class Elevation:
     eta_m: FloatArray
 
     def __post_init__(self) -> None:
-        if self.time_s.size < 8 or np.any(np.diff(self.time_s) <= 0.0):
+        steps = np.diff(self.time_s)
+        if steps.size < 7 or not (steps > 0.0).all():
             raise InputError(
-                "times must grow", field="waves.file", value=int(self.time_s.size), allowed="8 rows or more"
+                "too few rows, or times do not grow",
+                field=FIELD,
+                value=int(self.time_s.size),
+                allowed="8 rows or more",
+                remedy="sort the rows by their time in seconds",
             )
-        if not np.isfinite(self.eta_m).all() or np.abs(self.eta_m).max() > 100.0:
+        if steps.max() > _STEP_S + 1e-6:
             raise InputError(
-                "no elevation",
-                field="waves.file",
-                value=float(np.nanmax(np.abs(self.eta_m))),
-                allowed="metres",
+                f"a gap after {self.time_s[np.argmax(steps)]:g} s",
+                field=FIELD,
+                value=float(steps.max()),
+                allowed=f"steps up to {_STEP_S:g} s",
+                remedy="fill the gap, or give times in seconds",
             )
+        require_physical("elevation", self.eta_m, _HIGHEST_M, "m")
 
     @property
     def significant_height_m(self) -> float:
@@ -50,6 +63,25 @@ class Elevation:
         smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
         f = np.fft.rfftfreq(t.size, t[1] - t[0])
         return float(1.0 / f[1:][np.argmax(smooth[1:])])
+
+
+def require_physical(what: str, values: FloatArray, highest: float, unit: str) -> None:
+    """Refuse values that are no numbers, or that no water has.
+
+    Raises
+    ------
+    InputError
+        Names the first of them.
+    """
+    wrong = ~(np.abs(values) <= highest)
+    if wrong.any():
+        raise InputError(
+            f"no {what} of water",
+            field=FIELD,
+            value=float(values[wrong][0]),
+            allowed=f"numbers up to {highest:g} {unit}",
+            remedy="check the unit, and give a number in every row",
+        )
 
 
 def read_elevation(path: Path) -> Elevation:
@@ -68,12 +100,12 @@ def read_elevation(path: Path) -> Elevation:
         except (ValueError, IndexError):
             if rows and words:
                 raise InputError(
-                    "not two numbers", file=path, field="waves.file", value=line.strip()
+                    "not two numbers", file=path, field=FIELD, value=line.strip(), remedy=_COLUMNS
                 ) from None
     if not rows:
-        raise InputError("no rows of time and elevation", file=path, field="waves.file")
-    t, eta = np.array(rows).T
-    return Elevation(t, eta)
+        raise InputError("no rows of time and elevation", file=path, field=FIELD, remedy=_COLUMNS)
+    with located(file=path):
+        return Elevation(*np.array(rows).T)
 
 
 def require_cover(elevation: Elevation, duration: float) -> None:

@@ -76,6 +76,15 @@ class Sea:
     celerity_m_s: float | None = None
     """At which given kinematics travel; None is that of their peak period."""
 
+    @property
+    def crest_m(self) -> float:
+        """Height over still water that no crest passes [m]: members below it are loaded."""
+        if self.waves is None:
+            return 0.0
+        given = 0.0 if self.elevation is None else float(self.elevation.eta_m.max())
+        # a lone crest may tower over the significant height of a long record
+        return 1.2 * max(self.height_m, given)
+
 
 GRID_M = 19.1
 """Between the nodes of the wind field that the OpenFAST records were made in [m]."""

@@ -129,10 +129,9 @@ def water_points(assembly: Assembly, sea: Sea, *, spacing: float | None = None) 
     """Return the points of the members that waves can reach, pieces no longer than ``spacing`` [m]."""
     if spacing is None:
         spacing = REGULAR_SPACING_M if is_regular(sea) else SPACING_M
-    crest = 0.0 if sea.waves is None else 1.2 * sea.height_m
     return morison_points(
         assembly,
-        highest_z=crest,
+        highest_z=sea.crest_m,
         lowest_z=-sea.depth_m,
         coefficients=sea.coefficients,
         spacing=spacing,
@@ -143,8 +142,7 @@ def water_ends(assembly: Assembly, sea: Sea) -> Ends | None:
     """Return the loaded ends of members; None if they have no coefficients."""
     if not sea.ends.any:
         return None
-    crest = 0.0 if sea.waves is None else 1.2 * sea.height_m
-    return member_ends(assembly, sea.ends, sea.coefficients, highest_z=crest, lowest_z=-sea.depth_m)
+    return member_ends(assembly, sea.ends, sea.coefficients, highest_z=sea.crest_m, lowest_z=-sea.depth_m)
 
 
 def water_loads(
