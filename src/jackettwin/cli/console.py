@@ -124,10 +124,10 @@ class FiniteFloat(click.FloatRange):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Return the number; refuse what is not finite."""
-        value = float(super().convert(value, param, ctx))
-        if not isfinite(value):
-            self.fail(f"{value} is not a finite number.", param, ctx)
-        return value
+        found = float(super().convert(value, param, ctx))
+        if not isfinite(found):
+            self.fail(f"{found} is not a finite number.", param, ctx)
+        return found
 
 
 class _Messages(logging.Handler):
