@@ -9,20 +9,32 @@ from pathlib import Path
 
 import pytest
 
+from jackettwin.doors import _homes
+
 SOURCE = Path(__file__).parents[1] / "src"
+
+
+def homes(root: Path) -> dict[str, str]:
+    """Return which module each public name of a package lives in: {package.name: module}."""
+    return {
+        ".".join((*path.relative_to(root).parent.parts, name)): home
+        for path in root.rglob("__init__.py")
+        for name, (home, _) in _homes(ast.parse(path.read_text())).items()
+    }
 
 
 def imported(root: Path) -> dict[str, set[str]]:
     """Return which modules each module under a folder names in an import, wherever it stands."""
     names = {".".join(path.relative_to(root).with_suffix("").parts): path for path in root.rglob("*.py")}
-    graph = {}
+    graph, offered = {}, homes(root)
     for name, path in names.items():
         if path.stem == "__init__":
             continue  # a door names its rooms for type checkers; it loads them on first use
         wanted: set[str] = set()
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                wanted |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+                full = {f"{node.module}.{alias.name}" for alias in node.names}
+                wanted |= {offered.get(name, name) for name in full} | {node.module}
             elif isinstance(node, ast.Import):
                 wanted |= {alias.name for alias in node.names}
         graph[name] = wanted & set(names)
@@ -50,3 +62,19 @@ def test_no_public_class_name_stands_for_two_things() -> None:
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     )
     assert [name for name, times in names.items() if times > 1] == []
+
+
+def test_what_a_package_offers_comes_through_its_door() -> None:
+    offered = [(*name.rpartition("."), home) for name, home in homes(SOURCE).items()]
+    rooms = {(home, name) for package, _, name, home in offered if home.startswith(f"{package}.")}
+    past = [
+        f"{path.relative_to(SOURCE)}:{node.lineno} {alias.name}"
+        for path in SOURCE.rglob("*.py")
+        if path.stem != "__init__"
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.count(".") > 1
+        if node.module.split(".")[1] != path.relative_to(SOURCE).parts[1]
+        for alias in node.names
+        if (node.module, alias.name) in rooms
+    ]
+    assert len(rooms) > 100 and past == []

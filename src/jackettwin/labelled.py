@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from jackettwin.records import Record
     from jackettwin.twin import Observation, TwinResult, TwinState
-    from jackettwin.updating.posterior import Posterior
+    from jackettwin.updating import Posterior
 
 
 def to_arviz(posterior: Posterior) -> Any:
@@ -41,7 +41,7 @@ def to_dataframe(result: TwinResult | Posterior | Observation | TwinState) -> pd
         If pandas is not installed.
     """
     from jackettwin.twin import Observation, TwinResult
-    from jackettwin.updating.posterior import Posterior
+    from jackettwin.updating import Posterior
 
     frame: Any = _library("pandas").DataFrame
     if isinstance(result, Posterior):

@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 
 from jackettwin.answers.result import FitAnswer, ModeAnswer
 from jackettwin.twin.result import MeasuredMode
-from jackettwin.updating import Residuals, Update
+from jackettwin.updating import Residuals, Target, Update
 from jackettwin.updating.misfit import misfit
-from jackettwin.updating.targets import Target
 
 _LARGEST = 1.0
 """Relative error up to which one that covers the misfit is sought: beyond it the model says nothing."""

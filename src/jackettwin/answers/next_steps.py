@@ -16,11 +16,10 @@ from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
 from jackettwin.twin.result import MeasuredMode
-from jackettwin.updating import Problem, Update
+from jackettwin.updating import Problem, Residuals, Target, Update
 from jackettwin.updating.identifiability import USABLE, information
 from jackettwin.updating.nuisance_parameters import DASHPOTS
 from jackettwin.updating.problem import State
-from jackettwin.updating.targets import Residuals, Target
 
 _POINTS = 6
 """Draws of the posterior at which the information is computed: their mean is of interest, not their tails."""

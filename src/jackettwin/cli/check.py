@@ -12,12 +12,12 @@ from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.errors import InputError
+from jackettwin.loads import morison_points
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.morison import morison_points
 from jackettwin.loads.water import Water, outside_pressure
 from jackettwin.loads.water import still_water as still_water_loads
+from jackettwin.response import build_system
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
-from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses, water_notes
 from jackettwin.structure import Assembly, assemble, read_structure

@@ -12,11 +12,10 @@ from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report.follow_page import build_follow_page
-from jackettwin.twin import read_twin
+from jackettwin.twin import read_twin, twin_model
 from jackettwin.twin.follow import Each, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
 from jackettwin.twin.followed import Followed
-from jackettwin.twin.model import twin_model
 from jackettwin.twin.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
 
 

@@ -22,13 +22,12 @@ from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
 from jackettwin.report.identification_page import build_identification_page
 from jackettwin.report.many_page import build_many_page
-from jackettwin.twin import examine_file, observation_document
+from jackettwin.twin import TwinModel, examine_file, observation_document
 from jackettwin.twin.export import WRITERS, export_modes, group_name
 from jackettwin.twin.kept import KeptInFolder
 from jackettwin.twin.long_records import LONG, PIECE_S, without_long
 from jackettwin.twin.many import observe_many
 from jackettwin.twin.many_document import many_document
-from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observe_files import record_files
 from jackettwin.twin.together import fuse_batch
 

@@ -13,11 +13,10 @@ from rich.table import Table
 
 from jackettwin.cli.console import fixed, numbers_of, output, print_json
 from jackettwin.errors import located
+from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.own_damping import own_damping
-from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check, read_structure

@@ -13,6 +13,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError
+from jackettwin.response import build_system
 from jackettwin.response.extptfm_layouts import DEFAULT, LAYOUTS, Layout
 from jackettwin.response.superelement import (
     INTERFACE,
@@ -36,7 +37,6 @@ from jackettwin.response.superelement_files import (
     require_format,
     write_superelement,
 )
-from jackettwin.response.system import build_system
 from jackettwin.structure import Assembly, Structure, assemble, read_structure
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector

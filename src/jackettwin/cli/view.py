@@ -24,13 +24,11 @@ from jackettwin.report.view_motions import (
     undamped_motion,
     wave_motion,
 )
+from jackettwin.response import Sensor, System, UndampedModes, build_system, damped_modes, undamped_modes
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import UndampedModes, damped_modes, undamped_modes
 from jackettwin.response.passage import wave_passage
 from jackettwin.response.playback import playback, record_sensors
-from jackettwin.response.sensors import Sensor
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
-from jackettwin.response.system import System, build_system
 from jackettwin.structure import Assembly, assemble, check, read_structure
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.member_check import member_uses

@@ -7,7 +7,8 @@ from math import ceil, floor, log, log10
 
 from markupsafe import Markup
 
-from jackettwin.answers.result import Answers, GroundAnswer, ModeAnswer, Span
+from jackettwin.answers import Answers, Span
+from jackettwin.answers.result import GroundAnswer, ModeAnswer
 from jackettwin.report import style
 from jackettwin.report.numbers import digits_of, quantity, words
 from jackettwin.report.sentences import MARGIN, verdict_words

@@ -12,7 +12,8 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report import style
 from jackettwin.report.numbers import fixed, words
 from jackettwin.report.svg import Canvas
-from jackettwin.response.sensors import Sensor, observation_matrix, sensor_positions
+from jackettwin.response import Sensor, observation_matrix
+from jackettwin.response.sensors import sensor_positions
 from jackettwin.structure import Assembly
 from jackettwin.twin import TwinResult
 from jackettwin.twin.result import MeasuredMode

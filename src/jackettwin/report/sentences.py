@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import expm1, log
 
-from jackettwin.answers.result import Answers, Clearance, GroundAnswer, ModeAnswer, NextStep, Span
+from jackettwin.answers import Answers, Span
+from jackettwin.answers.result import Clearance, GroundAnswer, ModeAnswer, NextStep
 from jackettwin.report.numbers import (
     UNKNOWN,
     between,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from jackettwin.answers.result import Answers, FitAnswer, Span
+from jackettwin.answers import Answers, Span
+from jackettwin.answers.result import FitAnswer
 from jackettwin.report.numbers import count, digits_of, listed, quantity, words
 from jackettwin.soil.families import parameter_words
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from jackettwin.answers.result import Answers, Span
+from jackettwin.answers import Answers, Span
 from jackettwin.report.numbers import UNKNOWN, between, factor, fixed, words
 from jackettwin.report.page import PageTable
 from jackettwin.report.sentences import span_words, step_words, verdict_words

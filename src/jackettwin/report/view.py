@@ -22,7 +22,8 @@ from jackettwin.files.json import null_for_nan
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.report.view_dimensions import dimensions
 from jackettwin.report.view_motions import DrawnMotion
-from jackettwin.response.sensors import Sensor, sensor_positions
+from jackettwin.response import Sensor
+from jackettwin.response.sensors import sensor_positions
 from jackettwin.structure import Assembly
 
 _LINES = ("cable", "spring", "beam")

@@ -23,7 +23,7 @@ from jackettwin.response.refined import kernels, refined
 from jackettwin.response.state import state_matrix
 from jackettwin.soil.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C
 from jackettwin.soil.viscoelastic import Prony, Springpot, one_branch, prony_fit
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Rayleigh
 
 _INNER = 0.9
 """The disc ends between this share of the band and the band's end, where there is most room."""

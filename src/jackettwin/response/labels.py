@@ -11,7 +11,7 @@ import numpy.typing as npt
 from jackettwin.arrays import FloatArray
 from jackettwin.response.mode_tracking import NEAR_DEGENERATE
 from jackettwin.response.multiple import axis_levels, seen_from
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly
 
 KINDS = ("fore_aft", "side_side", "heave", "torsion")
 LOCAL = "local"

@@ -14,7 +14,7 @@ import numpy.typing as npt
 import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly
 
 INSEPARABLE = 1e-5
 """Frequencies nearer than this (relative) are one: deviations of coordinates written to the millimetre, and

@@ -26,7 +26,7 @@ from jackettwin.response.families import Start, families_of
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.refined import kernels
 from jackettwin.soil.coefficients import static_rows
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Rayleigh
 
 _BYSTANDERS = 2
 """Modes beyond the last one wanted that may claim a shape, too."""

@@ -11,7 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import Record
 from jackettwin.response.modal import UndampedModes
 from jackettwin.response.sensors import Sensor, observation_matrix
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly
 
 _TAPER = 0.3
 """Share of a band edge's frequency over which the filter rises."""

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.identification.mac import mac
+from jackettwin.identification import mac
 from jackettwin.response.certified import REAL
 from jackettwin.response.condensed import Condensed
 from jackettwin.response.numbered import Points

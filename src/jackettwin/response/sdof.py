@@ -8,7 +8,7 @@ from jackettwin.arrays import ComplexArray
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, Pencil
 from jackettwin.soil.viscoelastic import Law
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Rayleigh
 
 
 def sdof(mass_kg: float, law: Law) -> Pencil:

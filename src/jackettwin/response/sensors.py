@@ -11,8 +11,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, require_between
-from jackettwin.structure import beam
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly, beam
 from jackettwin.structure.forces import tube_radius
 
 Seen = Literal["motion", "inclination", "strain"]

@@ -12,7 +12,7 @@ from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly
 from jackettwin.structure.check import rigid_body_motion
 
 

@@ -33,10 +33,10 @@ from jackettwin.response.state import Branch, factorised, maxwell_branches
 from jackettwin.response.static import self_weight
 from jackettwin.response.system import Pencil, System
 from jackettwin.soil.viscoelastic import Law, Prony, Springpot, prony_fit
-from jackettwin.structure.assemble import Assembly
+from jackettwin.structure import Assembly, Structure
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
-from jackettwin.structure.model import Structure, Vector
+from jackettwin.structure.model import Vector
 from jackettwin.structure.subdyn_damping import DeckDamping
 
 INTERFACE = DOFS_PER_NODE

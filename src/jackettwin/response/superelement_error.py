@@ -21,8 +21,7 @@ from jackettwin.response.superelement import (
     poles,
 )
 from jackettwin.response.system import Pencil, System
-from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.structure.eigen import AT_REST, dense, lowest_modes
 
 _OVERDAMPED = 0.3

@@ -18,14 +18,14 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Rayleigh
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jackettwin.soil.support import Spring, Support
+    from jackettwin.soil import Spring, Support
     from jackettwin.soil.viscoelastic import Law
-    from jackettwin.structure.assemble import Assembly
+    from jackettwin.structure import Assembly
 
 Matrix = Any
 """A NumPy array or a SciPy sparse array: the algebra below is the same."""

@@ -18,16 +18,17 @@ from jackettwin.identification.picks import Pick
 from jackettwin.records import Channel
 from jackettwin.store import read_waveform
 from jackettwin.twin import (
+    OBSERVATION,
     TwinConfig,
     TwinModel,
     TwinState,
     advance,
+    empty_state,
     observe,
     read_twin,
     twin_model,
 )
-from jackettwin.twin.observation import OBSERVATION
-from jackettwin.twin.state import ALL, Day, empty_state
+from jackettwin.twin.state import ALL, Day
 from jackettwin.twin.stored import StoredSchema, digest
 from jackettwin.twin.sums import average
 

@@ -13,8 +13,9 @@ from typing import Any
 
 from jackettwin.answers import answer
 from jackettwin.answers.result import ModeAnswer
+from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
-from jackettwin.report.page import PageSection, page_text
+from jackettwin.report.page import page_text
 from jackettwin.service import engine
 from jackettwin.twin import JUDGED, OBSERVATION, Days, finding_of, judge
 from jackettwin.twin.measure import Measured

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from jackettwin.errors import InputError, located
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.system import build_system
+from jackettwin.response import build_system, undamped_modes
 from jackettwin.simulate.scenario import Asset
 from jackettwin.simulate.schema import ScenarioSchema
 from jackettwin.soil import read_support

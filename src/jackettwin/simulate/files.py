@@ -10,14 +10,14 @@ import numpy as np
 
 from jackettwin.errors import InputError, located
 from jackettwin.files import find_file, read_yaml, shipped, validate
+from jackettwin.loads import Wind, read_rotor
 from jackettwin.loads.current import Current
-from jackettwin.loads.files import read_rotor
 from jackettwin.loads.given_kinematics import Kinematics, read_kinematics
 from jackettwin.loads.given_waves import Elevation, read_elevation
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.waves import peak_factor
-from jackettwin.loads.wind import Wind
-from jackettwin.response.sensors import Sensor, observation_matrix, sees
+from jackettwin.response import Sensor, observation_matrix
+from jackettwin.response.sensors import sees
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
 from jackettwin.simulate.scenario import GRID_M, Air, Instrument, Scenario, Sea, SimulationClock, Turbine

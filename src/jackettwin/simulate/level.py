@@ -19,7 +19,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import GRID_M, Instrument, Scenario
 from jackettwin.simulate.sensing import readings

@@ -12,8 +12,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.loads.morison import loads_along
 from jackettwin.loads.water import outside_pressure, still_water
 from jackettwin.loads.waves import wave_number
+from jackettwin.response import build_system
 from jackettwin.response.static import self_weight, static_displacement
-from jackettwin.response.system import build_system
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.scenario import Scenario
 from jackettwin.simulate.water import is_regular, water_loads, water_points

@@ -8,16 +8,17 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.loads import linearise, morison_points
 from jackettwin.loads.bem import OperatingPoint, operating_damping, operating_point
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.rotor import Linearised, in_global_axes, linearise, rotation
+from jackettwin.loads.rotor import Linearised, in_global_axes, rotation
 from jackettwin.loads.water import water_mass
+from jackettwin.response import build_system
 from jackettwin.response.labels import mode_kinds, mode_labels
 from jackettwin.response.multiple import aligned
 from jackettwin.response.own_damping import own_damping
 from jackettwin.response.reduced import Reduced, reduced
 from jackettwin.response.state import state_matrix
-from jackettwin.response.system import Group, build_system
+from jackettwin.response.system import Group
 from jackettwin.simulate.scenario import Air, Asset, Scenario, Sea, Turbine
 from jackettwin.simulate.tuning import tuned_damping
 from jackettwin.soil.viscoelastic import Prony

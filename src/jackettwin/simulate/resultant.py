@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
-from jackettwin.loads.morison import morison_points
+from jackettwin.loads import morison_points
 from jackettwin.loads.water import Water, water_weights
 from jackettwin.loads.wave_series import resultant_columns
 from jackettwin.simulate.model import aerodynamics

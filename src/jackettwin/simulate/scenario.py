@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.loads import Wind
 from jackettwin.loads.bem import Control
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.current import Current
@@ -19,10 +20,10 @@ from jackettwin.loads.rotor import Rotor
 from jackettwin.loads.rotor_wind import PIECE_M
 from jackettwin.loads.turbulence import Coherent
 from jackettwin.loads.water import Water
-from jackettwin.loads.wind import TOWER_DRAG, Wind
-from jackettwin.response.sensors import Sensor
+from jackettwin.loads.wind import TOWER_DRAG
+from jackettwin.response import Sensor
+from jackettwin.soil import Support
 from jackettwin.soil.foundation import Foundation
-from jackettwin.soil.support import Support
 from jackettwin.structure import Rayleigh, Structure
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.sensors import observation_matrix
+from jackettwin.response import observation_matrix
 from jackettwin.response.time import StateSpace, first_order_hold
 from jackettwin.simulate.motion import Motion
 from jackettwin.simulate.scenario import Instrument, Scenario

@@ -9,14 +9,15 @@ from scipy.interpolate import CubicSpline
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.loads import airy_wave, morison_points
 from jackettwin.loads.ends import Ends, member_ends
 from jackettwin.loads.given_kinematics import Kinematics, TravellingKinematics
 from jackettwin.loads.given_waves import given_sea, require_cover
-from jackettwin.loads.morison import MorisonPoints, drag_damping, morison_points
+from jackettwin.loads.morison import MorisonPoints, drag_damping
 from jackettwin.loads.regular_waves import regular_wave
 from jackettwin.loads.sea_series import surface_series
 from jackettwin.loads.wave_series import WaveSeries, wave_series
-from jackettwin.loads.waves import AirySea, Waves, airy_wave, irregular_sea, wave_number
+from jackettwin.loads.waves import AirySea, Waves, irregular_sea, wave_number
 from jackettwin.simulate.scenario import Sea
 from jackettwin.structure import Assembly
 

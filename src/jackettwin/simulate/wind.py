@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.loads import morison_points
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.morison import MorisonPoints, morison_points
+from jackettwin.loads.morison import MorisonPoints
 from jackettwin.loads.rotor import AIR_KG_M3, CompiledRotor, compiled_rotor, rotation
 from jackettwin.loads.rotor_wind import RotorWind, rotor_wind
 from jackettwin.loads.wind import tower_drag, tower_drag_damping

@@ -16,7 +16,7 @@ from jackettwin.soil.foundation import build_foundation, read_foundation, shippe
 from jackettwin.soil.law_files import ElasticLaw, LawSchema
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
 from jackettwin.soil.viscoelastic import Law, Prony, require_positive
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure
 
 
 class SpringSchema(Schema):

@@ -24,7 +24,7 @@ from jackettwin.soil.radiation import Radiation
 from jackettwin.soil.scour import Scour
 from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.soil.viscoelastic import Law
-from jackettwin.structure.model import Material, Section, Structure
+from jackettwin.structure import Material, Section, Structure
 
 SLENDER = 10.0
 """Diameters of length below which a pile is not slender: on monopiles, of 2 to 6, shear at the base and along

@@ -13,8 +13,7 @@ from jackettwin.errors import InputError
 from jackettwin.soil.piles import Pile, PileSprings, pile_beams
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.soil.viscoelastic import Law, Prony
-from jackettwin.structure.assemble import assemble
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure, assemble
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.soil.viscoelastic import Law, Prony, kelvin_voigt
-from jackettwin.structure.model import STEEL, Material, Member, Reaction, Section, Structure, Vector
+from jackettwin.structure import Material, Section, Structure
+from jackettwin.structure.model import STEEL, Member, Reaction, Vector
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.viscoelastic import Law, Prony
-from jackettwin.structure.model import Reaction, Structure
+from jackettwin.structure import Structure
+from jackettwin.structure.model import Reaction
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)

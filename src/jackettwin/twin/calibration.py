@@ -10,7 +10,7 @@ import numpy as np
 
 from jackettwin.findings import Finding
 from jackettwin.records import Record
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 
 
 @dataclass(frozen=True)

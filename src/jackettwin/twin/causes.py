@@ -19,12 +19,11 @@ from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.water import Water, mass_per_level
+from jackettwin.response import UndampedModes, build_system, undamped_modes
 from jackettwin.response.labels import LOCAL, mode_kinds, mode_labels
-from jackettwin.response.modal import UndampedModes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
-from jackettwin.response.system import build_system
 from jackettwin.response.tide import tide_slopes
-from jackettwin.soil.support import Spring, Support
+from jackettwin.soil import Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin.changed_structures import Happening, Standing, happenings
 from jackettwin.twin.pair_angles import principal_direction

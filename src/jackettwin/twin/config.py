@@ -15,7 +15,7 @@ from jackettwin.files import Schema
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.operation import OperationRule

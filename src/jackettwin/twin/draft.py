@@ -12,7 +12,7 @@ from jackettwin.records import Channel, Record
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.readers.channel_names import read_name
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response import Sensor, observation_matrix
 from jackettwin.structure import Assembly, Structure
 from jackettwin.twin.examine import moving_channels
 from jackettwin.updating import numbered_modes

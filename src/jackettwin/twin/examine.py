@@ -21,14 +21,14 @@ from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.selection.candidates import beside_orders
 from jackettwin.quantities import known_units
-from jackettwin.records import Record, assess, detrend, read_record, repair
+from jackettwin.records import Record, assess, detrend, read_record, repair, to_rotor_axes
 from jackettwin.records.conditions import with_conditions
 from jackettwin.records.quality import Quality
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.repair import common_time
 from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, stated_orders, without_orders
-from jackettwin.records.yaw import is_horizontal, knows_yaw, to_rotor_axes, yaw_of
-from jackettwin.response.sensors import Sensor
+from jackettwin.records.yaw import is_horizontal, knows_yaw, yaw_of
+from jackettwin.response import Sensor
 from jackettwin.twin.doubts import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
 from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
 

@@ -14,7 +14,7 @@ from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
-from jackettwin.loads.conditions import SeaState
+from jackettwin.loads import SeaState
 from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.labels import mode_kinds, mode_labels

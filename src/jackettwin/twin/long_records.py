@@ -7,7 +7,8 @@ from itertools import chain, islice
 from pathlib import Path
 
 from jackettwin.errors import InputError
-from jackettwin.records.readers import read_record_pieces, write_record
+from jackettwin.records import write_record
+from jackettwin.records.readers import read_record_pieces
 from jackettwin.records.readers.channels import Unsaid
 
 PIECE_S = 600.0

@@ -9,7 +9,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records import read_record
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.twin.advance import advance_all
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.examine import Examination

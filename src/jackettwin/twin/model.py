@@ -11,9 +11,9 @@ from jackettwin.errors import located
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record
+from jackettwin.response import Sensor, UndampedModes, observation_matrix
 from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import UndampedModes
-from jackettwin.response.sensors import Sensor, observation_matrix, sees
+from jackettwin.response.sensors import sees
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembled import assembled
 from jackettwin.twin.calibration import Calibrations, sensors_at

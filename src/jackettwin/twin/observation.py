@@ -9,7 +9,7 @@ from typing import Any
 
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.twin.stored import StoredSchema
 from jackettwin.updating.pairing import Held
 

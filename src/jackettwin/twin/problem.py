@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.errors import InputError, located
-from jackettwin.soil.files import read_support
-from jackettwin.soil.support import Support
+from jackettwin.soil import Support, read_support
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.relaxations import placed, relaxation_targets
@@ -17,13 +16,11 @@ from jackettwin.twin.result import MeasuredRelaxation
 from jackettwin.twin.rotor import RotorDamping, States
 from jackettwin.twin.state import ALL, TwinState
 from jackettwin.twin.water import in_the_records_sea, water_effects
-from jackettwin.updating import Problem, family, joint, support_model
+from jackettwin.updating import Problem, Residuals, SupportModel, family, joint, support_model
 from jackettwin.updating.joint import Growth
-from jackettwin.updating.model import SupportModel
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.relaxations import RelaxationTarget
 from jackettwin.updating.shapes import ShapeTarget
-from jackettwin.updating.targets import Residuals
 
 
 @dataclass(frozen=True)

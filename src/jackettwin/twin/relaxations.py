@@ -9,9 +9,9 @@ from math import hypot
 import numpy as np
 
 from jackettwin.errors import InputError, located
-from jackettwin.identification.mac import mac
+from jackettwin.identification import mac
 from jackettwin.identification.subspace.real_poles import JOINED
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.twin.config import GivenRelaxation, TwinConfig
 from jackettwin.twin.result import MeasuredRelaxation
 from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums, TwinState

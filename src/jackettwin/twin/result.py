@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from jackettwin.arrays import ComplexArray
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.records import Record
-from jackettwin.response.modal import UndampedModes
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.observation import Observation

@@ -9,9 +9,9 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
-from jackettwin.loads import read_rotor
-from jackettwin.loads.rotor import Rotor, linearise
-from jackettwin.response.modal import UndampedModes
+from jackettwin.loads import linearise, read_rotor
+from jackettwin.loads.rotor import Rotor
+from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.measure import mean_target

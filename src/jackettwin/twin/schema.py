@@ -15,7 +15,8 @@ from jackettwin.files import Schema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
-from jackettwin.response.sensors import Seen, Sensor
+from jackettwin.response import Sensor
+from jackettwin.response.sensors import Seen
 from jackettwin.simulate.schema import RayleighSchema, StructureChoice
 from jackettwin.simulate.water_files import WaterSchema
 from jackettwin.structure import Structure, read_structure

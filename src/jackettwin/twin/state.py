@@ -15,7 +15,7 @@ from operator import add, neg
 from typing import Any, NamedTuple, TypeVar
 
 from jackettwin.arrays import ComplexArray
-from jackettwin.response.sensors import Sensor
+from jackettwin.response import Sensor
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.stored import StoredSchema, digest
 from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day, whole

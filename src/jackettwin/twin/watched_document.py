@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.twin.watched import Alarm, Watched
-from jackettwin.watching import Watch
-from jackettwin.watching.diagnosis import CauseVerdict
+from jackettwin.watching import CauseVerdict, Watch
 
 _Z90 = 1.645
 _NAMED, _LIKELY = 3, 0.001

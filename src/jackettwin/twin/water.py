@@ -11,10 +11,10 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.loads import SeaState, morison_points
 from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.conditions import SeaState
 from jackettwin.loads.drag_damping import sea_drag_damping
-from jackettwin.loads.morison import MorisonPoints, morison_points
+from jackettwin.loads.morison import MorisonPoints
 from jackettwin.loads.water import Water, mass_per_level, water_mass
 from jackettwin.response.tide import TideSlopes, tide_slopes
 from jackettwin.structure import Assembly

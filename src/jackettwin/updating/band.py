@@ -8,13 +8,11 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.response import UndampedModes, build_system, undamped_modes
 from jackettwin.response.condensed import Condensed, condense, widest_band_hz
-from jackettwin.response.modal import UndampedModes, undamped_modes
-from jackettwin.response.system import build_system
 from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Law, Prony
-from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups
 

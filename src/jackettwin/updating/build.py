@@ -8,11 +8,10 @@ from math import pi, sqrt
 
 from jackettwin.errors import InputError
 from jackettwin.response.condensed import strongest_beta
+from jackettwin.soil import Support
 from jackettwin.soil.families import Family
 from jackettwin.soil.parameter import Parameter
-from jackettwin.soil.support import Support
-from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters

@@ -11,16 +11,14 @@ import numpy.typing as npt
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
+from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
 from jackettwin.response.condensed import Condensed
-from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
 from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
-from jackettwin.response.system import System, build_system
 from jackettwin.soil.families import Family
 from jackettwin.soil.parameter import Parameter
 from jackettwin.soil.viscoelastic import Law, Prony
-from jackettwin.structure.assemble import Assembly
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups

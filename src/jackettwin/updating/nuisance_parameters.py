@@ -11,11 +11,11 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix
+from jackettwin.soil import Spring
 from jackettwin.soil.coefficients import MASS, OMEGA0, C
 from jackettwin.soil.parameter import Parameter
-from jackettwin.soil.support import Spring
 from jackettwin.soil.viscoelastic import Prony
-from jackettwin.structure.damping import Rayleigh
+from jackettwin.structure import Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}
 """Dashpots on the top node and the direction each acts in: x, y, the nacelle at zero yaw."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from jackettwin.errors import located
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure
 from jackettwin.updating.steel import Factor, SteelFit, fit_steel, only_parts
 
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
+from jackettwin.response import Sensor, observation_matrix
 from jackettwin.response.relaxation import Relaxation, nearest_relaxation
-from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.updating.model import SupportModel
 
 

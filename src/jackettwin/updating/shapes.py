@@ -14,7 +14,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response import Sensor, observation_matrix
 from jackettwin.updating.model import SupportModel
 
 

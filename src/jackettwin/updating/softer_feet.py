@@ -15,10 +15,10 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.response import UndampedModes, build_system, undamped_modes
 from jackettwin.response.mode_tracking import track_modes
-from jackettwin.response.system import build_system
-from jackettwin.soil.support import on_translations, standing
+from jackettwin.soil import on_translations
+from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly
 

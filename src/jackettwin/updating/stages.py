@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from jackettwin.arrays import FloatArray
-from jackettwin.structure.assemble import assemble
-from jackettwin.structure.check import check
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure, assemble, check
 from jackettwin.updating.band import numbered_modes
 from jackettwin.updating.steel import only_parts
 

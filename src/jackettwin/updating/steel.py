@@ -11,10 +11,9 @@ from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response.modal import UndampedModes
+from jackettwin.response import UndampedModes
 from jackettwin.response.mode_tracking import track_modes
-from jackettwin.structure.assemble import assemble
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure, assemble
 from jackettwin.updating.band import numbered_modes
 
 

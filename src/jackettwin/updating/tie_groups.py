@@ -9,9 +9,10 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
-from jackettwin.soil.support import Spring, Support, pinned, standing
+from jackettwin.soil import Spring, Support, pinned
+from jackettwin.soil.support import standing
 from jackettwin.soil.viscoelastic import Law
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure
 
 Group = tuple[tuple[int, ...], tuple[str, ...]]
 """The DOFs and the feet that share parameters."""

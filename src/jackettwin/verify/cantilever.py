@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.system import build_system
+from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import clamped
 from jackettwin.structure import Material, Section, Structure, assemble
 from jackettwin.structure.model import Member, Reaction

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.system import build_system
+from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.structure import Assembly, Structure, assemble, read_structure
 from jackettwin.structure.masses import rigid_body_mass

@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.system import build_system
+from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil import on_translations
 from jackettwin.soil.viscoelastic import Prony, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
