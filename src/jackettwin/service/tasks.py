@@ -107,7 +107,8 @@ def read_file(file: File) -> tuple[Parsed, ...]:
 
     A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it.
     """
-    from jackettwin.records.readers import read_record, read_record_pieces
+    from jackettwin.records import read_record
+    from jackettwin.records.readers import read_record_pieces
     from jackettwin.service.room import at_most
     from jackettwin.twin.long_records import LONG, PIECE_S
 
