@@ -281,6 +281,7 @@ CATALOGUE: dict[str, Kind] = {
     "rotor_order_weak": Kind(
         "info", "{low_hz:.3g} to {high_hz:.3g} Hz by the measured rotor speed: taken out"
     ),
+    "rotor_order_seen": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz: seen along the measured rotor speed"),
     "rotor_order_stated": Kind("info", "{low_hz:.3g} to {high_hz:.3g} Hz by the stated rotor speed"),
     "places_unknown": Kind(
         "info",

@@ -78,3 +78,17 @@ def test_a_parked_rotor_has_no_orders() -> None:
     assert rotor_speed(record.select(record.channel_names[:3])) is None
     missing = replace(record, data=np.vstack([record.data[:3], np.full(6000, np.nan)]))
     assert rotor_speed(missing) is None
+
+
+def test_a_ninth_order_of_a_measured_speed_is_no_mode_that_is_ok() -> None:
+    record, _ = operating(0.0)
+    t = np.arange(record.data.shape[1]) / record.sample_rate_hz
+    ninth = 0.3 * record.data[:3].std(axis=1, keepdims=True) * np.cos(2 * np.pi * 9 * 0.15 * t)
+    swell = 1.0 + 0.5 * np.sin(2 * np.pi * t / 45.0)
+    turned = replace(record, data=record.data + np.vstack([ninth * swell, np.zeros_like(t)]))
+    for measured, seen in ((record, []), (turned, [9])):
+        examined = examine(measured, IdentificationSettings(refine=False))
+        told = [f.params["order"] for f in examined.findings if f.code == "rotor_order_seen"]
+        assert told == seen
+    passed = [m for m in examined.identification.modes if abs(m.frequency_hz - 1.35) < 0.02]
+    assert all("rotor_order_passes" in [f.code for f in m.reasons] for m in passed)

@@ -20,6 +20,7 @@ from jackettwin.identification.comparison import Comparison, compare_methods
 from jackettwin.identification.many_records.pairs import along_axes
 from jackettwin.identification.picks import Pick
 from jackettwin.identification.selection.candidates import beside_orders
+from jackettwin.identification.tones.rotor_speed import higher_orders
 from jackettwin.quantities import known_units
 from jackettwin.records import Record, assess, detrend, read_record, repair, to_rotor_axes
 from jackettwin.records.conditions import with_conditions
@@ -34,7 +35,7 @@ from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identif
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""
-ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_stated")
+ORDERS_FOUND = ("rotor_order_removed", "rotor_order_weak", "rotor_order_seen", "rotor_order_stated")
 """Findings that say where a multiple of the rotor's speed was."""
 FEWEST_TO_COMPARE = 3
 """Sensors without a place of which it is said that they cannot be compared."""
@@ -202,14 +203,16 @@ def in_rotor_axes(record: Record, *, source: Record) -> tuple[Record, Findings]:
 
 
 def without_rotor_orders(record: Record, *, source: Record) -> tuple[Record, Findings]:
-    """Take out the tones of a rotor whose speed is measured; say where those of a stated speed are."""
+    """Take out the lowest tones of a rotor of measured speed; say where others, or of a stated one, are."""
     speed = rotor_speed(source)
     if speed is None:
         stated = stated_orders(source.conditions, source.duration_s)
         return record, tuple(_order("rotor_order_stated", order) for order in stated)
     left, orders = without_orders(record, speed)
-    return left, tuple(
-        _order("rotor_order_removed" if o.share > WORTH_SAYING else "rotor_order_weak", o) for o in orders
+    higher = higher_orders(detrend(left).data, left.sample_rate_hz, speed / (2.0 * np.pi))
+    return left, (
+        *(_order("rotor_order_removed" if o.share > WORTH_SAYING else "rotor_order_weak", o) for o in orders),
+        *(_order("rotor_order_seen", RotorOrder(*seen, share=0.0)) for seen in higher),
     )
 
 

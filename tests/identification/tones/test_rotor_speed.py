@@ -39,14 +39,24 @@ def turning(kind: str, speed_hz: float, drift: float, rng: np.random.Generator) 
     return np.asarray(speed_hz * (1.0 + drift * x))
 
 
+LOWEST = {1: 0.5, 3: 1.0, 6: 0.5}
+"""Orders and their size."""
+
+
 def with_orders(
-    record: Record, speed: npt.NDArray[np.float64], rng: np.random.Generator, *, strength: float, share: float
+    record: Record,
+    speed: npt.NDArray[np.float64],
+    rng: np.random.Generator,
+    *,
+    strength: float,
+    share: float,
+    sizes: dict[int, float] = LOWEST,
 ) -> Record:
     """Add 1P, 3P and 6P: 3P of a strength in rms of each channel, the others half, all swelling at random."""
     angle = 2.0 * np.pi * np.cumsum(speed) / RATE
     rms = record.data.std(axis=1)
     y = record.data.copy()
-    for order, size in ((1, 0.5), (3, 1.0), (6, 0.5)):
+    for order, size in sizes.items():
         pattern = rms * (1.0 + 0.5 * rng.standard_normal(len(y)))
         late = rng.choice([0.0, 0.5 * np.pi, np.pi], len(y)) + rng.uniform(0.0, 6.0)
         tone = np.cos(order * angle + late[:, None]) * swell(rng, share)
@@ -109,3 +119,20 @@ def test_no_order_of_a_hidden_rotor_is_a_mode_that_is_ok(tower: ModalSystem) -> 
             assert np.min(np.abs(np.log(mode.frequency_hz / tower.frequency_hz))) < 0.02
     # what passes no mode leaves it as it is
     assert sum(mode.status == "ok" for mode in found.modes) >= 2
+
+
+def test_higher_orders_are_told_where_they_are_seen_and_are_no_modes(tower: ModalSystem) -> None:
+    """The ninth and the twelfth of 0.2 Hz, a fiftieth of the power of the third; none at 3.0 and 3.6 Hz."""
+    rng = np.random.default_rng(12)
+    wind = simulate(tower, rng, duration_s=600.0, sample_rate_hz=RATE)
+    speed = turning("turbulence", 0.2, 0.01, rng)
+    turned = with_orders(wind, speed, rng, strength=1.0, share=0.3, sizes=LOWEST | {9: 0.15, 12: 0.15})
+    seen = estimated_speed(turned.data, RATE)
+    assert seen is not None
+    assert [order for order, _, _ in seen.higher] == [9, 12]
+    for order, low, high in seen.higher:
+        assert 0.97 < low / (0.2 * order) < 1.0 < high / (0.2 * order) < 1.03
+    found = identify(turned, IdentificationSettings(refine=False, highest_frequency_hz=4.0))
+    at = [m for m in found.modes if np.min(np.abs(m.frequency_hz / np.array([1.8, 2.4]) - 1.0)) < 0.03]
+    assert at
+    assert all("rotor_order_passes" in [reason.code for reason in m.reasons] for m in at)

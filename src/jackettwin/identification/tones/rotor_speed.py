@@ -13,7 +13,7 @@ each as it is and takes from two orders what they have in common.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +21,8 @@ from scipy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.bands import Band, bands_of, overlapping
-from jackettwin.identification.tones.sinusoid import transform
+from jackettwin.identification.tones.phase_track import baseband
+from jackettwin.identification.tones.sinusoid import lines_around, sinusoid, transform
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -30,13 +31,20 @@ if TYPE_CHECKING:
 PAIRS = ((3, 1, 3), (2, 3, 6))
 """Ratio of two orders that are compared, the lower order, and the higher."""
 ORDERS = (1, 3, 6)
-"""Multiples of the speed at which three blades excite a tower."""
+"""Multiples of the speed at which three blades excite a tower …"""
+HIGHER = range(9, 31, 3)
+"""… and where they excite it if a tone is there: higher ones pass most modes, and most are not seen."""
+SEEN = 8.0
+"""D (``sinusoid.py``) along the phase that the speed gives a higher order. Of an offshore turbine at rated
+speed the orders 9 to 24 have 9 to 60, other multiples up to 5; modes where an order would be up to 3."""
 WIDTHS = (0.015, 0.05)
 """Half widths of the bands, as a share of their middle …"""
 FEWEST_LINES = 5.0
 """… and at least so many lines of the record."""
 STEP = 0.5
 """From one band to the next, in half widths."""
+HIGHEST = 0.45
+"""Of the sample rate: the highest band."""
 LEAST_SPEED_HZ, MOST_SPEED_HZ = 0.04, 0.6
 """2.4 to 36 revolutions a minute."""
 SHIFTS = 16
@@ -65,16 +73,19 @@ class EstimatedSpeed:
         C of the two orders.
     seen : (low, high)
         The orders it was seen in.
+    higher : tuple of (order, low, high)
+        Orders above the sixth that are seen, and the range of frequency each passes [Hz].
     """
 
     speed_hz: FloatArray
     coherence: float
     seen: tuple[int, int]
+    higher: tuple[tuple[int, float, float], ...] = ()
 
     @property
     def orders(self) -> tuple[tuple[int, float, float], ...]:
         """Orders with the range of frequency each passes: (order, low, high)."""
-        return tuple((order, *self.swept_hz(order)) for order in ORDERS)
+        return (*((order, *self.swept_hz(order)) for order in ORDERS), *self.higher)
 
     def swept_hz(self, order: int) -> tuple[float, float]:
         """Return the range of frequency an order passes."""
@@ -101,14 +112,48 @@ def estimated_speed(y: FloatArray, sample_rate_hz: float) -> EstimatedSpeed | No
     True
     """
     lines, duration = transform(y), y.shape[1] / sample_rate_hz
-    highest = 0.45 * sample_rate_hz
+    highest = HIGHEST * sample_rate_hz
     best: EstimatedSpeed | None = None
     for pair in PAIRS:
         for width in WIDTHS:
             for found in _together(lines, duration, *_bands(width, pair, duration, highest), pair):
                 if best is None or found.coherence > best.coherence:
                     best = found
-    return best
+    if best is None:
+        return None
+    return replace(best, higher=tuple(higher_orders(y, sample_rate_hz, best.speed_hz)))
+
+
+def higher_orders(
+    y: FloatArray, sample_rate_hz: float, speed_hz: FloatArray
+) -> Iterator[tuple[int, float, float]]:
+    """Yield the orders above the sixth that are seen, with the range of frequency each passes [Hz].
+
+    Turned back by the phase that the speed gives it, an order is one line.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean; NaN marks a missing sample and counts as zero.
+    speed_hz : (n_instants,)
+        Evenly spread over the record.
+    """
+    lines, duration = transform(y), y.shape[1] / sample_rate_hz
+    turns = np.append(0.0, np.cumsum(speed_hz)) * duration / len(speed_hz)
+    slowest, fastest = np.percentile(speed_hz, PASSING)
+    for order in HIGHER:
+        low, high = order * float(slowest), order * float(fastest)
+        room = 2.0 * (high - low) + 2.0 * lines_around(len(lines)) / duration
+        if high + room > HIGHEST * sample_rate_hz:
+            return
+        band = baseband(lines, duration, 0.5 * (low + high), room)
+        n = band.signal.shape[1]
+        at = np.arange(n) / n
+        turned = order * np.interp(at, np.linspace(0.0, 1.0, len(turns)), turns)
+        phase = 2.0 * np.pi * (turned - band.middle_hz * duration * at)
+        along = fft.fftshift(fft.fft(band.signal * np.exp(-1j * phase), axis=1), axes=1)
+        if sinusoid(along, n // 2).ratio > SEEN:
+            yield order, low, high
 
 
 def _bands(
