@@ -89,8 +89,18 @@ def test_what_is_not_understood_is_refused(metadata: bytes, message: str, tmp_pa
         read_record(tmp_path / "r.tdms")
 
 
-def test_channels_at_different_rates_are_refused(tmp_path: Path) -> None:
-    metadata = struct.pack("<I", 2) + channel(b"ax", 3) + channel(b"ay", 3, step=0.2)
-    (tmp_path / "r.tdms").write_bytes(segment(14, metadata, np.arange(6.0).tobytes()))
-    with pytest.raises(InputError, match="wf_increment: channels differ in rate"):
+def test_slower_channels_are_left_out_and_named(tmp_path: Path) -> None:
+    metadata = struct.pack("<I", 3) + channel(b"ax", 4) + channel(b"wind", 2, step=0.2) + channel(b"ay", 4)
+    (tmp_path / "r.tdms").write_bytes(segment(14, metadata, np.arange(10.0).tobytes()))
+    record = read_record(tmp_path / "r.tdms")
+    assert record.sample_rate_hz == 10.0
+    assert record.channel_names == ("ax", "ay")
+    np.testing.assert_array_equal(record.data, [[0.0, 1.0, 2.0, 3.0], [6.0, 7.0, 8.0, 9.0]])
+    assert record.metadata["remarks"] == ["channels at lower rates are left out: wind"]
+
+
+def test_channels_of_one_rate_are_equally_long(tmp_path: Path) -> None:
+    metadata = struct.pack("<I", 2) + channel(b"ax", 3) + channel(b"ay", 2)
+    (tmp_path / "r.tdms").write_bytes(segment(14, metadata, np.arange(5.0).tobytes()))
+    with pytest.raises(InputError, match="data: channels differ in length"):
         read_record(tmp_path / "r.tdms")

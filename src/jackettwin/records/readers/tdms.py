@@ -31,6 +31,8 @@ NUMBERS = {
     1: "i1", 2: "i2", 3: "i4", 4: "i8", 5: "u1", 6: "u2", 7: "u4", 8: "u8",
     9: "f4", 10: "f8", 0x19: "f4", 0x1A: "f8", BOOLEAN: "u1",
 }  # fmt: skip
+SAME_RATE = 1e-6
+"""Relative difference of two sampling steps that are one."""
 EPOCH = np.datetime64("1904-01-01T00:00:00", "ns")
 _PART = re.compile(r"/'((?:[^']|'')*)'")
 
@@ -61,13 +63,13 @@ class _Contents:
 
 
 def read(path: Path) -> ReadTable:
-    """Read every numeric channel; names get their group in front only if two groups share them."""
+    """Read the channels of the highest rate; names get their group in front only if two groups share them."""
     contents = _Contents()
     raw = path.read_bytes()
     at = 0
     while at + LEAD_IN_BYTES <= len(raw):
         at = _read_segment(raw, at, contents)
-    paths = [p for p, pieces in contents.pieces.items() if pieces]
+    paths, remarks = _of_highest_rate([p for p, pieces in contents.pieces.items() if pieces], contents)
     short = [_parts(p)[-1] for p in paths]
     names = [s if short.count(s) == 1 else "/".join(_parts(p)) for s, p in zip(short, paths, strict=True)]
     columns = [_scaled(p, np.concatenate(contents.pieces[p]), contents.properties.get(p, {})) for p in paths]
@@ -81,7 +83,18 @@ def read(path: Path) -> ReadTable:
         name: str(k["unit_string"]) for name, k in zip(names, known, strict=True) if k.get("unit_string")
     }
     root = {str(key): value for key, value in contents.properties.get("/", {}).items()}
-    return table_from_columns(names, columns, units, **_waveform(known), metadata=root)
+    return table_from_columns(names, columns, units, **_waveform(known), metadata=root, remarks=remarks)
+
+
+def _of_highest_rate(paths: list[str], contents: _Contents) -> tuple[list[str], tuple[str, ...]]:
+    """Return the channels of the highest rate, and a remark that names the others, as of the weather."""
+    steps = [float(contents.properties.get(p, {}).get("wf_increment") or 0.0) for p in paths]
+    least = min((step for step in steps if step > 0.0), default=0.0)
+    slower = [_parts(p)[-1] for p, step in zip(paths, steps, strict=True) if step > least * (1.0 + SAME_RATE)]
+    if not slower or least == 0.0:
+        return paths, ()
+    kept = [p for p, step in zip(paths, steps, strict=True) if step <= least * (1.0 + SAME_RATE)]
+    return kept, (f"channels at lower rates are left out: {', '.join(slower)}",)
 
 
 def _read_segment(raw: bytes, at: int, contents: _Contents) -> int:
@@ -215,15 +228,11 @@ def _scaled(path: str, values: npt.NDArray[Any], properties: dict[str, Any]) -> 
 
 
 def _waveform(known: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return rate and start from the waveform properties, which must agree between channels."""
-    steps = sorted({float(k["wf_increment"]) for k in known if k.get("wf_increment")})
-    if len(steps) > 1 and steps[-1] / steps[0] - 1.0 > 1e-6:
-        raise InputError(
-            "channels differ in rate", field="wf_increment", value=steps, remedy="store one rate a file"
-        )
+    """Return rate and start from the waveform properties."""
     found: dict[str, Any] = {}
-    if steps and steps[0] > 0.0:
-        found["sample_rate_hz"] = float(f"{1.0 / steps[0]:.9g}")
+    step = next((float(k["wf_increment"]) for k in known if k.get("wf_increment")), 0.0)
+    if step > 0.0:
+        found["sample_rate_hz"] = float(f"{1.0 / step:.9g}")
     start = next((k["wf_start_time"] for k in known if k.get("wf_start_time")), None)
     if start and not start.startswith("1904"):  # the epoch itself stands for "not known"
         found["start_utc"] = datetime.fromisoformat(start[:26]).replace(tzinfo=UTC)
