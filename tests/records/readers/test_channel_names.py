@@ -29,6 +29,11 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         ("az", Z, None, ""),
         ("Beschl_87m_O", X, 87.0, ""),
         ("Turm Süd 21m", (0.0, -1.0, 0.0), 21.0, ""),
+        ("TW_ACC_LAT41_090deg_X", X, 41.0, ""),
+        ("TW_ACC_LAT41_090deg_Y", Y, 41.0, ""),
+        ("TP_ACC_LAT19_315deg_X", (-0.707107, 0.707107, 0.0), 19.0, "transition piece"),
+        ("TP_ACC_LAT19_315deg_Y", (-0.707107, -0.707107, 0.0), 19.0, "transition piece"),
+        ("TP_ACC_LAT19_315deg_Z", Z, 19.0, "transition piece"),
         ("Sensor 3 West", (-1.0, 0.0, 0.0), None, ""),
     ],
 )

@@ -6,6 +6,7 @@ nothing. Whatever is taken from a name is told to the user (``told``), and a des
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -32,6 +33,9 @@ DIRECTIONS: tuple[tuple[str, Vector, str], ...] = (
     (_LETTERS.format("south|s[uü]e?d"), (0.0, -1.0, 0.0), "south"),
 )
 """Pattern, unit vector in global axes (x east where a name speaks of compass points), what it is called."""
+
+HEADING = re.compile(r"(?<![\d.,])(?P<degrees>\d{1,3})\s?(?:deg|°)(?![a-z])")
+"""Compass heading of the x axis in a name of an x or a y, as in ``TW_ACC_LAT41_031deg_X``; z points up."""
 
 LAT = "LAT"
 """Lowest astronomical tide, in names like ``LAT097``: a metre or two below mean sea level."""
@@ -98,6 +102,12 @@ def read_name(name: str) -> Reading:
     lower = name.strip().lower()
     named = [(vector, word) for pattern, vector, word in DIRECTIONS if re.search(pattern, lower)]
     agreed = len({vector for vector, _ in named}) == 1
+    direction, word = (named[0][0], named[-1][1]) if agreed else (None, "")
+    heading = HEADING.search(lower)
+    if direction is not None and heading and word in ("x", "y"):
+        east, north = _compass(float(heading["degrees"]))
+        direction = (east, north, 0.0) if word == "x" else (-north, east, 0.0)
+        word = f"{word} by heading {int(heading['degrees'])}°"
     heights = {
         (float(match["m"].replace(",", ".").replace("p", ".")), datum)
         for pattern, datum in HEIGHTS
@@ -108,8 +118,8 @@ def read_name(name: str) -> Reading:
     height, datum = next(iter(heights), (None, ""))
     levels = [level for pattern, level in LEVELS if re.search(pattern, lower)]
     return Reading(
-        direction=named[0][0] if agreed else None,
-        direction_word=named[-1][1] if agreed else "",
+        direction=direction,
+        direction_word=word,
         height_m=height,
         datum=datum,
         level=levels[0] if len(set(levels)) == 1 else "",
@@ -147,8 +157,16 @@ def told(used: Mapping[str, Reading]) -> tuple[str, ...]:
     return (f"read from the channel names: {'; '.join(parts)}; {overrule}",)
 
 
+def _compass(heading_degrees: float) -> tuple[float, float]:
+    """Return how far east and how far north a heading points."""
+    angle = math.radians(heading_degrees)
+    return round(math.sin(angle), 6), round(math.cos(angle), 6)
+
+
 def _axis(vector: Vector) -> str:
     axis = max(range(3), key=lambda i: abs(vector[i]))
+    if abs(vector[axis]) < 1.0:
+        return f"({', '.join(f'{part:.2g}' for part in vector)})"
     return f"{'-' if vector[axis] < 0 else '+'}{'xyz'[axis]}"
 
 
