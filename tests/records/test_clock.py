@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records.clock import regularise
+from jackettwin.records.clock import between_ticks, regularise
 
 
 def test_perfect_stamps_change_nothing(rng: np.random.Generator) -> None:
@@ -58,6 +58,25 @@ def test_jitter_is_interpolated_away(rng: np.random.Generator) -> None:
 def test_bad_stamps_are_refused(times: list[float], message: str) -> None:
     with pytest.raises(InputError, match=message):
         regularise(np.array(times), np.zeros((1, len(times))))
+
+
+@pytest.mark.parametrize("shared", [20, 2])
+def test_stamps_of_full_seconds_are_spread_over_the_samples_that_share_them(
+    shared: int, rng: np.random.Generator
+) -> None:
+    """A stamp is that of the second in which a sample was stored, now and then a sample late."""
+    late = rng.integers(0, 2, 600 * shared) if shared > 2 else 0
+    stamps = np.floor((np.arange(600 * shared) + 0.7 + 0.9 * late) / shared)
+    spread = between_ticks(np.maximum.accumulate(stamps))
+    assert spread is not None
+    assert np.ptp(spread - np.arange(600 * shared) / shared) < 1e-9
+
+
+def test_stamps_that_stand_still_for_a_while_are_no_ticks() -> None:
+    stamps = np.arange(600.0)
+    stamps[100:140] = 100.0
+    assert between_ticks(stamps) is None
+    assert between_ticks(np.repeat(np.arange(5.0), 20)) is None
 
 
 def test_a_stated_rate_must_agree_with_the_stamps() -> None:

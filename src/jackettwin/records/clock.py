@@ -18,6 +18,8 @@ MOST_GRID_POINTS = 20
 """Grid points allowed per stamp: beyond, the stamps hold a jump, not a gap."""
 MOST_DISORDER = 0.05
 """Share of repeated or backward stamps beyond which the time column is refused."""
+FEWEST_TICKS = 10
+"""Ticks of a coarse clock, at least, that tell how many samples share one."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,32 @@ def regularise(
     return out, Clock(rate, jitter, n_grid - len(np.unique(index)), dropped)
 
 
+def between_ticks(times_s: FloatArray) -> FloatArray | None:
+    """Return the stamps of a clock coarser than the samples, spread evenly; None if they are not its.
+
+    Its ticks are evenly apart, and all but the first and the last stand beside as many samples, give or take
+    one: full seconds beside twenty samples each.
+
+    Examples
+    --------
+    >>> stamps = np.repeat(np.arange(12.0), 4)[1:]
+    >>> between_ticks(stamps)[:5].tolist(), between_ticks(np.arange(12.0))
+    ([0.25, 0.5, 0.75, 1.0, 1.25], None)
+    """
+    if not np.isfinite(times_s).all() or np.any(np.diff(times_s) < 0.0):
+        return None
+    ticks, first, count = np.unique(times_s, return_index=True, return_counts=True)
+    inner = count[1:-1]
+    if len(inner) < FEWEST_TICKS or inner.min() < 2 or np.abs(inner - np.median(inner)).max() > 1:
+        return None
+    steps = np.diff(ticks)
+    if np.ptp(steps) > PLACED_JITTER * steps.mean():
+        return None
+    n = first[-1] - first[1]
+    rate = _short(n / (ticks[-1] - ticks[1]), 1.0 / n)
+    return np.asarray(ticks[1] + (np.arange(len(times_s)) - first[1]) / rate)
+
+
 def _increasing(times_s: FloatArray) -> IntArray:
     """Return the indices of the stamps that are finite and later than all before them."""
     finite = np.where(np.isfinite(times_s), times_s, -np.inf)
@@ -151,9 +179,7 @@ def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: In
     if stated is None:
         # Stamps are rounded: take the shortest decimal within their own uncertainty.
         spread = float(np.std(index)) * np.sqrt(len(index))
-        tolerance = max(4.0 * jitter_s / spread * fitted, 1e-9)
-        short = (float(f"{fitted:.{digits}g}") for digits in range(1, 10))
-        return next((rate for rate in short if abs(rate / fitted - 1.0) <= tolerance), fitted)
+        return _short(fitted, max(4.0 * jitter_s / spread * fitted, 1e-9))
     if abs(fitted / stated - 1.0) > RATE_TOLERANCE:
         raise InputError(
             "stated sample rate contradicts the time stamps",
@@ -163,6 +189,12 @@ def _agreed_rate(fitted: float, stated: float | None, jitter_s: float, index: In
             remedy="correct or remove sample_rate_hz",
         )
     return stated
+
+
+def _short(rate: float, tolerance: float) -> float:
+    """Return the shortest decimal within a relative tolerance of a rate."""
+    short = (float(f"{rate:.{digits}g}") for digits in range(1, 10))
+    return next((r for r in short if abs(r / rate - 1.0) <= tolerance), rate)
 
 
 def _interpolate(grid: FloatArray, t: FloatArray, y: FloatArray, longest: float) -> FloatArray:

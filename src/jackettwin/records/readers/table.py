@@ -14,7 +14,7 @@ import numpy.typing as npt
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import guess_quantity, names_other
-from jackettwin.records.clock import regularise
+from jackettwin.records.clock import between_ticks, regularise
 from jackettwin.records.readers.channel_names import Reading, read_name, told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 
 TIME_NAMES = ("time", "time_s", "t", "timestamp", "time_utc", "datetime", "date_time", "times", "tid", "zeit")
+COARSE = "many samples share a time stamp, alike for all stamps: taken as evenly spread, at"
 _TIME_UNIT = re.compile(r"^(?P<name>.+?)[_ ]*\(?(?P<unit>ms|us|µs|ns|s)\)?$", re.IGNORECASE)
 
 
@@ -229,8 +230,11 @@ def to_record(
             remedy="export the record again",
         )
     if table.times_s is not None:
-        data, clock = regularise(table.times_s, data, sample_rate_hz=stated)
+        spread = between_ticks(table.times_s)
+        data, clock = regularise(table.times_s if spread is None else spread, data, sample_rate_hz=stated)
         stated = clock.sample_rate_hz
+        if spread is not None:
+            metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
         metadata["clock"] = asdict(clock)
     stated = stated or unsaid.sample_rate_hz
     if stated is None:
