@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
-import numpy.typing as npt
 import scipy.sparse as sp
 
-from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.loads import SeaState, morison_points
 from jackettwin.loads.coefficients import Coefficients
 from jackettwin.loads.drag_damping import sea_drag_damping
 from jackettwin.loads.morison import MorisonPoints
-from jackettwin.loads.water import Water, mass_per_level, water_mass
-from jackettwin.response.tide import TideSlopes, tide_slopes
+from jackettwin.loads.water import Water, water_mass
 from jackettwin.structure import Assembly
 
 _SPACING_M = 4.0
@@ -74,17 +70,6 @@ def water_effects(
         elif water.sea is not None:
             effects[name] = sea_drag_damping(_points(water, assembly), water.sea, water.depth_m)
     return effects
-
-
-def tide(
-    water: WaterConfig, assembly: Assembly, frequency_hz: FloatArray, shapes: npt.NDArray[Any]
-) -> TideSlopes:
-    """Return how the sea's level changes the frequencies of modes with shapes (assembly.n_dof, n_modes).
-
-    ``assembly`` holds the water's mass, as that of a twin with ``water`` does.
-    """
-    change = mass_per_level(assembly, water.coefficients, water.carried)
-    return tide_slopes(frequency_hz, shapes, assembly.mass, change)
 
 
 def in_the_records_sea(water: WaterConfig | None, waves: tuple[float, float] | None) -> WaterConfig | None:
