@@ -1,6 +1,7 @@
 """``jackettwin check``: statics and refusals."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -96,3 +97,25 @@ def test_water_is_asked_for_once() -> None:
     assert result.exit_code == 2 and "needs --still-water" in result.stderr.replace("\n", " ")
     result = run("--scenario", "parked", "--still-water")
     assert result.exit_code == 2 and "own water" in result.stderr.replace("\n", " ")
+
+
+def test_decks_without_tubes_are_drawn_but_not_checked(tmp_path: Path) -> None:
+    """A post of arbitrary sections (MType 4): no code checks it, `view` and `stages` take it as it is."""
+    deck = tmp_path / "post.dat"
+    deck.write_text(
+        "1 FEMMod\n2 NDiv\n"
+        "2 NJoints\nJointID JointXss JointYss JointZss JointType\n(-)\n1 0 0 0 1\n2 0 0 30 1\n"
+        "1 NReact\nRJointID RctTDXss RctTDYss RctTDZss RctRDXss RctRDYss RctRDZss\n(-)\n1 1 1 1 1 1 1\n"
+        "1 NInterf\nIJointID ItfTDXss ItfTDYss ItfTDZss ItfRDXss ItfRDYss ItfRDZss\n(-)\n2 1 1 1 1 1 1\n"
+        "1 NMembers\nMemberID MJointID1 MJointID2 MPropSetID1 MPropSetID2 MType\n(-)\n1 1 2 1 1 4\n"
+        "1 NXPropSets\nPropSetID YoungE ShearG MatDens XsecA XsecAsx XsecAsy XsecJxx XsecJyy XsecJ0\n(-)\n"
+        "1 2.1e11 8.1e10 7850 0.3 0.15 0.15 0.14 0.14 0.28\n---- END\n"
+    )
+    result = CliRunner().invoke(main, ["check", str(deck)])
+    assert result.exit_code == 2
+    assert "no member is a tube" in result.stderr
+    page = tmp_path / "page.html"
+    assert CliRunner().invoke(main, ["view", str(deck), "--out", str(page)]).exit_code == 0
+    assert page.exists()
+    result = CliRunner().invoke(main, ["stages", str(deck)])
+    assert result.exit_code == 0 and "whole structure" in result.stdout

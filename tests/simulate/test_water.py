@@ -21,7 +21,8 @@ from jackettwin.simulate.water import (
     water_points,
     wave_field,
 )
-from jackettwin.structure import assemble
+from jackettwin.simulate.water_files import WaterSchema, depth_of
+from jackettwin.structure import assemble, read_structure
 
 FEET = {"support": "pinned", "damping": {"rayleigh": {"ratio": 0.001, "frequency_hz": 0.2}}}
 
@@ -139,6 +140,17 @@ def test_given_kinematics_load_as_the_wave_they_were_taken_from(tmp_path: Path, 
     with pytest.raises(InputError, match="does not cover"):
         long = read_scenario(scenario_file(waves=given, water={}, time={"duration_s": 60.0, "step_s": 0.05}))
         resultants(long)
+
+
+def test_a_depth_under_a_structure_that_stands_dry() -> None:
+    """What is said is that the structure does not reach the water, not that the depth is unknown."""
+    jacket = read_structure("jacket15")
+    lowest = min(z for _, _, z in jacket.nodes.values())
+    dry = replace(jacket, sea_level_z_m=lowest - 7.0)
+    with pytest.raises(InputError, match="does not reach the bed .got 30.*sea_level_z_m"):
+        depth_of(WaterSchema(depth_m=30.0), dry)
+    with pytest.raises(InputError, match="depth is not known.*sea_level_z_m"):
+        depth_of(WaterSchema(), dry)
 
 
 def wave_speed(wave) -> float:

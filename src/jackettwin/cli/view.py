@@ -121,10 +121,10 @@ def view_command(
         motions.append(record_motion(assembly, measured.name, found))
     books = check(assembly)
     loads = dict(nodal_force(f) for f in forces)
-    floats = not (held.springs or held.fixed)
+    unchecked = not (held.springs or held.fixed) or not chosen.members
     view = View(
         assembly,
-        (*thickness_quantities(assembly), *(() if floats else _uses(assembly, system, loads))),
+        (*thickness_quantities(assembly), *(() if unchecked else _uses(assembly, system, loads))),
         tuple(motions),
         sensors,
         coefficients,

@@ -127,6 +127,8 @@ def _of_parts(
             "no member reaches into the water or the heights asked for",
             field="sea_level_z_m",
             value=structure.sea_level_z_m,
+            allowed="a level above the lowest tube",
+            remedy="state sea_level_z_m in the structure's file; beams that are no tubes take no loads",
         )
     return wanted
 

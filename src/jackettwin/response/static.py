@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, did_you_mean
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
 from jackettwin.structure import Assembly
@@ -56,7 +56,13 @@ def nodal_load(assembly: Assembly, forces: Mapping[str, tuple[float, ...]]) -> F
     total = np.zeros(assembly.n_dof)
     for node, components in forces.items():
         if node not in assembly.structure.nodes:
-            raise InputError("no such node", field="force", value=node, remedy="name a node of the structure")
+            raise InputError(
+                "no such node",
+                field="force",
+                value=node,
+                allowed="a node of the structure",
+                remedy=did_you_mean(node, assembly.structure.nodes) or "`view` names them all",
+            )
         if len(components) not in (3, DOFS_PER_NODE):
             raise InputError("give 3 or 6 components", field=f"force.{node}", value=components)
         rows = assembly.expand[assembly.mesh.node_dofs(node)[: len(components)]]

@@ -209,16 +209,18 @@ def depth_of(w: WaterSchema, structure: Structure) -> float:
     reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
     if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
         return w.depth_m
-    if not reach > 0.0:
-        raise InputError(
-            "water depth is not known", field="water.depth_m", value=reach, remedy="state it in metres"
-        )
     if w.depth_m is not None:
         raise InputError(
             "the structure does not reach the bed",
             field="water.depth_m",
             value=w.depth_m,
             allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
-            remedy="state the depth of this structure, or leave it out",
+            remedy="state the depth of this structure or its sea_level_z_m, or leave the depth out",
+        )
+    if not reach > 0.0:
+        raise InputError(
+            "water depth is not known",
+            field="water.depth_m",
+            remedy="state it, or sea_level_z_m in the structure's file",
         )
     return reach

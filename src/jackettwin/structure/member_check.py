@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError
 from jackettwin.structure.assemble import Assembly
 from jackettwin.structure.columns import columns
 from jackettwin.structure.forces import SectionForces, section_forces, von_mises_stress
@@ -144,9 +145,16 @@ def frame_use(
     Raises
     ------
     InputError
-        If the edition is unknown.
+        If the edition is unknown, or nothing is a tube.
     """
     basis = DesignBasis() if basis is None else basis
+    if not assembly.structure.members:
+        raise InputError(
+            "no member is a tube",
+            field="members",
+            allowed="circular tubes (MType 1c)",
+            remedy="check other sections by their own code",
+        )
     held = _Held(assembly, basis, pressure)
     plans = joint_plans(assembly, basis.yield_strength_pa)
     cases = displacement.reshape(-1, assembly.n_dof)

@@ -42,7 +42,8 @@ def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple
     InputError
         If the first part does not stand on its own: parts must be named from the ground upwards.
     """
-    parts = tuple(dict.fromkeys(member.part for member in structure.members))
+    # what stands on beams other than tubes alone has no parts, and is one stage
+    parts = tuple(dict.fromkeys(member.part for member in structure.members)) or ("",)
     found = []
     for k in range(1, len(parts) + 1):
         # the whole keeps what no member holds, rigid links' ends among them
