@@ -36,6 +36,10 @@ def test_files_with_words_above_their_rows(tmp_path: Path) -> None:
     path.write_text("time eta\n1 2\n3 oops\n")
     with pytest.raises(InputError, match="not two numbers"):
         read_elevation(path)
+    for comma in ("0;1,5\n1;0,5\n", "0 1,5\n1 0,5\n"):
+        path.write_text(comma)
+        with pytest.raises(InputError, match="decimal points"):
+            read_elevation(path)
     path.write_text("nothing\n")
     with pytest.raises(InputError, match="no rows"):
         read_elevation(path)

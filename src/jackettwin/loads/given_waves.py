@@ -19,7 +19,7 @@ FIELD = "file"
 _STEP_S = 1.0
 """Longest step between rows: the shortest wave that is kept lasts 1.7 s."""
 _HIGHEST_M = 100.0
-_COLUMNS = "give two columns, time [s] and elevation [m]"
+_COLUMNS = "give two columns, time [s] and elevation [m], with decimal points"
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,11 +94,12 @@ def read_elevation(path: Path) -> Elevation:
     """
     rows = []
     for line in read_text(path, what="file of wave elevations").splitlines()[:_LONGEST]:
-        words = line.replace(",", " ").replace(";", " ").split()
+        # a comma beside another separator is a decimal comma, and no number
+        words = line.split(";" if ";" in line else "," if "," in line else None)
         try:
             rows.append((float(words[0]), float(words[1])))
         except (ValueError, IndexError):
-            if rows and words:
+            if rows and line.strip():
                 raise InputError(
                     "not two numbers", file=path, field=FIELD, value=line.strip(), remedy=_COLUMNS
                 ) from None

@@ -100,7 +100,7 @@ class Deck:
                     "table is missing",
                     file=self.path,
                     field=keywords[0],
-                    remedy="give a complete SubDyn input file",
+                    remedy="give a complete OpenFAST input file",
                 )
             return ()
         count = to_integer(self.lines[number].split()[0], self.path, keywords[0])
