@@ -31,6 +31,13 @@ def test_tables_json_and_page(tmp_path: Path) -> None:
     assert "Capacity" in page.read_text(encoding="utf-8")
 
 
+def test_columns_have_their_units_on_the_terminal(tmp_path: Path) -> None:
+    """What stands in brackets is no markup."""
+    result = run("jacket15", "--steps", "2", "--out", str(tmp_path / "ground.html"))
+    for unit in ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]"):
+        assert unit in result.stdout
+
+
 def test_linear_ground_has_a_head_but_no_capacity(tmp_path: Path) -> None:
     result = run("jacket15_records", "--out", str(tmp_path / "page.html"))
     assert result.exit_code == 0, result.output

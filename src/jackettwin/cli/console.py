@@ -92,7 +92,7 @@ class Commands(click.Group):
             with insisting():
                 return super().invoke(ctx)
         except InputError as error:
-            messages.print(f"[bold red]error:[/] {_plain(str(error))}", soft_wrap=True)
+            messages.print(f"[bold red]error:[/] {plain(str(error))}", soft_wrap=True)
             ctx.exit(BAD_INPUT)
         except KeyboardInterrupt:
             messages.print("interrupted: nothing half-written is left behind")
@@ -100,11 +100,11 @@ class Commands(click.Group):
         except OSError as error:
             what = f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
             messages.print(
-                f"[bold red]error:[/] {_plain(what)}; check the path and its rights", soft_wrap=True
+                f"[bold red]error:[/] {plain(what)}; check the path and its rights", soft_wrap=True
             )
             ctx.exit(BAD_INPUT)
         except JackettwinError as error:
-            messages.print(f"[bold red]failed:[/] {_plain(str(error))}", soft_wrap=True)
+            messages.print(f"[bold red]failed:[/] {plain(str(error))}", soft_wrap=True)
             ctx.exit(OUR_FAULT)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
@@ -112,7 +112,7 @@ class Commands(click.Group):
             if ctx.params.get("traceback"):
                 traceback.print_exc()
             messages.print(
-                f"[bold red]internal error:[/] {_plain(f'{type(error).__name__}: {error}')}; "
+                f"[bold red]internal error:[/] {plain(f'{type(error).__name__}: {error}')}; "
                 "this is a fault of jackettwin: run again with --traceback and report it",
                 soft_wrap=True,
             )
@@ -154,7 +154,7 @@ def _hear() -> None:
         log.setLevel(logging.INFO)
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Return text with rich's markup brackets escaped."""
     return text.replace("[", r"\[")
 

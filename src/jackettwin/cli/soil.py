@@ -10,7 +10,7 @@ import click
 import numpy as np
 from rich.table import Table
 
-from jackettwin.cli.console import FiniteFloat, messages, output, print_json, working
+from jackettwin.cli.console import FiniteFloat, messages, output, plain, print_json, working
 from jackettwin.soil.curves import Curve
 from jackettwin.soil.foundation import Foundation, read_foundation
 from jackettwin.soil.impedance import head_impedance
@@ -21,6 +21,7 @@ _POINTS = 31
 """Of a curve in the tables."""
 _REACH = {"py": 0.1, "tz": 0.02, "qz": 0.1}
 """Largest displacement of a curve in the tables, in pile diameters."""
+_LINEAR = "linear ground has no curves and no capacity: describe it by layers"
 
 
 @click.command("soil")
@@ -65,7 +66,7 @@ def soil_command(
     else:
         _print(document)
     for note in document["warnings"]:
-        messages.print(f"warning: {note}")
+        messages.print(f"warning: {plain(note)}")
 
 
 def _document(
@@ -87,14 +88,8 @@ def _document(
         "curves": None if curves is None else _curves(curves),
         "capacity": None if curves is None or pushed is None else _capacity(curves, pushed),
         "pushover": None if pushed is None else _pushover(pushed, arm_m),
-        "warnings": _warnings(ground),
+        "warnings": [*ground.notes, *([_LINEAR] if curves is None else [])],
     }
-
-
-def _warnings(ground: Foundation) -> list[str]:
-    if ground.curves is None:
-        return [*ground.notes, "linear ground has no curves and no capacity: describe it by layers"]
-    return list(ground.notes)
 
 
 def _curves(curves: PileCurves) -> dict[str, Any]:
@@ -152,9 +147,8 @@ def _print(document: dict[str, Any]) -> None:
         f"{1e3 * pile['thickness_m']:g} mm"
     )
     names = ("x", "y", "z", "rx", "ry", "rz")
-    table = Table(
-        "", *names, title=f"head at {document['frequency_hz']:g} Hz [N/m, N, N·m/rad]", title_justify="left"
-    )
+    title = f"head at {document['frequency_hz']:g} Hz [N/m, N, N·m/rad]"
+    table = Table("", *names, title=title, title_justify="left")
     for part, key in (("K", "head_stiffness"), ("loss", "head_loss")):
         for name, row in zip(names, np.asarray(document[key]), strict=True):
             table.add_row(f"{part} {name}", *(f"{v:.3g}" for v in row))
@@ -167,22 +161,10 @@ def _print(document: dict[str, Any]) -> None:
             f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
             f"{capacity['lateral_displacement_limit_m']:.2f} m"
         )
-        output.print(_pushover_table(pushed))
+        from jackettwin.report.soil_page import PUSHED, pushed_rows
+
+        table = Table(*map(plain, PUSHED), title="pushover", title_justify="left")
+        for row in pushed_rows(pushed):
+            table.add_row(*row)
+        output.print(table)
     output.print(f"wrote {document['page']}")
-
-
-def _pushover_table(pushed: dict[str, Any]) -> Table:
-    table = Table(
-        "load [MN]",
-        "head [mm]",
-        "rotation [mrad]",
-        "largest moment [MN·m]",
-        title="pushover",
-        title_justify="left",
-    )
-    columns = (pushed["load_n"], pushed["head_m"], pushed["rotation_rad"], pushed["largest_moment_nm"])
-    for load, head, rotation, moment in zip(*columns, strict=True):
-        table.add_row(
-            f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * rotation:.2f}", f"{1e-6 * moment:.2f}"
-        )
-    return table

@@ -16,6 +16,8 @@ from jackettwin.version import __version__
 _SHOWN = 6
 """Depths whose curves are drawn."""
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
+PUSHED = ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]")
+"""Columns of the pushover."""
 _ZERO = 1e-9
 """An entry below this share of the root of its diagonal's is rounding."""
 
@@ -75,11 +77,6 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
         ("tension", capacity["axial_tension_n"]),
         (f"lateral, head moved by {capacity['lateral_displacement_limit_m']:.2f} m", capacity["lateral_n"]),
     )
-    columns = (pushed["load_n"], pushed["head_m"], pushed["rotation_rad"], pushed["largest_moment_nm"])
-    table = tuple(
-        (f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * turn:.2f}", f"{1e-6 * moment:.2f}")
-        for load, head, turn, moment in zip(*columns, strict=True)
-    )
     caption = f"How far does the head go? A lateral load {pushed['arm_m']:g} m above it, step by step."
     return (
         PageTable(
@@ -88,13 +85,16 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
             tuple((name, f"{1e-6 * v:.2f}") for name, v in rows),
         ),
         Plot("pushover", caption, _pushover(pushed), fits=True),
-        PageTable(
-            "The same in numbers.",
-            ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]"),
-            table,
-            text_columns=0,
-            folded=True,
-        ),
+        PageTable("The same in numbers.", PUSHED, pushed_rows(pushed), text_columns=0, folded=True),
+    )
+
+
+def pushed_rows(pushed: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
+    """Return the pushover as text, a row a step under ``PUSHED``."""
+    columns = (pushed["load_n"], pushed["head_m"], pushed["rotation_rad"], pushed["largest_moment_nm"])
+    return tuple(
+        (f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * turn:.2f}", f"{1e-6 * moment:.2f}")
+        for load, head, turn, moment in zip(*columns, strict=True)
     )
 
 
