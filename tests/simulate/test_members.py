@@ -1,7 +1,9 @@
 """Members over a scenario: calm is statics, a sea and wind ask for more."""
 
+import numpy as np
 import pytest
 
+from jackettwin.loads.waves import wave_number
 from jackettwin.response.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate import loads_document, read_scenario
@@ -64,3 +66,22 @@ def test_the_foot_of_a_monopile_feels_the_overturning_moment(scenario_file, tmp_
     use = scenario_uses(scenario).members[0].by_check["bending"]
     # static to (f/f1)² = 1e-4; 2 m pieces and a load step of 0.05 s
     assert use / per_moment == pytest.approx(moment, rel=3e-3)
+
+
+def test_a_lone_crest_presses_as_high_as_it_is(scenario_file, tmp_path) -> None:
+    """ISO 19902 (13.2-20): at the bed 20 m under still water, ρg(20 + 4/cosh kd), 4σ being 2.6 m of sea."""
+    file = tmp_path / "monopile.yaml"
+    file.write_text(MONOPILE, encoding="utf-8")
+    t = np.arange(0.0, 121.0, 0.25)
+    eta = 4.0 * np.exp(-(((t - 60.0) / 5.0) ** 2)) * np.cos(2.0 * np.pi * (t - 60.0) / 10.0)
+    np.savetxt(tmp_path / "eta.csv", np.column_stack([t, eta]), delimiter=",")
+    case = {"structure": str(file), "support": "clamped", "water": {"adds_mass": True}}
+    calm = read_scenario(scenario_file(**case))
+    crest = read_scenario(
+        scenario_file(**case, waves={"type": "elevation", "file": str(tmp_path / "eta.csv")})
+    )
+    assert crest.sea is not None
+    k = wave_number(2.0 * np.pi / crest.sea.period_s, 20.0)
+    wanted = (20.0 + 4.0 / np.cosh(20.0 * k)) / 20.0
+    hoop = [scenario_uses(scenario).members[0].by_check["hoop"] for scenario in (crest, calm)]
+    assert hoop[0] / hoop[1] == pytest.approx(float(wanted), rel=1e-6)

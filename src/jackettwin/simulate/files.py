@@ -20,7 +20,16 @@ from jackettwin.response import Sensor, observation_matrix
 from jackettwin.response.sensors import sees
 from jackettwin.simulate.asset import build_asset
 from jackettwin.simulate.rotor_limits import check_clearance
-from jackettwin.simulate.scenario import GRID_M, Air, Instrument, Scenario, Sea, SimulationClock, Turbine
+from jackettwin.simulate.scenario import (
+    GRID_M,
+    REGULAR,
+    Air,
+    Instrument,
+    Scenario,
+    Sea,
+    SimulationClock,
+    Turbine,
+)
 from jackettwin.simulate.schema import (
     InstrumentSchema,
     RotorSchema,
@@ -32,7 +41,6 @@ from jackettwin.simulate.schema import (
 from jackettwin.simulate.water_files import WaterSchema, depth_of, water_members
 from jackettwin.structure import Structure, assemble
 
-REGULAR = ("airy", "stokes5", "stream")
 GIVEN = ("elevation", "kinematics")
 _MOST_SAMPLES = 1e7
 _LONGEST_LOAD_STEP_S = 0.05

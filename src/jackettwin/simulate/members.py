@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import log, pi, sqrt
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -16,15 +16,13 @@ from jackettwin.response import build_system
 from jackettwin.response.static import self_weight, static_displacement
 from jackettwin.simulate.motion import Motion, simulate_motion
 from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import is_regular, water_loads, water_points
+from jackettwin.simulate.water import water_loads, water_points
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.forces import element_weight
 from jackettwin.structure.member_check import DesignBasis, FrameUse, frame_use
 
 _BLOCK = 2000
 """Instants at a time: records are long, and every element has twelve loads."""
-HIGHEST_WAVE = sqrt(0.5 * log(1000.0))
-"""Of a random sea over Hs: the most probable highest of a thousand Rayleigh waves, 1.86."""
 _SPACING_M = 2.0
 """Longest piece of a member: what it carries itself is the matter."""
 
@@ -62,14 +60,13 @@ def _pressure(scenario: Scenario, assembly: Assembly) -> FloatArray | None:
     sea = scenario.sea
     if sea is None or sea.water is None:
         return None
-    highest = 0.0 if sea.waves is None else sea.height_m * (1.0 if is_regular(sea) else HIGHEST_WAVE)
     k = float(wave_number(2.0 * pi / sea.period_s, sea.depth_m)) if sea.period_s > 0.0 else 0.0
     return outside_pressure(
         assembly,
         sea.water,
         density_kg_m3=sea.coefficients.density_kg_m3,
         depth_m=sea.depth_m,
-        wave_height_m=highest,
+        wave_height_m=sea.highest_wave_m,
         wavenumber=k,
     )
 

@@ -17,7 +17,7 @@ from jackettwin.simulate.naming import in_words_of
 from jackettwin.simulate.rotor_limits import rotor_notes
 from jackettwin.simulate.scenario import Air, Scenario
 from jackettwin.simulate.sea_limits import sea_warnings
-from jackettwin.simulate.water import is_regular, water_ends, water_loads, water_points, wave_field
+from jackettwin.simulate.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
 from jackettwin.structure import Assembly, assemble
 
@@ -156,7 +156,7 @@ def about_mudline(loads: FloatArray, depth_m: float) -> FloatArray:
 def _phases(scenario: Scenario, parts: dict[str, FloatArray]) -> list[dict[str, Any]] | None:
     """Return a regular wave's loads over one period; None without one."""
     sea = scenario.sea
-    if sea is None or not is_regular(sea):
+    if sea is None or not sea.regular:
         return None
     water = parts["water"]
     steps = np.arange(0, water.shape[0], water.shape[0] // PHASES)
@@ -181,7 +181,7 @@ def _together(scenario: Scenario, parts: dict[str, FloatArray]) -> FloatArray:
     wind, water = parts["wind"], parts["water"]
     clock, sea = scenario.clock, scenario.sea
     assert sea is not None
-    period = sea.period_s if is_regular(sea) else clock.total_s
+    period = sea.period_s if sea.regular else clock.total_s
     t = np.arange(wind.shape[0]) * clock.load_step_s
     at = np.arange(water.shape[0]) * (period / water.shape[0])
     carried = np.stack([np.interp(t, at, column, period=period) for column in water.T], axis=1)

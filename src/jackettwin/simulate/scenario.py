@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import log, pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +46,12 @@ class Asset:
     """Piles whose ground unloads and reloads in time; None if it is the support's linear law."""
 
 
+REGULAR = ("airy", "stokes5", "stream")
+"""Types of waves that are one wave."""
+_HIGHEST_WAVE = sqrt(0.5 * log(1000.0))
+"""Of a random sea over Hs: the most probable highest of a thousand Rayleigh waves, 1.86."""
+
+
 @dataclass(frozen=True)
 class Sea:
     """Still water about the asset, its waves and current.
@@ -78,13 +84,21 @@ class Sea:
     """At which given kinematics travel; None is that of their peak period."""
 
     @property
+    def regular(self) -> bool:
+        """Whether the waves repeat after their own period."""
+        return self.waves in REGULAR
+
+    @property
+    def highest_wave_m(self) -> float:
+        """H of a regular wave, 1.86 Hs of a random sea, twice the highest crest of a given one [m]."""
+        if self.elevation is not None:
+            return 2.0 * float(self.elevation.eta_m.max())
+        return self.height_m if self.regular else _HIGHEST_WAVE * self.height_m
+
+    @property
     def crest_m(self) -> float:
         """Height over still water that no crest passes [m]: members below it are loaded."""
-        if self.waves is None:
-            return 0.0
-        given = 0.0 if self.elevation is None else float(self.elevation.eta_m.max())
-        # a lone crest may tower over the significant height of a long record
-        return 1.2 * max(self.height_m, given)
+        return 1.2 * max(self.height_m, 0.5 * self.highest_wave_m)
 
 
 GRID_M = 19.1

@@ -58,11 +58,6 @@ class WaterLoads:
         return np.asarray(spline(np.mod(t, self.series.period_s)))
 
 
-def is_regular(sea: Sea) -> bool:
-    """Whether the waves repeat after their own period."""
-    return sea.waves in ("airy", *THEORIES)
-
-
 def wave_field(sea: Sea, *, duration: float) -> Waves | None:
     """Return the waves of a sea; a random one repeats after ``duration`` [s].
 
@@ -129,7 +124,7 @@ def _travelling(sea: Sea, given: Kinematics, duration: float) -> TravellingKinem
 def water_points(assembly: Assembly, sea: Sea, *, spacing: float | None = None) -> MorisonPoints:
     """Return the points of the members that waves can reach, pieces no longer than ``spacing`` [m]."""
     if spacing is None:
-        spacing = REGULAR_SPACING_M if is_regular(sea) else SPACING_M
+        spacing = REGULAR_SPACING_M if sea.regular else SPACING_M
     return morison_points(
         assembly,
         highest_z=sea.crest_m,
@@ -163,7 +158,7 @@ def water_loads(
     waves = wave_field(sea, duration=duration)
     if waves is None and sea.current is None:
         return None
-    regular = is_regular(sea)
+    regular = sea.regular
     calm = airy_wave(height=0.0, period=10.0, depth=sea.depth_m)
     series = wave_series(
         grid,
