@@ -3,15 +3,20 @@
 Whatever order they come in, nothing twice, gaps stay gaps, one clock for all channels.
 """
 
+import json
 import random
 from datetime import UTC, datetime, timedelta
 
+import cbor2
 import numpy as np
 import pytest
+from paho.mqtt.client import MQTTMessage
 
 from jackettwin.errors import InputError
-from jackettwin.service.intake.mqtt import read_packets
+from jackettwin.service.context import Service
+from jackettwin.service.intake.mqtt import MqttIntake, read_packets
 from jackettwin.service.intake.packets import assembled, on_grid
+from jackettwin.store import reading, streams
 from jackettwin.store.streams import WINDOW, Packet, window_start
 
 START = datetime(2025, 3, 1, 12, 10, tzinfo=UTC)
@@ -111,11 +116,29 @@ def test_what_is_no_packet_is_refused_by_field(topic: str, payload: bytes, field
     assert caught.value.field == field
 
 
+def test_packets_that_are_not_kept_are_counted_and_said_once(service: Service, caplog) -> None:
+    """Of a turbine that is misspelt, of a clock that jumped, and rubbish; an operator can alarm on them."""
+    intake = MqttIntake(service, "mqtt://127.0.0.1")
+    good, jumped = (
+        json.dumps({"t0_utc": t0, "rate_hz": 20.0, "channels": {"a": [1.0]}}).encode()
+        for t0 in ("2025-03-01T12:00:00Z", "2095-03-01T12:00:00Z")
+    )
+    for topic, payload in [("wtg", good), ("wtg", jumped), ("wgt", good), ("wgt", good), ("wtg", b"x")]:
+        message = MQTTMessage(topic=f"jackettwin/{topic}".encode())
+        message.payload = payload
+        intake._inbox.put(message)
+    intake.turn()
+    assert intake.refused == 4
+    assert [record.message[:14] for record in caplog.records] == [
+        "payload: not a",
+        "packets of wtg",
+        "packets of wgt",
+    ]
+    with reading(service.database) as connection:
+        assert streams.newest_packet(connection, "wtg") == datetime(2025, 3, 1, 12, tzinfo=UTC)
+
+
 def test_json_and_cbor_say_the_same() -> None:
-    import json
-
-    import cbor2
-
     body = {"t0_utc": "2025-03-01T12:00:00Z", "rate_hz": 20.0, "channels": {"a": [1.0, 2.0], "b": [3.0]}}
     one = read_packets("jackettwin/wtg", json.dumps(body).encode())
     two = read_packets("jackettwin/wtg", cbor2.dumps(body))

@@ -52,6 +52,7 @@ class Service:
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
     broker_connected: Callable[[], bool | None] = lambda: None
+    packets_refused: Callable[[], int] = lambda: 0
 
     @cached_property
     def feed(self) -> Feed:

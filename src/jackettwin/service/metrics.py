@@ -64,4 +64,5 @@ def exposition(service: Service) -> bytes:
     broker = service.broker_connected()
     if broker is not None:
         gauge("broker_connected", "Whether the MQTT broker answers", float(broker))
+        gauge("packets_refused_total", "Packets that could not be kept", service.packets_refused())
     return generate_latest(registry)

@@ -62,6 +62,7 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
             mqtt = MqttIntake(service, settings.mqtt)
             service.chores.append(mqtt.turn)
             service.broker_connected = lambda: mqtt.connected
+            service.packets_refused = lambda: mqtt.refused
             mqtt.start()
             in_the_end.callback(mqtt.stop)
         dispatcher.start()

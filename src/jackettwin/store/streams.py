@@ -41,22 +41,21 @@ class Packet:
         return self.t0_utc + timedelta(seconds=self.samples.size / self.rate_hz)
 
 
-def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) -> int:
-    """Keep packets that are not known yet, by asset, channel and start; return how many were new.
+def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) -> list[Packet]:
+    """Keep packets that are not known yet, by asset, channel and start; return those that are left out.
 
     One that begins :data:`KEPT` before the newest of its asset is left out: its window's other packets are
     gone. So is one that is as far ahead of its asset's stream and of our clock: a logger's clock that jumped
     into the future must not make everything after it come too late.
     """
-    added = 0
+    left_out = []
     newest: dict[str, datetime | None] = {}
     for packet in new:
         if packet.asset not in newest:
             newest[packet.asset] = newest_packet(connection, packet.asset)
         clock = newest[packet.asset]
-        if clock is not None and packet.t0_utc < clock - KEPT:
-            continue
-        if packet.t0_utc > max(now, clock or now) + KEPT:
+        if not (clock or packet.t0_utc) - KEPT <= packet.t0_utc <= max(now, clock or now) + KEPT:
+            left_out.append(packet)
             continue
         row = {
             "asset": packet.asset,
@@ -66,12 +65,10 @@ def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) ->
             "rate_hz": packet.rate_hz,
             "samples": np.asarray(packet.samples, dtype="<f8").tobytes(),
         }
-        if not insert_new(connection, packets, row):
-            continue
-        for window_utc in _reached(packet):
-            _count(connection, packet.asset, window_utc)
-        added += 1
-    return added
+        if insert_new(connection, packets, row):
+            for window_utc in _reached(packet):
+                _count(connection, packet.asset, window_utc)
+    return left_out
 
 
 @dataclass(frozen=True)

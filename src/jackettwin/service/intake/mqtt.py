@@ -36,6 +36,7 @@ SILENT_S = 120.0
 """... or when nothing came for so long, by our stopwatch."""
 _BATCH = 500
 _CHORE_S = 2.0
+_REMEMBERED = 1000
 
 
 def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
@@ -106,6 +107,7 @@ class MqttIntake:
         self._held: list[mqtt.MQTTMessage] = []
         self._heard: dict[str, float] = {}
         self._last_chore = 0.0
+        self._said: set[tuple[str, str]] = set()
         self.refused = 0
         place = urlsplit(url if "//" in url else f"mqtt://{url}")
         if place.scheme not in ("mqtt", "mqtts"):
@@ -167,7 +169,9 @@ class MqttIntake:
             with writing(self.service.database) as connection:
                 known = set(assets.asset_names(connection, archived=False))
                 ours = [p for p in packets if p.asset in known]
-                streams.add_packets(connection, ours, self.service.now())
+                misdated = streams.add_packets(connection, ours, self.service.now())
+            self._leave_out(misdated, "their clock is days behind their stream, or ahead of it and of ours")
+            self._leave_out([p for p in packets if p.asset not in known], "there is no such living asset")
             for packet in packets:
                 self._heard[packet.asset] = time.monotonic()
             for message in self._held:
@@ -182,6 +186,14 @@ class MqttIntake:
             self.refused += 1
             log.warning("%s", error)
             return []
+
+    def _leave_out(self, packets: list[Packet], why: str) -> None:
+        """Count packets that are not kept; why is said once of each asset."""
+        self.refused += len(packets)
+        for said in {(packet.asset, why) for packet in packets} - self._said:
+            log.warning("packets of %s are left out: %s", *said)
+            if len(self._said) < _REMEMBERED:  # names are strangers' to choose
+                self._said.add(said)
 
     def _silent(self, asset: str) -> bool:
         return time.monotonic() - self._heard.setdefault(asset, time.monotonic()) > SILENT_S
