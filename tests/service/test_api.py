@@ -75,6 +75,20 @@ def test_a_record_without_a_start_is_refused(client: TestClient) -> None:
     assert sent.json()["field"] == "start_utc"
 
 
+def test_a_record_whose_work_is_cancelled_waits_for_a_person(client: TestClient, service: Service) -> None:
+    sent = upload(client, 1).json()
+    job, record = f"/api/v1/jobs/{sent['job_id']}", f"/api/v1/records/{sent['record_id']}"
+    assert client.post(f"{job}/cancel").json()["state"] == "cancelled"
+    turn(service)
+    found = client.get(record).json()
+    assert (found["status"], found["problem"]["detail"]) == ("set_aside", "cancelled by local")
+    assert client.post(f"{job}/cancel").status_code == 409
+    client.post(f"{job}/retry")
+    turn(service)
+    found = client.get(record).json()
+    assert (found["status"], found["problem"]) == ("observed", None)
+
+
 @pytest.mark.parametrize("start", [datetime(1970, 1, 1, tzinfo=UTC), datetime.now(UTC) + timedelta(days=30)])
 def test_a_record_of_a_clock_that_was_wrong_is_refused(client: TestClient, start: datetime) -> None:
     """It would stand at the beginning of what is normal, or make a turbine seem to send for years."""

@@ -17,7 +17,7 @@ from jackettwin.service import engine
 from jackettwin.service.bundles import twin_folder
 from jackettwin.service.intake.files import living, queue
 from jackettwin.service.tasks import Outcome, Question, Task
-from jackettwin.store import assets, journal, records, results, streams, tables, work
+from jackettwin.store import assets, journal, people, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
     adopted = assets.found_version(connection, job.asset)
     if outcome.document is None:
         if work.finish(connection, job, me, "failed", now, outcome.problem):
-            _refuse(connection, job, outcome.problem or {}, now)
+            _end_open(connection, job, "refused", outcome.problem or {}, now)
         return
     lock(connection, job.asset)
     if not work.finish(connection, job, me, "done", now):
@@ -171,12 +171,25 @@ def keep(connection: Connection, service: Service, job: work.Job, outcome: Outco
 
 def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
     """Put work back that its worker did not survive, or set its record aside after the last try."""
-    problem = {"detail": reason, "field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
+    problem = {"detail": reason, **_TRY_AGAIN}
     state = work.put_back(connection, job, service.server_id, problem)
     if state == "set_aside" and job.kind != work.KNOW:
-        records.set_status(connection, job.asset, job.record_id, "set_aside", problem)
-        payload = {"record_id": job.record_id, "status": "set_aside", "detail": reason}
-        journal.tell(connection, "record", job.asset, payload, service.now())
+        _end(connection, job.asset, job.record_id, state, problem, service.now())
+
+
+_TRY_AGAIN = {"field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
+
+
+def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bool:
+    """Cancel work that is not done, and set its record aside if the adopted version has not observed it."""
+    if not work.cancel(connection, job.id, service.now()):
+        return False
+    people.note_down(connection, by, "cancel", str(job.id), "ok", service.now())
+    journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "cancelled"}, service.now())
+    if job.version == assets.found_version(connection, job.asset).version:
+        problem = {"detail": f"cancelled by {by}", **_TRY_AGAIN}
+        _end_open(connection, job, "set_aside", problem, service.now())
+    return True
 
 
 def supersede(connection: Connection, service: Place, asset: str, old: str, new: str) -> None:
@@ -187,14 +200,13 @@ def supersede(connection: Connection, service: Place, asset: str, old: str, new:
     lock(connection, asset)
     for job in work.jobs_of(connection, asset, old):
         work.cancel(connection, job.id, service.now())
-    problem = {"detail": f"superseded by {new}, which has packets that came late", "field": "record"}
-    records.set_status(connection, asset, old, "set_aside", problem)
     for version in assets.all_versions(connection, asset):
         gone = results.find_observation(connection, asset, old, version.model_hash)
         if gone is not None:
             results.drop_observation(connection, asset, version.model_hash, old)
             fold(connection, service, asset, version.version, gone, anew=True)
-    journal.tell(connection, "record", asset, {"record_id": old, "status": "set_aside"}, service.now())
+    problem = {"detail": f"superseded by {new}, which has packets that came late", "field": "record"}
+    _end(connection, asset, old, "set_aside", problem, service.now())
 
 
 def fold(
@@ -242,12 +254,21 @@ def lock(connection: Connection, asset: str) -> None:
     connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
 
 
-def _refuse(connection: Connection, job: work.Job, problem: Mapping[str, Any], now: datetime) -> None:
+def _end_open(
+    connection: Connection, job: work.Job, status: str, problem: Mapping[str, Any], now: datetime
+) -> None:
+    """Say why a record that is not observed yet will not be."""
     record = records.find_record(connection, job.asset, job.record_id)
     if record is not None and record.status in ("received", "observing"):
-        records.set_status(connection, job.asset, job.record_id, "refused", problem)
-        payload = {"record_id": job.record_id, "status": "refused", "detail": problem.get("detail", "")}
-        journal.tell(connection, "record", job.asset, payload, now)
+        _end(connection, job.asset, job.record_id, status, problem, now)
+
+
+def _end(
+    connection: Connection, asset: str, record_id: str, status: str, problem: Mapping[str, Any], now: datetime
+) -> None:
+    records.set_status(connection, asset, record_id, status, problem)
+    told = {"record_id": record_id, "status": status, "detail": problem.get("detail", "")}
+    journal.tell(connection, "record", asset, told, now)
 
 
 def _finding_row(

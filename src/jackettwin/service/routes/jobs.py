@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path, Query
 
-from jackettwin.service import auth
+from jackettwin.service import auth, consequences
 from jackettwin.service.problems import ApiError, answers
 from jackettwin.service.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.schemas import JobOut, Page
@@ -41,12 +41,10 @@ def get_job(job_id: JobId, connection: Reads) -> JobOut:
     "/jobs/{job_id}/cancel", dependencies=[auth.ENGINEER], responses=answers(401, 403, 404, 409, 422)
 )
 def cancel(job_id: JobId, who: Asker, parts: Parts, connection: Writes) -> JobOut:
-    """Cancel work that is not done; its record waits to be tried again."""
+    """Cancel work that is not done; its record is set aside until it is tried again."""
     job = _found(work.find_job(connection, job_id), job_id)
-    if not work.cancel(connection, job_id, parts.now()):
+    if not consequences.cancel(connection, parts, job, who.name):
         raise ApiError(409, f"this work is {job.state} already")
-    people.note_down(connection, who.name, "cancel", str(job_id), "ok", parts.now())
-    journal.tell(connection, "job", job.asset, {"job_id": job_id, "state": "cancelled"}, parts.now())
     return _out(_found(work.find_job(connection, job_id), job_id))
 
 
