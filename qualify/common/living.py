@@ -19,9 +19,9 @@ from tests.support.observations import estimate, observation
 from jackettwin.service import ServiceSettings, add_twin, engine
 from jackettwin.service.context import Service
 from jackettwin.service.dispatch import Dispatcher
-from jackettwin.service.intake.files import queue, take_file
+from jackettwin.service.intake.files import take_file
 from jackettwin.service.tasks import read_file
-from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables, writing
+from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables, work, writing
 from jackettwin.twin import OBSERVATION
 
 TWIN = "structure: jacket15\n"
@@ -150,7 +150,7 @@ def queue_many(made: Engine, version: assets.Version, n: int) -> float:
     for i in range(0, n, 1000):
         with writing(made) as connection:
             for k in range(i, i + 1000):
-                queue(connection, version, f"{k:024x}", DAY, priority=10 * (k % 3 == 0))
+                work.enqueue(connection, version, f"{k:024x}", DAY, priority=10 * (k % 3 == 0))
     return (time.process_time() - before) / n * 1e3
 
 

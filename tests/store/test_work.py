@@ -2,6 +2,7 @@
 
 import time
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import Connection, Engine
 
@@ -10,18 +11,9 @@ from jackettwin.store import assets, work, writing
 NOW = datetime(2025, 3, 1, 12, tzinfo=UTC)
 
 
-def asked(connection: Connection, record: str, **changes: object) -> int:
-    key = {
-        "kind": "observe",
-        "asset": "wtg",
-        "record_id": record,
-        "version": 1,
-        "model_hash": "m",
-        "settings_hash": "s",
-        "code_version": "1",
-        "now": NOW,
-    }
-    return work.enqueue(connection, **{**key, **changes})  # type: ignore[arg-type]
+def asked(connection: Connection, record: str, model_hash: str = "m", **how: Any) -> int:
+    version = assets.Version("wtg", 1, model_hash, "s", NOW, "me", "", "")
+    return work.enqueue(connection, version, record, NOW, **how)
 
 
 def with_asset(database: Engine) -> None:

@@ -152,18 +152,14 @@ def who_asks(request: Request, database: Engine, settings: ServiceSettings, now:
     with reading(database) as connection:
         if not people.any_user(connection):
             return Who("local", "admin", "open") if settings.loopback and _from_here(request) else None
-        scheme, _, secret = request.headers.get("authorization", "").partition(" ")
-        if scheme.lower() == "bearer":
-            found = people.find_grant(connection, secret.strip(), now)
-            return Who(found.user, found.role, "token") if found and found.kind == "token" else None
-        cookie = request.cookies.get(COOKIE)
-        if cookie:
-            found = people.find_grant(connection, cookie, now)
-            return (
-                Who(found.user, found.role, "session", found.csrf)
-                if found and found.kind == "session"
-                else None
-            )
+        scheme, _, token = request.headers.get("authorization", "").partition(" ")
+        kind = "token" if scheme.lower() == "bearer" else "session"
+        secret = token.strip() if kind == "token" else request.cookies.get(COOKIE)
+        if secret or kind == "token":
+            found = people.find_grant(connection, secret or "", now)
+            if found is None or found.kind != kind:
+                return None
+            return Who(found.user, found.role, kind, found.csrf if kind == "session" else "")
         if settings.trusted_header and settings.behind_proxy:
             user = people.find_user(connection, request.headers.get(settings.trusted_header, ""))
             return Who(user.name, user.role, "proxy") if user and not user.disabled else None

@@ -14,7 +14,6 @@ from jackettwin.errors import InputError
 from jackettwin.service import engine
 from jackettwin.service.confined import only_files_in
 from jackettwin.service.consequences import ask_known
-from jackettwin.service.intake.files import queue
 from jackettwin.service.schemas import AssetOut, VersionOut
 from jackettwin.store import assets, journal, people, records, results, work
 
@@ -75,7 +74,7 @@ def add_version(
         comment=comment,
     )
     for record in records.all_with_samples(connection, name):
-        queue(connection, version, record.record_id, service.now())
+        work.enqueue(connection, version, record.record_id, service.now())
     if results.state_hashes(connection, name, model_hash):
         ask_known(connection, service, version)  # the same model, asked under another law
     people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())

@@ -15,7 +15,7 @@ from sqlalchemy import Connection, select
 
 from jackettwin.service import engine
 from jackettwin.service.bundles import twin_folder
-from jackettwin.service.intake.files import living, queue
+from jackettwin.service.intake.files import living
 from jackettwin.service.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, people, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
@@ -85,7 +85,7 @@ def keep_known(connection: Connection, service: Service, job: work.Job, outcome:
     document = json.loads(outcome.document or "{}")
     results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
     journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
-    if outcome.of != results.state_identity(connection, job.asset, job.model_hash):
+    if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
         ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
     adopted = assets.found_version(connection, job.asset)
     if job.version != adopted.version and job.model_hash == adopted.model_hash:
@@ -107,7 +107,7 @@ def ask_known(connection: Connection, service: Place, version: assets.Version) -
     It is asked again after an answer that is on its way, if that one knows less.
     """
     named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
-    number = queue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
+    number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
     work.try_again(connection, number, service.now())
 
 

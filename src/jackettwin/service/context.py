@@ -9,7 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from typing import Any
 
 from sqlalchemy import Engine
 
@@ -20,7 +19,6 @@ from jackettwin.service.remembered import Remembered
 from jackettwin.service.rendered import Rendered
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.store import open_database
-from jackettwin.version import __version__
 
 
 def _now() -> datetime:
@@ -58,10 +56,6 @@ class Service:
     def feed(self) -> Feed:
         """The events, for readers of this server."""
         return Feed(self.database)
-
-    def about(self) -> dict[str, Any]:
-        """What other servers may know of this one."""
-        return {"version": __version__, "pid": os.getpid()}
 
     def free_bytes(self) -> int:
         """Room left where the store is: none on a disk that is read-only, as one becomes after faults."""

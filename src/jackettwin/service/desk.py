@@ -14,7 +14,7 @@ from jackettwin.service import conditions, consequences
 from jackettwin.service.bundles import bundle
 from jackettwin.service.catalogue import add_version, adopt, archive
 from jackettwin.service.context import Desk
-from jackettwin.service.intake.files import Accepted, queue, take_file
+from jackettwin.service.intake.files import Accepted, take_file
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.service.tasks import read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
@@ -153,6 +153,6 @@ def _queue_all(connection: Any, desk: Desk, version: assets.Version, start: date
     count = 0
     for record in records.all_with_samples(connection, version.asset):
         if record.start_utc >= start:
-            number = queue(connection, version, record.record_id, desk.now())
+            number = work.enqueue(connection, version, record.record_id, desk.now())
             count += work.try_again(connection, number, desk.now())
     return count

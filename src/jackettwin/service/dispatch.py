@@ -21,6 +21,7 @@ from jackettwin.service import consequences
 from jackettwin.service.begun import LOST_WORKER
 from jackettwin.service.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
+from jackettwin.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Future
@@ -108,7 +109,8 @@ class Dispatcher(Thread):
         me, now = self.service.server_id, self.service.now()
         with writing(self.service.database) as connection:
             if not work.beat(connection, me):
-                work.join(connection, me, {**self.service.about(), "machine": _MACHINE}, now)
+                about = {"version": __version__, "pid": os.getpid(), "machine": _MACHINE}
+                work.join(connection, me, about, now)
             beats = work.beats(connection)
             for server in [name for name in beats if name != me and self._dead(name, *beats[name])]:
                 freed = work.bury(connection, server, beats[server][0])

@@ -62,12 +62,7 @@ def extremes(
     """Return minimum and maximum of each of ``points`` bins between two times [s after the start]."""
     chosen = record if names is None else record.select(names)
     first = min(int(since * record.sample_rate_hz), chosen.data.shape[1])
-    last = (
-        chosen.data.shape[1]
-        if until is None
-        else min(ceil(until * record.sample_rate_hz), chosen.data.shape[1])
-    )
-    data = chosen.data[:, first:last]
+    data = chosen.data[:, first : None if until is None else ceil(until * record.sample_rate_hz)]
     size = max(ceil(data.shape[1] / points), 1)
     edges = np.arange(0, data.shape[1], size)
     if edges.size:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -96,12 +95,6 @@ def about(record: Record) -> dict[str, Any]:
     }
 
 
-def file_hash(path: Path) -> str:
-    """Return the content hash of a file, what an unreadable record is known by."""
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def read_file(file: File) -> tuple[Parsed, ...]:
     """Read a file of any known format and keep its samples in the store.
 
@@ -121,9 +114,9 @@ def read_file(file: File) -> tuple[Parsed, ...]:
             records = list(read_record_pieces(source, PIECE_S, file.unsaid)) if long else [record]
         return tuple(stored(record, file.asset, Path(file.store)) for record in records)
     except InputError as error:
-        return (Parsed(file_hash(source), problem=problem_of(error)),)
+        return (Parsed("", problem=problem_of(error)),)
     except MemoryError:
-        return (Parsed(file_hash(source), problem=_TOO_LARGE),)
+        return (Parsed("", problem=_TOO_LARGE),)
 
 
 _TOO_LARGE = {

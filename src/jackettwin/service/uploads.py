@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service import conditions, engine
 from jackettwin.service.bundles import twin_folder
-from jackettwin.service.intake.files import Accepted, discard, parse_here, queue, spooled, take_file
+from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.problems import ApiError, disk_full
 from jackettwin.service.routes.common import living_asset
 from jackettwin.service.schemas import PicksIn, StabilisationOut, Taken
@@ -63,7 +63,7 @@ def pick(
     people.note_down(connection, who, "picks", f"{record.asset}/{record.record_id}", "ok", service.now())
     number = 0
     for version in assets.all_versions(connection, record.asset):
-        number = queue(connection, version, record.record_id, service.now(), priority=20)
+        number = work.enqueue(connection, version, record.record_id, service.now(), priority=20)
         work.renew(connection, number, service.now())
     told = {"record_id": record.record_id, "status": record.status, "picks": len(body.picks)}
     journal.tell(connection, "record", record.asset, told, service.now())

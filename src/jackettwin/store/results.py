@@ -163,13 +163,8 @@ def state_hashes(
     return {day: found for day, found in connection.execute(query)}
 
 
-def state_identity(connection: Connection, asset: str, model_hash: str, day: str | None = None) -> str:
-    """Return the identity of a turbine's state, or of that up to a day: one hash of those of its days."""
-    return identity_of(state_hashes(connection, asset, model_hash, day))
-
-
 def identity_of(hashes: Mapping[str, str]) -> str:
-    """Return one hash of those of days, {day: hash}."""
+    """Return the identity of a turbine's state: one hash of those of its days, {day: hash}."""
     return hashlib.sha256(repr(tuple(hashes.items())).encode()).hexdigest()
 
 

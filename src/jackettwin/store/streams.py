@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 
 import numpy as np
-from sqlalchemy import Connection, ScalarSelect, delete, func, insert, select, update
+from sqlalchemy import Connection, delete, func, insert, select, update
 
 from jackettwin.arrays import FloatArray
 from jackettwin.store.database import insert_new
@@ -95,7 +95,9 @@ def open_windows(connection: Connection) -> list[OpenWindow]:
 
 def newest_packet(connection: Connection, asset: str) -> datetime | None:
     """Return the start of the newest packet of an asset: the stream's own clock."""
-    where = (packets.c.asset == asset, packets.c.window_utc == _last_window(asset))
+    # the last window in which one began, which the index finds
+    last = select(func.max(packets.c.window_utc)).where(packets.c.asset == asset).scalar_subquery()
+    where = (packets.c.asset == asset, packets.c.window_utc == last)
     newest: datetime | None = connection.scalar(
         select(func.max(packets.c.t0_utc, type_=packets.c.t0_utc.type)).where(*where)
     )
@@ -203,8 +205,3 @@ def _count(connection: Connection, asset: str, window_utc: datetime) -> None:
     insert_new(connection, windows, {"asset": asset, "window_utc": window_utc, "n_packets": 0, "n_known": 0})
     same = (windows.c.asset == asset, windows.c.window_utc == window_utc)
     connection.execute(update(windows).where(*same).values(n_known=windows.c.n_known + 1))
-
-
-def _last_window(asset: str) -> ScalarSelect[datetime]:
-    """Return the query for the last window in which a packet began, which the index answers."""
-    return select(func.max(packets.c.window_utc)).where(packets.c.asset == asset).scalar_subquery()

@@ -14,8 +14,10 @@ from typing import Any
 
 from sqlalchemy import Connection, Update, delete, func, insert, select, update
 
+from jackettwin.store.assets import Version
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import servers, work
+from jackettwin.version import __version__
 
 OBSERVE, KNOW = "observe", "know"
 """Kinds of work: observe a record; say what a state says of the supports."""
@@ -49,28 +51,27 @@ class Job:
 
 def enqueue(
     connection: Connection,
-    *,
-    kind: str,
-    asset: str,
+    version: Version,
     record_id: str,
-    version: int,
-    model_hash: str,
-    settings_hash: str,
-    code_version: str,
     now: datetime,
+    *,
+    kind: str = OBSERVE,
     priority: int = 0,
 ) -> int:
-    """Ask for work and return its number; what is asked for already keeps its own."""
+    """Ask for a record to be observed by a version of a twin, or for other work of it; return its number.
+
+    What is asked for already keeps its own.
+    """
     key = {
         "kind": kind,
-        "asset": asset,
+        "asset": version.asset,
         "record_id": record_id,
-        "model_hash": model_hash,
-        "settings_hash": settings_hash,
-        "code_version": code_version,
+        "model_hash": version.model_hash,
+        "settings_hash": version.settings_hash,
+        "code_version": __version__,
     }
-    row = {**key, "version": version, "state": "queued", "priority": priority, "tries": 0, "created_utc": now}
-    insert_new(connection, work, row)
+    new = {"version": version.version, "state": "queued", "tries": 0, "created_utc": now}
+    insert_new(connection, work, {**key, **new, "priority": priority})
     return int(connection.execute(select(work.c.id).filter_by(**key)).scalar_one())
 
 

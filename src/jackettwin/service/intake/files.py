@@ -16,7 +16,6 @@ from jackettwin.service.begun import LOST_WORKER, NO_ROOM, NoWorker
 from jackettwin.service.bundles import adopted_twin
 from jackettwin.service.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
-from jackettwin.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -129,7 +128,7 @@ def accept(
     number = None
     for version in living(connection, asset, adopted):
         urgent = LIVE if version.version == adopted.version else 0
-        asked = queue(connection, version, parsed.record_id, service_now, priority=urgent)
+        asked = work.enqueue(connection, version, parsed.record_id, service_now, priority=urgent)
         number = asked if version.version == adopted.version else number
     if new:
         journal.tell(
@@ -144,30 +143,6 @@ def living(connection: Connection, asset: str, adopted: assets.Version) -> list[
     The adopted one and those after it, which wait for a person.
     """
     return [v for v in assets.all_versions(connection, asset) if v.version >= adopted.version]
-
-
-def queue(
-    connection: Connection,
-    version: assets.Version,
-    record_id: str,
-    now: datetime,
-    *,
-    kind: str = work.OBSERVE,
-    priority: int = 0,
-) -> int:
-    """Ask for a record to be observed by a version of a twin, or for other work of it."""
-    return work.enqueue(
-        connection,
-        kind=kind,
-        asset=version.asset,
-        record_id=record_id,
-        version=version.version,
-        model_hash=version.model_hash,
-        settings_hash=version.settings_hash,
-        code_version=__version__,
-        now=now,
-        priority=priority,
-    )
 
 
 def take_file(place: Place, parse: Reader, asset: str, path: Path, source_name: str) -> Accepted:
