@@ -195,9 +195,4 @@ def _statistics(loads: FloatArray) -> dict[str, Any]:
 
 
 def _spread(column: FloatArray) -> dict[str, float]:
-    return {
-        "max": float(column.max()),
-        "min": float(column.min()),
-        "std": float(column.std()),
-        "mean": float(column.mean()),
-    }
+    return {name: float(getattr(column, name)()) for name in ("max", "min", "std", "mean")}

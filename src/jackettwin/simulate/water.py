@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -68,50 +69,25 @@ def wave_field(sea: Sea, *, duration: float) -> Waves | None:
     """
     if sea.waves is None:
         return None
+    H, T, stretching = sea.height_m, sea.period_s, sea.stretching
+    where: dict[str, Any] = {"depth": sea.depth_m, "direction": sea.direction}
     if sea.waves == "airy":
-        return airy_wave(
-            height=sea.height_m,
-            period=sea.period_s,
-            depth=sea.depth_m,
-            direction=sea.direction,
-            stretching=sea.stretching,
-        )
+        return airy_wave(height=H, period=T, stretching=stretching, **where)
     if sea.waves in THEORIES:
-        return regular_wave(
-            THEORIES[sea.waves],
-            height=sea.height_m,
-            period=sea.period_s,
-            depth=sea.depth_m,
-            direction=sea.direction,
-        )
+        return regular_wave(THEORIES[sea.waves], height=H, period=T, **where)
     if sea.kinematics is not None:
         return _travelling(sea, sea.kinematics, duration)
+    where |= {"duration": duration, "stretching": stretching}
     if sea.elevation is not None:
-        return given_sea(
-            sea.elevation,
-            depth=sea.depth_m,
-            duration=duration,
-            direction=sea.direction,
-            stretching=sea.stretching,
-        )
-    if duration < 2.0 * sea.period_s:
+        return given_sea(sea.elevation, **where)
+    if duration < 2.0 * T:
         raise InputError(
             "too short for a random sea",
             field="time.duration_s",
             value=duration,
-            allowed=f"≥ {2.0 * sea.period_s:g} s, two peak periods",
+            allowed=f"≥ {2.0 * T:g} s, two peak periods",
         )
-    return irregular_sea(
-        Hs=sea.height_m,
-        Tp=sea.period_s,
-        depth=sea.depth_m,
-        duration=duration,
-        seed=sea.seed,
-        gamma=sea.gamma,
-        direction=sea.direction,
-        spreading=sea.spreading,
-        stretching=sea.stretching,
-    )
+    return irregular_sea(Hs=H, Tp=T, seed=sea.seed, gamma=sea.gamma, spreading=sea.spreading, **where)
 
 
 def _travelling(sea: Sea, given: Kinematics, duration: float) -> TravellingKinematics:
