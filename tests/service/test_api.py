@@ -75,6 +75,28 @@ def test_a_record_without_a_start_is_refused(client: TestClient) -> None:
     assert sent.json()["field"] == "start_utc"
 
 
+def test_a_record_that_is_wrong_is_set_aside_and_brought_back(client: TestClient, service: Service) -> None:
+    def twin() -> dict[str, Any]:
+        turn(service)
+        return dict(client.get("/api/v1/assets/wtg/twin").json())
+
+    upload(client, 1)
+    one = twin()
+    wrong = upload(client, 2).json()
+    both = twin()
+    path = f"/api/v1/records/{wrong['record_id']}"
+    aside = client.post(f"{path}/set-aside", json={"comment": "the sensor lay on the floor"}).json()
+    assert aside["problem"]["detail"] == "the sensor lay on the floor (local)"
+    again = twin()
+    assert (again["state_hash"], again["records"]) == (one["state_hash"], 1)
+    assert again["parameters"] == one["parameters"]
+    assert len(client.get("/api/v1/assets/wtg/modes").json()["items"]) == 2
+    upload(client, 2)  # sent again it is known, and stays aside
+    assert twin()["records"] == 1
+    client.post(f"/api/v1/jobs/{wrong['job_id']}/retry")
+    assert twin()["state_hash"] == both["state_hash"]
+
+
 def test_a_record_whose_work_is_cancelled_waits_for_a_person(client: TestClient, service: Service) -> None:
     sent = upload(client, 1).json()
     job, record = f"/api/v1/jobs/{sent['job_id']}", f"/api/v1/records/{sent['record_id']}"

@@ -192,21 +192,18 @@ def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bo
     return True
 
 
-def supersede(connection: Connection, service: Place, asset: str, old: str, new: str) -> None:
-    """Take a record's consequences back, since another one holds its samples and more."""
-    record = records.find_record(connection, asset, old)
-    if record is None:
-        return
+def set_aside(connection: Connection, service: Place, asset: str, record_id: str, why: str) -> None:
+    """Take back what a record gave rise to: another one holds its samples and more, or a person says so."""
     lock(connection, asset)
-    for job in work.jobs_of(connection, asset, old):
+    for job in work.jobs_of(connection, asset, record_id):
         work.cancel(connection, job.id, service.now())
     for version in assets.all_versions(connection, asset):
-        gone = results.find_observation(connection, asset, old, version.model_hash)
+        gone = results.find_observation(connection, asset, record_id, version.model_hash)
         if gone is not None:
-            results.drop_observation(connection, asset, version.model_hash, old)
+            results.drop_observation(connection, asset, version.model_hash, record_id)
             fold(connection, service, asset, version.version, gone, anew=True)
-    problem = {"detail": f"superseded by {new}, which has packets that came late", "field": "record"}
-    _end(connection, asset, old, "set_aside", problem, service.now())
+            ask_known(connection, service, version)
+    _end(connection, asset, record_id, "set_aside", {"detail": why, **_TRY_AGAIN}, service.now())
 
 
 def fold(

@@ -213,7 +213,7 @@ class AlarmOut(FindingOut):
 
 
 class Acknowledgement(BaseModel):
-    """What is to be said of an alarm."""
+    """What is to be said of an alarm, or of a record that is set aside."""
 
     comment: str = Field(min_length=1, max_length=2000)
 

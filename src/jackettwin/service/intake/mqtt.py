@@ -236,7 +236,8 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
     number = parsed.record_id
     with writing(service.database) as connection:
         if window.record_id is not None and window.record_id != number:
-            consequences.supersede(connection, service, window.asset, window.record_id, number)
+            why = f"superseded by {number}, which has packets that came late"
+            consequences.set_aside(connection, service, window.asset, window.record_id, why)
         accept(now, connection, window.asset, parsed, "stream")
         streams.close_window(connection, window, number)
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, File, Form, Header, Query, Response, UploadFile
 
-from jackettwin.service import auth, signals, uploads
+from jackettwin.service import auth, consequences, signals, uploads
 from jackettwin.service.problems import ApiError, answers
 from jackettwin.service.routes.common import (
     Asker,
@@ -23,6 +23,7 @@ from jackettwin.service.routes.common import (
     waits,
 )
 from jackettwin.service.schemas import (
+    Acknowledgement,
     Page,
     PicksIn,
     RecordAccepted,
@@ -31,7 +32,7 @@ from jackettwin.service.schemas import (
     Spectra,
     StabilisationOut,
 )
-from jackettwin.store import records
+from jackettwin.store import people, records
 
 router = APIRouter(tags=["records"], route_class=Transaction)
 
@@ -152,3 +153,18 @@ def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connecti
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
     job_id = uploads.pick(connection, parts, record, body, who.name)
     return RecordAccepted(record_id=record_id, job_id=job_id)
+
+
+@router.post(
+    "/records/{record_id}/set-aside",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 422),
+)
+def set_aside(
+    record_id: RecordId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
+) -> RecordOut:
+    """Take back what a record gave rise to, on a person's word; trying its job again brings it back."""
+    asset = known_record(connection, record_id).asset
+    consequences.set_aside(connection, parts, asset, record_id, f"{body.comment} ({who.name})")
+    people.note_down(connection, who.name, "set aside", f"{asset}/{record_id}", "ok", parts.now())
+    return signals.record_out(known_record(connection, record_id))
