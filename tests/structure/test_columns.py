@@ -8,6 +8,7 @@ import pytest
 from jackettwin.structure import Section, Structure, read_structure
 from jackettwin.structure.columns import StraightRun, columns
 from jackettwin.structure.model import STEEL, Member, Reaction, RigidLink
+from jackettwin.structure.two_node import two_node_element
 
 TUBE = Section(1.0, 0.02)
 
@@ -23,6 +24,24 @@ MAST = {"a": (0.0, 0.0, 0.0), "b": (0.0, 0.0, 10.0), "c": (0.0, 0.0, 25.0)}
 
 def test_a_mast_is_one_cantilever() -> None:
     assert columns(frame(MAST, "ab", "bc")) == dict.fromkeys(("ab", "bc"), StraightRun(25.0, True))
+
+
+def test_a_beam_that_is_no_tube_goes_on_with_the_column() -> None:
+    """The upper half of a mast in another section: the tube below buckles with the whole."""
+    tubes = (Member("ab", "a", "b", TUBE, TUBE, STEEL),)
+    rows = np.eye(12)
+    upper = two_node_element("bc", "beam", ("b", "c"), rows)
+    mast = Structure("mast", MAST, tubes, reactions=(Reaction("a"),), elements=(upper,))
+    assert columns(mast)["ab"] == StraightRun(25.0, True)
+    # a spring to the ground beside it holds the joint
+    spring = two_node_element("bg", "spring", ("b", "g"), rows)
+    held = replace(
+        mast,
+        nodes=MAST | {"g": (9.0, 0.0, 10.0)},
+        reactions=(Reaction("a"), Reaction("g")),
+        elements=(upper, spring),
+    )
+    assert columns(held)["ab"] == StraightRun(10.0, False)
 
 
 def test_a_foot_in_the_middle_ends_a_column() -> None:

@@ -23,22 +23,22 @@ class StraightRun(NamedTuple):
 
 
 def columns(structure: Structure) -> dict[str, StraightRun]:
-    """Return the straight run that each member belongs to.
+    """Return the straight run that each member, and each beam that is no tube, belongs to.
 
-    Two members in line are one column unless something else at their common node leads to the ground: what
+    Two of them in line are one column unless something else at their common node leads to the ground: what
     hangs there (a platform, a nacelle) holds nothing. A column is a cantilever if only one of its ends leads
     to the ground without the column itself, as a tower's foot does and its top does not. Several interface
     nodes count as held together by the transition piece.
     """
     frame = _Frame(structure)
-    run = {m.name: m.name for m in structure.members}
+    run = {name: name for name in frame.ends}
 
     def root(name: str) -> str:
         while run[name] != name:
             name = run[name]
         return name
 
-    axis = {m.name: _axis(structure, m.start, m.end) for m in structure.members}
+    axis = {name: _axis(structure, *ends) for name, ends in frame.ends.items()}
     for node, names in frame.members_at.items():
         for a, b in combinations(names, 2):
             in_line = abs(axis[a][0] @ axis[b][0]) > _STRAIGHT
@@ -59,6 +59,7 @@ class _Frame:
 
     def __init__(self, structure: Structure) -> None:
         self.ends = {m.name: (m.start, m.end) for m in structure.members}
+        self.ends |= {e.name: (e.start, e.end) for e in structure.elements if e.kind == "beam"}
         self.height = {name: xyz[2] for name, xyz in structure.nodes.items()}
         self.ground = set(structure.reaction_nodes)
         self.members_at: dict[str, list[str]] = defaultdict(list)
@@ -67,10 +68,11 @@ class _Frame:
             self.members_at[start].append(name)
             self.members_at[end].append(name)
             self._join(name, start, end)
-        others = structure.joined[len(structure.members) :]
+        others = [(one.start, one.end) for one in structure.elements if one.name not in self.ends]
+        others += [(link.leader, link.follower) for link in structure.rigid_links]
         tied = structure.interface_nodes
         for start, end in (*others, *zip(tied, tied[1:], strict=False)):
-            self._join("", start, end)  # nothing but members is ever taken away
+            self._join("", start, end)  # nothing but members and beams is ever taken away
 
     def _join(self, name: str, start: str, end: str) -> None:
         self.neighbours[start].append((name, end))
