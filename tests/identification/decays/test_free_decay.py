@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from jackettwin.identification import IdentificationSettings, identify, mac
-from jackettwin.identification.decays.free_decay import transient
+from jackettwin.identification.decays import free_decay
+from jackettwin.identification.decays.free_decay import HOPELESS, transient
+from jackettwin.identification.decays.modes_of_decay import DecayFit, modes_of_decay
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record
@@ -99,6 +104,25 @@ def test_a_gust_that_dies_down_is_no_decay_and_leaves_no_mode_ok() -> None:
 
 
 LIVELY = ModalSystem(4.0 * F, ZETA, SHAPES, np.diag([1.0, 0.3]), noise_ratio=0.02)
+
+
+def test_what_forces_shake_while_it_fades_is_fitted_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every later start costs as much again, seconds for long records of many channels."""
+    fits: list[float] = []
+
+    def counted(*arguments: Any) -> DecayFit | None:
+        found = modes_of_decay(*arguments)
+        fits.append(1.0 if found is None else found.fit.explained)
+        return found
+
+    monkeypatch.setattr(free_decay, "modes_of_decay", counted)
+    shaken = replace(SYSTEM, damping_ratio=np.array([0.05, 0.05]))
+    wind = simulate(shaken, np.random.default_rng(3), duration_s=600.0, sample_rate_hz=RATE).data
+    found = transient(record(wind * np.exp(-T / 150.0)), IdentificationSettings())
+    assert found is not None
+    assert found.identified is None
+    assert len(fits) == 1
+    assert fits[0] < HOPELESS
 
 
 def knock(at_s: float) -> np.ndarray:

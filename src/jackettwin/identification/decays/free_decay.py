@@ -54,6 +54,9 @@ STILL_FORCED = 1.5
 """Power that the fit leaves of the first quarter, over that of the rest: forces still act."""
 LATER_STARTS = 8
 """Times the start is put off by two cycles."""
+HOPELESS = 0.5
+"""Share of a decay that damped cosines explain, below which no later start makes it a free one: of those that
+end as one the first explains 0.95, of a shaking table that fades 0.3, wherever it begins."""
 CLEAR = 25.0
 """Power of a mode over that of noise in its cosines, from which it is no doubt there."""
 UNFORCED = 0.92
@@ -209,7 +212,7 @@ def _free(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
         if part.last - part.first < 4 * step:
             return None
         found = modes_of_decay(y[:, part.first : part.last], rate, part.strongest_hz, y[:, part.last :])
-        if found is None:
+        if found is None or found.fit.explained < HOPELESS:
             return None
         if not _still_forced(found.fit):
             enough = MOSTLY if part.fall >= DEEP else NEARLY_ALL
