@@ -245,6 +245,10 @@ CATALOGUE: dict[str, Kind] = {
         "in the direction of its shape the spectrum has no clear peak: {ratio:.2g} times the level beside, a "
         "mode alone 17 times",
     ),
+    "second_peak": Kind(
+        "warning",
+        "a clear peak beside it, at {frequency_hz:.4g} Hz, is of no mode: this may be two told as one",
+    ),
     "steady_envelope": Kind(
         "warning", "its amplitude wanders less than that of a mode so light should: it may be a tone"
     ),

@@ -8,7 +8,7 @@ from scipy import signal
 
 from jackettwin.identification import identify, quiet_bands
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.quiet_bands import clear_peaks_hz
+from jackettwin.identification.selection.peaks import clear_peaks_hz
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Stabilisation
@@ -22,6 +21,7 @@ from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones
 from jackettwin.identification.selection.clustering import clusters
+from jackettwin.identification.selection.peaks import clear_peaks_hz
 from jackettwin.identification.selection.second_look import QuietBand
 from jackettwin.identification.tones.steady_tones import without_tones
 from jackettwin.records.filters import lowpass_taps, resample
@@ -35,11 +35,6 @@ if TYPE_CHECKING:
     from jackettwin.identification.selection.clustering import Cluster
     from jackettwin.identification.settings import IdentificationSettings
 
-CLEAR = 3.0
-"""Power of a peak, in one channel, over the median around it and over the valleys beside it: of noise,
-averaged over fifteen half-overlapping segments, one line in ten million stands out so far."""
-AROUND, FEWEST_AROUND = 0.3, 21
-"""Width over which the median is taken, as a share of the frequency, and its fewest lines."""
 EXPLAINS = 3.0
 """Half bandwidths of a mode, or lines of the spectrum, within which a peak is its own."""
 TRANSITION = 0.8
@@ -104,18 +99,6 @@ def with_quiet_bands(first: PoleSearch, ready: Prepared, settings: Identificatio
         loud = replace(ready, y=out.tones.clean, drifting=out.tones.drifting)
         out = _joined(out, _above(loud, EDGE_BELOW_PEAK * left[0]), above, settings)
     return out
-
-
-def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]:
-    """Return where any channel has a peak that stands clear of the level around it, ascending."""
-    found: set[int] = set()
-    for row in np.maximum(density, np.finfo(float).tiny):
-        at, _ = scipy.signal.find_peaks(np.log(row), prominence=np.log(CLEAR))
-        for k in at:
-            half = max(int(0.5 * AROUND * k), FEWEST_AROUND // 2)
-            if row[k] > CLEAR * np.median(row[max(k - half, 1) : k + half + 1]):
-                found.add(int(k))
-    return [float(frequency_hz[k]) for k in sorted(found)]
 
 
 def _explained(peak_hz: float, line_hz: float, search: PoleSearch, ready: Prepared) -> bool:

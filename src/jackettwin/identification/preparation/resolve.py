@@ -28,6 +28,11 @@ SAMPLES_A_CYCLE = 2.5
 WINDOW_CYCLES = 1.0
 """Block rows in cycles of the lower edge. Twice that is the lag window: long enough to tell a pair of
 frequencies a few per cent apart, short enough that the covariances are still determined."""
+ALONE_CYCLES = 2.5
+"""The same at most of a channel alone: no second shape parts two modes an eighth of their frequency apart,
+which one cycle tells as one, twice as broad …"""
+ALONE_SHARE = 1.0 / 400.0
+"""… and the share of the record that these may be: of hundreds of cycles, longer covariances are determined."""
 GUARD = 1.25
 """Poles are sought, and spectra fitted, up to this multiple of the band's upper edge if the sample rate
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
@@ -110,9 +115,13 @@ def _block_rows(samples_a_cycle: float, n_channels: int, n_samples: float) -> in
     --------
     >>> _block_rows(14.2, 6, 12_000.0), _block_rows(14.2, 1, 12_000.0), _block_rows(14.2, 1, 400.0)
     (15, 41, 40)
+    >>> _block_rows(64.0, 2, 60_000.0), _block_rows(64.0, 1, 60_000.0)
+    (64, 150)
     """
     cycles = max(int(np.ceil(WINDOW_CYCLES * samples_a_cycle)), 4)
     wanted = -(-ENOUGH_ORDER // n_channels) + 1
+    if n_channels == 1:
+        wanted = max(wanted, int(min(np.ceil(ALONE_CYCLES * samples_a_cycle), ALONE_SHARE * n_samples)))
     return max(cycles, min(wanted, int(0.5 * WINDOW_SHARE * n_samples)))
 
 

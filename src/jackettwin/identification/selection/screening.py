@@ -26,9 +26,10 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
+from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.neighbours import apart, of_neighbours
 from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
-from jackettwin.identification.selection.peaks import contrast, share_of_one_part
+from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records.another_time import may_be_compared
@@ -91,6 +92,10 @@ KEPT_CONTRAST, KEPT_CONTRAST_STD = 3.0, 8.0
 noise have 0.7 to 1.7 with up to 4 standard deviations, modes that were doubted for their damping 4 to 40."""
 UNKNOWN_DAMPING = 1.0
 """Standard deviation of ln ζ above which damping is called unknown."""
+OUTSIDE_PEAK, BESIDE_PEAK = 1.5, 4.0
+"""Half bandwidths from a mode between which a second clear peak may be told with it as one …"""
+LINES_OF_A_PEAK = 8.0
+"""… and least half bandwidth, in lines of the record: the spectrum's are as wide."""
 PERIODS = ("tp_s", "wave_tp_s", "wave_peak_period_s", "peak_period_s", "Tp", "wave_period_s")
 """Names of the peak period of the sea among a record's conditions."""
 NARROW = 1.5
@@ -115,6 +120,8 @@ class Evidence:
         Of interest.
     comparable : (n_channels, n_channels)
         Which channels may show the same motion.
+    peaks_hz : tuple of float
+        Clear peaks of any channel.
     sensors : bool
         Whether channels are sensors: a mode may well move one component of many alone.
     """
@@ -126,6 +133,7 @@ class Evidence:
     peak_of_sea_hz: float | None
     band_hz: tuple[float, float]
     comparable: BoolArray
+    peaks_hz: tuple[float, ...]
     sensors: bool = True
 
     def in_sea(self, frequency_hz: float) -> bool:
@@ -171,9 +179,15 @@ def evidence(
         duration_s=y.shape[1] / ready.settings.sample_rate_hz,
         peak_of_sea_hz=1.0 / periods[0] if periods and periods[0] > 0.0 else None,
         band_hz=(ready.settings.lowest_frequency_hz, ready.settings.highest_frequency_hz),
+        peaks_hz=_peaks_hz(y, ready.settings.sample_rate_hz),
         comparable=may_be_compared([c.direction for c in ready.channels], len(y)),
         sensors=sensors,
     )
+
+
+def _peaks_hz(y: FloatArray, sample_rate_hz: float) -> tuple[float, ...]:
+    spectrum = welch(y, sample_rate_hz)
+    return tuple(clear_peaks_hz(spectrum.frequencies_hz, spectrum.density))
 
 
 def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstimate]:
@@ -233,6 +247,7 @@ def _judged(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidenc
         *_shape(mode, close, known.scale),
         *_agreement(mode, close, known),
         *_damping(mode, known),
+        *_two_peaks(mode, others, known),
     ):
         mode = mode.flagged(status, finding)
     return mode
@@ -283,6 +298,25 @@ def _agreement(mode: ModalEstimate, close: Sequence[ModalEstimate], known: Evide
     if ratio < least or excess < LEAST_CONTRAST_STD:
         yield ModeStatus.DOUBTFUL, Finding("no_peak", params={"ratio": ratio})
     yield from _one_sensor(mode, shape, known)
+
+
+def _two_peaks(mode: ModalEstimate, others: Sequence[ModalEstimate], known: Evidence) -> Iterator[Verdict]:
+    """Tell of a mode that no fit describes whether it has a second clear peak, which is of no other mode.
+
+    A channel alone hardly parts two modes that a short lag window holds few cycles of: one pole, broader than
+    either, stands for both.
+    """
+    if mode.unrefined is not None:
+        return
+    line = 1.0 / known.duration_s
+    for peak in known.peaks_hz:
+        own, *theirs = (
+            abs(peak - m.frequency_hz) / max(m.damping_ratio * m.frequency_hz, LINES_OF_A_PEAK * line)
+            for m in (mode, *others)
+        )
+        if OUTSIDE_PEAK < own < BESIDE_PEAK and min(theirs, default=np.inf) > OUTSIDE_PEAK:
+            yield ModeStatus.DOUBTFUL, Finding("second_peak", params={"frequency_hz": peak})
+            return
 
 
 def _one_sensor(mode: ModalEstimate, shape: ComplexArray, known: Evidence) -> Iterator[Verdict]:
