@@ -32,7 +32,7 @@ ALONE_CYCLES = 2.5
 """The same at most of a channel alone: no second shape parts two modes an eighth of their frequency apart,
 which one cycle tells as one, twice as broad …"""
 ALONE_SHARE = 1.0 / 400.0
-"""… and the share of the record that these may be: of hundreds of cycles, longer covariances are determined."""
+"""… and the share of the record that these may be: where it has hundreds of cycles, they are determined."""
 GUARD = 1.25
 """Poles are sought, and spectra fitted, up to this multiple of the band's upper edge if the sample rate
 allows: a mode near the edge is known by its whole peak, and one beyond it must be accounted for."""
