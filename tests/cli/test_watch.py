@@ -154,7 +154,7 @@ def test_what_is_wrong_is_refused(wide: Columns, tmp_path: Path, spoil, said: st
     ("options", "said"),
     [
         (("--conditions", "f1"), "cannot be a condition (got 'f1')"),
-        (("--arl-years", "nan"), "--arl-years: not above zero"),
+        (("--arl-years", "nan"), "nan is not a finite number"),
     ],
 )
 def test_what_makes_no_sense_is_refused(
