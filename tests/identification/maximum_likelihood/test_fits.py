@@ -11,7 +11,7 @@ import pytest
 from jackettwin.errors import NumericalError
 from jackettwin.files.codec import decode, encode
 from jackettwin.identification import Identification, identify
-from jackettwin.identification.maximum_likelihood import fits
+from jackettwin.identification.maximum_likelihood import fits, likelihood, refinement
 from jackettwin.identification.synthetic import simulate
 
 
@@ -58,6 +58,17 @@ def test_a_result_that_is_no_number_is_not_believed(tower, rng, monkeypatch):
     found = identify(record)
     assert {mode.method for mode in found.modes} == {"ssi-cov"}
     assert any("broke down (not a number)" in text for text in found.warnings)
+
+
+def test_a_fit_whose_steps_cost_too_much_takes_none(tower, rng, monkeypatch):
+    record, steps, scoring = simulate(tower, rng, sample_rate_hz=5.0), [], likelihood.scoring
+    monkeypatch.setattr(likelihood, "scoring", lambda *given: steps.append(0) or scoring(*given))
+    assert {mode.method for mode in identify(record).modes} == {"maximum likelihood"} and steps
+    steps.clear()
+    monkeypatch.setattr(refinement, "MOST_STEP_WORK", 1e3)
+    found = identify(record)
+    assert {mode.method for mode in found.modes} == {"ssi-cov"} and not steps
+    assert any("too many modes" in text for text in found.warnings)
 
 
 def test_overflow_inside_a_fit_is_no_warning(tower, rng, monkeypatch):

@@ -180,6 +180,8 @@ def _tried(fit: Callable[[], Refined], most: float, start: FitStart, duration_s:
         return _Tried(None, none, f"the arithmetic of the fit broke down ({type(error).__name__})")
     if not _finite(refined):
         return _Tried(None, none, "the arithmetic of the fit broke down (not a number)")
+    if np.isinf(refined.lack_of_fit):
+        return _Tried(None, none, "too many modes lie close to one another to be fitted together")
     if not refined.converged:
         return _Tried(None, none, "the fit of the spectral model did not converge")
     if refined.lack_of_fit > most:

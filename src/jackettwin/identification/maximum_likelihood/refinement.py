@@ -49,6 +49,9 @@ MOST_STEPS, FEWEST_STEPS = 30, 8
 """Steps after those: fits that end take eight to twenty as a rule …"""
 MOST_WORK = 4e9
 """… and no more than this many products: what is still on its way then seldom arrives."""
+MOST_STEP_WORK = 2e9
+"""A fit of which one step takes more products is not tried: of seven hundred that came to be accepted none
+took more than half as many, and one such fit costs more than the whole rest of an identification."""
 MOST_BIAS = 0.5
 """Standard deviations beyond which an expansion to second order is not believed."""
 
@@ -126,6 +129,8 @@ def refine(
     first = likelihood.start(data, *sought) if narrow is None else _beside(narrow, data, *sought)
     if background:
         first = with_background(data, first)
+    if _step_work(data, first) > MOST_STEP_WORK:
+        return _given_up(np.full(len(sure), np.inf), unit.shape[1], np.inf)
     climb = likelihood.climbed(data, first, APPROACH)
     lack = accuracy.lack_of_fit(data, climb.parameters)
     if narrow is None and _beyond_hope(lack, accuracy.lack_of_fit(data, first), most_lack_of_fit):
@@ -156,8 +161,12 @@ def _beyond_hope(lack: float, at_first: float, most: float) -> bool:
 
 def _steps(data: Periodogram, p: Parameters) -> int:
     """Return the steps a fit may take yet, by what each costs."""
-    work = p.vector.size**2 * p.shapes.shape[1] ** 2 * len(data.omega)
-    return int(np.clip(MOST_WORK / work, FEWEST_STEPS, MOST_STEPS))
+    return int(np.clip(MOST_WORK / _step_work(data, p), FEWEST_STEPS, MOST_STEPS))
+
+
+def _step_work(data: Periodogram, p: Parameters) -> int:
+    """Return how many products one step of a fit takes."""
+    return int(p.vector.size**2 * p.shapes.shape[1] ** 2 * len(data.omega))
 
 
 def _beside(
