@@ -48,6 +48,18 @@ def test_the_headline_tells_the_story() -> None:
     assert lines[-1].startswith("What would make the ground's damping known: motion measured at the feet")
 
 
+def test_damping_that_no_source_explains_is_shared_out_to_none() -> None:
+    """The steel was said to give 59 % of the damping of a mode of which it gave a seventh."""
+    parked = replace(MODE, label="side_side_1", measured_damping=Span(0.05, 0.03, 0.08))
+    said = sentences(replace(ANSWERS, modes=(MODE, parked)))
+    assert "Of the damping, the ground gives 58 % in fore-aft 1 and 76 % in side-side 1 is unexplained." in (
+        said.headline
+    )
+    owners = next(q for q in said.questions if q.title == "Whose damping is it?").short
+    assert owners[1].endswith("the ground 0.7 % (0.4 to 0.9 %), the steel 0.5 %, unexplained 3.8 %.")
+    assert "unexplained" not in owners[0]
+
+
 def test_where_nothing_is_identified_that_is_said() -> None:
     lost = replace(ANSWERS, ground=(replace(STIFF, verdict="unidentified"), LOSS))
     assert sentences(lost).headline[0].startswith("Nothing of the ground is known from these 5 records")

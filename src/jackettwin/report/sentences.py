@@ -31,6 +31,7 @@ SMALL = 0.10
 _MOST = 4
 """Parameters of the ground on the first page; what there is of single legs follows."""
 _SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
+_UNEXPLAINED = "unexplained"
 _ROUGHLY = "known roughly"
 _STEPS = {
     "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
@@ -235,22 +236,26 @@ def _range(g: GroundAnswer) -> str:
     return f"{parameter_words(g.name)} {between(g.value.low, g.value.high, g.unit)}"
 
 
-def _owner(m: ModeAnswer) -> str | None:
-    """Return who gives a mode more than half of its damping."""
-    whole = sum(span.value for span in m.sources.values())
-    return next((s for s, span in m.sources.items() if span.value > 0.5 * whole), None)
+def _shares(m: ModeAnswer) -> dict[str, float]:
+    """Return each source's part of a mode's damping ratio, and what is measured beyond all of them."""
+    parts = {source: span.value for source, span in m.sources.items()}
+    beyond = m.measured_damping.value - sum(parts.values()) if m.measured_damping is not None else 0.0
+    return parts | ({_UNEXPLAINED: beyond} if parts and beyond > 0.0 and _disagrees(m) else {})
 
 
 def _owner_headline(a: Answers) -> str:
-    """Return whose the damping of the first pair is."""
+    """Return who gives more than half of the damping of each mode of the first pair."""
     by_owner: dict[str, list[str]] = {}
     for m in _firsts(a):
-        owner = _owner(m)
-        if owner is not None and m.measured_damping is not None:
-            whole = sum(span.value for span in m.sources.values())
-            share = f"{100 * m.sources[owner].value / whole:.0f} % in {words(m.label)}"
-            by_owner.setdefault(owner, []).append(share)
-    parts = [f"{_SOURCES[owner]} gives {listed(of)}" for owner, of in by_owner.items()]
+        shares = _shares(m) if m.measured_damping is not None else {}
+        for owner, part in shares.items():
+            if part > 0.5 * sum(shares.values()):
+                share = f"{100 * part / sum(shares.values()):.0f} % in {words(m.label)}"
+                by_owner.setdefault(owner, []).append(share)
+    parts = [
+        f"{listed(of)} is unexplained" if owner == _UNEXPLAINED else f"{_SOURCES[owner]} gives {listed(of)}"
+        for owner, of in by_owner.items()
+    ]
     return f"Of the damping, {listed(parts)}." if parts else ""
 
 
@@ -381,6 +386,8 @@ def _budget_words(m: ModeAnswer) -> str:
         for s, span in sorted(m.sources.items(), key=lambda item: -item[1].value)
         if span.value > SMALL * whole or s == "soil"
     ]
+    if beyond := _shares(m).get(_UNEXPLAINED):
+        parts.append(f"unexplained {percent_words(Span(beyond))}")
     measured = "" if m.measured_damping is None else percent_words(m.measured_damping)
     return f"{words(m.label).capitalize()} measures {measured}: {', '.join(parts)}."
 
