@@ -218,7 +218,7 @@ def names_other(name: str) -> bool:
     return bool(named) and named[0] not in VIBRATIONS
 
 
-def vibration_of(unit: str) -> str:
+def vibration_of(unit: str, *, field: str = "unit") -> str:
     """Return the kind of vibration that is measured in a unit.
 
     Raises
@@ -235,7 +235,7 @@ def vibration_of(unit: str) -> str:
     if len(kinds) != 1:
         raise InputError(
             "is not the unit of one kind of vibration",
-            field="unit",
+            field=field,
             value=unit,
             allowed="e.g. m/s^2, g, mg, mm/s, mm",
             remedy="state the quantity of each channel in the JSON beside the file",

@@ -133,7 +133,32 @@ def test_a_missing_file_is_named(command: str, tmp_path: Path) -> None:
 
 def test_update_refuses_an_unknown_law() -> None:
     result = CliRunner().invoke(main, ["update", "thesis_table_6_1", "--law", "zenner"])
-    refused(result, ("zenner", "did you mean 'zener'"))
+    refused(result, ("--law:", "zenner", "did you mean 'zener'"))
+
+
+OPTIONS: dict[tuple[str, ...], tuple[str, ...]] = {
+    ("follow", "{twin}", "--law", "zenner"): ("--law:", "did you mean 'zener'"),
+    ("modes", "jacket15", "--rayleigh", "1.27,0.18"): ("--rayleigh.ratio:", "1.27"),
+    ("identify", "{counts}", "--unit", "furlong"): ("--unit:", "furlong"),
+    ("identify", "{counts}", "--gain", "0"): ("counts.csv", "channels.acc_x.gain:", "but zero"),
+    ("identify", "{counts}", "--gain", "none"): ("--gain", "'none' is not a valid number"),
+}
+
+
+@pytest.mark.parametrize("arguments", OPTIONS, ids=lambda a: f"{a[0]} {a[2]} {a[3]}")
+def test_a_wrong_option_is_named_as_it_was_written(
+    case: Case, tmp_path: Path, arguments: tuple[str, ...]
+) -> None:
+    counts = tmp_path / "counts.csv"
+    rows = "\n".join(f"{i / 20},{i % 7}" for i in range(200))
+    counts.write_text(f"time [s],acc_x [counts]\n{rows}\n")
+    places = {"twin": case.write(), "counts": counts}
+    result = CliRunner().invoke(main, [a.format(**places) for a in arguments])
+    refused(result, OPTIONS[arguments])
+
+
+def test_the_help_shows_no_range_where_there_is_none() -> None:
+    assert "None" not in CliRunner().invoke(main, ["identify", "--help"]).output
 
 
 def test_out_that_is_a_file_is_refused(case: Case, tmp_path: Path) -> None:

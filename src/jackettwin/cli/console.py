@@ -122,6 +122,12 @@ class Commands(click.Group):
 class FiniteFloat(click.FloatRange):
     """A number of an option: click's own range lets "nan" through, and "inf" where it is open."""
 
+    name = "number"
+
+    def _describe_range(self) -> str:
+        """Return the range for the help, which click writes as ``x<=None`` where there is none."""
+        return "" if self.min is None and self.max is None else super()._describe_range()
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Return the number; refuse what is not finite."""
         found = float(super().convert(value, param, ctx))

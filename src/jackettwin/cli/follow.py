@@ -10,8 +10,10 @@ from rich.table import Table
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
+from jackettwin.errors import located
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report.follow_page import build_follow_page
+from jackettwin.soil.families import family
 from jackettwin.twin import read_twin, twin_model
 from jackettwin.twin.follow import Each, follow_twin
 from jackettwin.twin.follow_document import follow_document, read_followed
@@ -57,6 +59,9 @@ def follow_command(
     with --prior.
     """
     config = read_twin(twin)
+    if law is not None:
+        with located(field="--law"):
+            family(law)
     if out is not None:
         check_room(out)
     prior = None if prior_file is None else read_followed(prior_file)

@@ -220,8 +220,7 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
 
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
     if unit is not None:
-        with located(field="--unit"):
-            vibration_of(plain_unit(unit))
+        vibration_of(plain_unit(unit), field="--unit")
     if zone is not None:
         read_zone(zone, field="--timezone")
     return Unsaid(sample_rate, unit, gain, zone)

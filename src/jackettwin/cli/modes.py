@@ -122,7 +122,9 @@ def rayleigh_option(text: str | None) -> Rayleigh:
     """
     if text is None:
         return Rayleigh()
-    return Rayleigh.minimum(*numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2,)))
+    numbers = numbers_of(text, "--rayleigh", "ZETA,F_HZ", (2,))
+    with located(field="--rayleigh"):
+        return Rayleigh.minimum(*numbers)
 
 
 def _document(assembly: Assembly, system: System, number: int) -> dict[str, Any]:

@@ -184,8 +184,7 @@ class LoggerSchema(Schema):
             If the unit is none of a vibration, or the clock no zone.
         """
         if self.unit is not None:
-            with located(field="unit"):
-                vibration_of(plain_unit(self.unit))
+            vibration_of(plain_unit(self.unit))
         if self.clock is not None:
             read_zone(self.clock)
         return Unsaid(self.sample_rate_hz, self.unit, self.gain, self.clock)

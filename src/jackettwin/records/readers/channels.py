@@ -113,6 +113,14 @@ def _measures(name: str, entry: Mapping[str, Any], unsaid: Unsaid) -> tuple[str,
             remedy='write "gain" (and the "unit" it leads to) into the JSON beside the file '
             "(identify, init: or --gain, with --unit)",
         )
+    if gain == 0.0:
+        raise InputError(
+            "makes every sample zero",
+            field="gain",
+            value=gain,
+            allowed="any number but zero",
+            remedy="give what one stored number is worth in the channel's unit",
+        )
     if could_vibrate and (not unit or raw) and (unsaid.unit is not None or gain is not None):
         if unsaid.unit is not None or raw:
             unit = plain_unit(unsaid.unit or STANDING_FOR_RAW)
