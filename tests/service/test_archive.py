@@ -54,7 +54,7 @@ def test_files_and_the_command_line_are_refused_too(
     assert asked.exit_code == 1 and names(client) == ["wtg"]
     assert CliRunner().invoke(asset_command, [*arguments, "--yes"]).output == "wtg is archived\n"
     path = store / "inbox" / "wtg" / "r.csv"
-    path.parent.mkdir(parents=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("time,a\n0,1\n")
     assert take_from_inbox(service, store / "inbox", path) is None and path.exists()
     assert "archived" in path.with_name("r.csv.refused.json").read_text()

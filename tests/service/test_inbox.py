@@ -41,6 +41,10 @@ def test_a_file_becomes_a_record_and_leaves_the_inbox(service: Service) -> None:
     assert list(path.parent.iterdir()) == []
 
 
+def test_an_asset_has_its_folder_from_the_start(service: Service) -> None:
+    assert (service.settings.store / "inbox" / "wtg").is_dir()
+
+
 def test_what_cannot_be_read_stays_with_the_reason_beside_it_until_it_can(service: Service) -> None:
     path = dropped(service, b"nothing that is read")
     refused = taken(service, path)

@@ -48,7 +48,9 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
     def ready(service: Service) -> None:
         scheme = "https" if service.settings.tls_certificate else "http"
         messages.print(f"jackettwin serves {store} at {scheme}://{options['host']}:{options['port']}/")
-        messages.print(f"records: {store}/inbox/ASSET/, POST /api/v1/assets/ASSET/records, Ctrl-C ends")
+        messages.print(
+            f"records: {store}/inbox/ASSET/, POST /api/v1/assets/ASSET/records, Ctrl-C ends", soft_wrap=True
+        )
         if as_json:
             print_json({"store": str(store), "url": f"{scheme}://{options['host']}:{options['port']}/"})
             sys.stdout.flush()

@@ -73,6 +73,7 @@ def add_version(
         now=service.now(),
         comment=comment,
     )
+    (service.settings.inbox / name).mkdir(parents=True, exist_ok=True)
     for record in records.all_with_samples(connection, name):
         work.enqueue(connection, version, record.record_id, service.now())
     if results.state_hashes(connection, name, model_hash):

@@ -32,8 +32,6 @@ from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)
 
-INBOX = "inbox"
-"""Folder of the store whose folders, named like assets, take records."""
 REFUSED = ".refused.json"
 """What is added to the name of a file that could not be read, for the file that says why."""
 
@@ -142,8 +140,11 @@ def _check_tls(settings: ServiceSettings) -> None:
 
 
 def _watch_inbox(service: Service, stop: Callable[[], bool]) -> None:
-    folder = service.settings.store / INBOX
-    folder.mkdir(exist_ok=True)
+    folder = service.settings.inbox
+    with reading(service.database) as connection:
+        known = assets.asset_names(connection, archived=False)
+    for name in (".", *known):  # those of a store that was restored are not there yet
+        (folder / name).mkdir(parents=True, exist_ok=True)
 
     def take(path: Path) -> Accepted | None:
         try:

@@ -85,6 +85,11 @@ class ServiceSettings:
         return self.store / "spool"
 
     @property
+    def inbox(self) -> Path:
+        """Folder with a folder of every asset, into which its files may be dropped."""
+        return self.store / "inbox"
+
+    @property
     def models(self) -> Path:
         """Folder in which the twins' files are laid out for workers."""
         return self.store / "models"
