@@ -22,6 +22,7 @@ def test_everything_at_once(tmp_path: Path) -> None:
         "--flooded", "jacket", "--wave", "8,9,30", "--record", str(RECORD), "--force", "tower_top=1e6,0,0",
     )  # fmt: skip
     assert result.exit_code == 0, result.stderr
+    assert "tower: z +28.00 to +144.00 m, on one vertical axis, tubes" in result.stdout.replace("\n", " ")
     page = out.read_text()
     for word in ("undamped modes", "damped modes", "regular wave", "record pile_U12_s301", "ISO 19902"):
         assert word in page

@@ -180,6 +180,8 @@ def _dimensions(assembly: Assembly) -> tuple[str, ...]:
 
 def _footprint(points: npt.NDArray[np.float64]) -> str:
     x, y = np.ptp(points[:, :2], axis=0)
+    if max(x, y) < 0.005:
+        return "on one vertical axis"
     return f"{x:.2f} × {y:.2f} m in plan"
 
 

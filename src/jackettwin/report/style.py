@@ -175,7 +175,7 @@ LEGEND_BELOW: dict[str, Any] = {**LEGEND_ABOVE, "y": -0.13, "yanchor": "top"}
 
 def finish(figure: go.Figure, *, height: int, **layout: Any) -> go.Figure:
     """Give a figure the house style."""
-    margin = {"l": 70, "r": 24, "t": 46, "b": 54}
+    margin = {"l": 70, "r": 24, "t": 64, "b": 54}  # above: buttons, and below them the legend
     figure.update_layout(
         template=_template(),
         height=height,

@@ -7,6 +7,7 @@ const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9
 const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "cross", "x", "star", "hexagon"];
 const text = (value) => value === null || value === undefined ? "–" : value;
 const fixed = (value, digits) => value === null || value === undefined ? "–" : value.toFixed(digits);
+const counted = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
 const words = (label) => label.replaceAll("_", " ");
 
 function row(cells, numeric) {
@@ -49,10 +50,10 @@ async function twin() {
     ...["structure", "soil", "rotor", "water"].map((source) => percent(m.sources[source]))]), [1, 2, 3, 4, 5]);
   report(known.parameters.law && `${known.version} ${known.parameters.until_utc} ${known.parameters.records}`, known.version);
   document.getElementById("law").textContent = known.parameters.law
-    ? `Law ${known.parameters.law}, from ${known.parameters.records} records; posterior: ${known.parameters.status}.`
+    ? `Law ${known.parameters.law}, from ${counted(known.parameters.records, "record")}; posterior: ${known.parameters.status}.`
     : "Not estimated yet: this is done when no record waits.";
   document.getElementById("sentence").textContent = known.records
-    ? `${known.records} records of ${known.days} ${known.days === 1 ? "day" : "days"}, ${known.first_utc.slice(0, 16).replace("T", " ")} to ${known.last_utc.slice(0, 16).replace("T", " ")} UTC. ${known.status}`
+    ? `${counted(known.records, "record")} of ${counted(known.days, "day")}, ${known.first_utc.slice(0, 16).replace("T", " ")} to ${known.last_utc.slice(0, 16).replace("T", " ")} UTC. ${known.status}`
     : "No record has been observed yet.";
 }
 
