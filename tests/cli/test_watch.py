@@ -11,6 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from jackettwin.cli import main
+from jackettwin.errors import InputError
+from jackettwin.structure import read_structure
 from jackettwin.twin.modal_table import read_modal_table
 from jackettwin.twin.watched import watch_table
 
@@ -164,6 +166,16 @@ def test_what_makes_no_sense_is_refused(
     assert done.exit_code == 2 and said in done.stderr
 
 
+def test_too_short_a_baseline_is_refused_before_the_model_is_asked(wide: Columns, tmp_path: Path) -> None:
+    """The refusal came after the causes of a structure, a quarter of a minute later."""
+    three_days(wide)
+    read = read_modal_table(written(wide, tmp_path / "a.csv"), columns=("f1", "f2"))
+    steps: list[str] = []
+    with pytest.raises(InputError, match="too short"):
+        watch_table(read, structure=read_structure("jacket15"), progress=steps.append)
+    assert steps == []
+
+
 def test_a_row_without_a_label_is_refused(wide: Columns, tmp_path: Path) -> None:
     rows = long(wide)
     rows["label"][4] = ""
@@ -203,7 +215,7 @@ def another_state(c: Columns) -> None:
     ("spoil", "said"),
     [
         (still, "always the same: f1"),
-        (endless, "1 values of frequency_hz that are not above zero or infinite count as missing"),
+        (endless, "1 values of frequency_hz (f1) that are not above zero or infinite count as missing"),
         (without_temperature, "temperature is missing in 86 % of the rows watched"),
         (another_state, "not judged: idling (100 rows)"),
     ],

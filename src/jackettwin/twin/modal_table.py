@@ -303,8 +303,10 @@ def _checked(history: History) -> tuple[History, tuple[str, ...]]:
             )  # fmt: skip
         bad = np.isinf(x) | ((x <= 0.0) & (column != "angle"))
         if bad.any():
+            of = ", ".join(label for label, any_ in zip(history.labels, bad.any(0), strict=True) if any_)
             remarks.append(
-                f"{int(bad.sum())} values of {what} that are not above zero or infinite count as missing"
+                f"{int(bad.sum())} values of {what} ({of}) that are not above zero or infinite count as "
+                "missing"
             )
             arrays[column] = np.where(bad, np.nan, x)
     endless = np.isinf(history.conditions)

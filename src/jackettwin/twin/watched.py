@@ -28,6 +28,7 @@ from jackettwin.watching import (
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
 from jackettwin.watching.explained import shares, slopes, unexplained_std
 from jackettwin.watching.history import deviations, typical
+from jackettwin.watching.watch import columns_to_watch
 
 _PATTERNS, _UNLIKELY = 3, 0.001
 """Causes whose patterns are kept, and the probability below which none is."""
@@ -118,6 +119,7 @@ def watch_table(
             f"all {history.days[-1] - first:.0f} days lie in the baseline of {baseline_days:g}: "
             "nothing is watched yet"
         )
+    columns_to_watch(baseline)  # refused before a model is asked for causes, which takes a while
     if structure is not None:
         progress("causes")
     causes = None if structure is None else structure_causes(structure, gravity, baseline)

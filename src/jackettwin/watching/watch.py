@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.watching.block import (
     BROAD,
@@ -196,6 +196,27 @@ class Look:
     spoken: tuple[Spoken, ...] = field(default=(), repr=False)
 
 
+def columns_to_watch(baseline: History) -> dict[Kind, IntArray]:
+    """Return the columns of each kind of quantity that the baseline tells enough of to watch.
+
+    Raises
+    ------
+    InputError
+        If the baseline is too short to learn from.
+    """
+    n_days = len(np.unique(np.floor(baseline.days)))
+    kept = {kind: watched(baseline, kind) for kind in KINDS}
+    if n_days < FEWEST_DAYS or not any(len(k) for k in kept.values()):
+        raise InputError(
+            "the baseline is too short to learn from",
+            field="baseline",
+            value=f"{n_days} days with records, {baseline.days.size} rows",
+            allowed=f"at least {FEWEST_DAYS} days with records and 30 values of a mode",
+            remedy="watch for longer, or set --baseline-days so that it covers the healthy time",
+        )
+    return kept
+
+
 def start(
     baseline: History,
     *,
@@ -215,16 +236,7 @@ def start(
     InputError
         If the baseline is too short to learn from.
     """
-    n_days = len(np.unique(np.floor(baseline.days)))
-    kept = {kind: watched(baseline, kind) for kind in KINDS}
-    if n_days < FEWEST_DAYS or not any(len(k) for k in kept.values()):
-        raise InputError(
-            "the baseline is too short to learn from",
-            field="baseline",
-            value=f"{n_days} days with records, {baseline.days.size} rows",
-            allowed=f"at least {FEWEST_DAYS} days with records and 30 values of a mode",
-            remedy="watch for longer, or set --baseline-days so that it covers the healthy time",
-        )
+    kept = columns_to_watch(baseline)
     design = design_of(baseline)
     rows, lagged = regressors(design, baseline, fresh(design))
     frequency = typical(baseline.frequency)
