@@ -15,6 +15,7 @@ from jackettwin.files import write_json
 from jackettwin.identification import ModalEstimate, RealPole
 from jackettwin.progress import Progress, Told
 from jackettwin.records.readers.channels import Unsaid
+from jackettwin.report.figures_follow import parameters_through_time
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation, TwinConfig, TwinModel, follow, observe_files, read_twin, twin_model
@@ -220,6 +221,15 @@ def test_a_file_that_is_no_prior(tmp_path: Path) -> None:
     path.write_text("{}")
     with pytest.raises(InputError, match="required key is missing"):
         read_followed(path)
+
+
+def test_one_day_alone_has_a_date_and_whole_numbers_on_its_axes(followed: Followed) -> None:
+    """Its loss factor of 0.21 stood at a tick that said "2", above an axis without a date."""
+    layout = parameters_through_time(replace(followed, days=followed.days[:1], drift=None), ["k"]).layout
+    midnight = followed.days[0].time_utc.replace(hour=0, minute=0, second=0, microsecond=0)
+    first, last = layout.xaxis.range
+    assert first < midnight < last or first < midnight + timedelta(days=1) < last
+    assert layout.yaxis.tickformat
 
 
 def test_the_page_shows_parameters_and_the_statement(followed: Followed, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import timedelta
 
 import numpy as np
 import plotly.graph_objects as go
@@ -33,12 +34,14 @@ def parameters_through_time(followed: Followed, names: Sequence[str]) -> go.Figu
         _points(figure, followed, name, row)
         if followed.drift is not None and name in followed.stiffness:
             _line(figure, followed, name, row)
-    figure.update_yaxes(type="log", dtick="D2", exponentformat="power")
+    figure.update_yaxes(type="log", dtick="D2", tickformat=".1~g")  # whole numbers: no decade may be in view
     by_day = followed.moments == "day"
     form = "%d %b\n%Y" if by_day else "%H:%M\n%d %b %Y"
     figure.update_xaxes(type="date", tickformat=form, row=len(names), col=1, title="time (UTC)")
     if by_day and len(followed.days) <= _FEW_DAYS:
-        figure.update_xaxes(dtick=_DAY_MS)
+        half = timedelta(hours=15)  # with one day alone the axis would hold no midnight, and no date
+        ends = [followed.days[0].time_utc - half, followed.days[-1].time_utc + half]
+        figure.update_xaxes(dtick=_DAY_MS, range=ends)
     return style.finish(
         figure,
         height=110 + 170 * len(names),
