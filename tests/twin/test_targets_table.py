@@ -48,6 +48,17 @@ def test_a_column_of_bare_deviations_is_of_the_quantity_before_it(tmp_path: Path
         read_targets_table(share)
 
 
+@pytest.mark.parametrize(("unit", "value", "std"), [("mHz", "181,9", "0,8"), ("rad/s", "1,14291", "0,00503")])
+def test_a_frequency_is_in_the_unit_that_its_column_says(
+    tmp_path: Path, unit: str, value: str, std: str
+) -> None:
+    """The unit was passed over, and 1.47 rad/s taken for the mode near 1.47 Hz."""
+    path = table(tmp_path / "m.csv", f"Mode;Frequency [{unit}];±", f"1st FA;{value};{std}")
+    (only,) = read_targets_table(path)
+    assert only["frequency_hz"] == pytest.approx(0.1819, rel=1e-4)
+    assert only["frequency_std_hz"] == pytest.approx(0.0008, rel=1e-2)
+
+
 def test_plus_minus_behind_the_value(tmp_path: Path) -> None:
     path = table(
         tmp_path / "m.csv",
@@ -86,6 +97,7 @@ def test_a_decrement_is_no_ratio_and_a_row_without_numbers_no_mode(tmp_path: Pat
         (["what,f [Hz]", "FA1,0.25"], "no column for the name of the mode"),
         (["mode,value", "FA1,0.25"], "no column for the frequency"),
         (["mode,f [Hz]"], "holds no modes"),
+        (["Mode,Frequency [Hz]", "1st FA,0,1819"], "row 2: has more cells than"),
     ],
 )
 def test_what_is_not_understood_is_named(tmp_path: Path, lines: list[str], message: str) -> None:

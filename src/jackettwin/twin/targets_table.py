@@ -27,6 +27,8 @@ IN_PERCENT = re.compile(r"%\s*[\])]?\s*$")
 OF_FREQUENCY = re.compile(r"\bf|fre[qk]|hz", re.IGNORECASE)
 OF_DAMPING = re.compile(r"ζ|zeta|xi|ξ|d[aä]e?mp", re.IGNORECASE)
 DECREMENT = re.compile(r"\blog|decrement|δ", re.IGNORECASE)
+HERTZ = ((re.compile(r"\bmHz", re.IGNORECASE), 1e-3), (re.compile(r"\brad\s*/\s*s", re.IGNORECASE), 0.5 / pi))
+"""What a frequency's column may be in beside hertz, and how many hertz that is."""
 INTERVAL_95 = re.compile(r"95", re.IGNORECASE)
 _CELL = re.compile(
     r"^\s*(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>%|Hz)?"
@@ -108,6 +110,13 @@ def _key(column: str) -> str | None:
 
 def _target(row: list[str], names: list[str], columns: dict[int, str], delimiter: str) -> dict[str, Any]:
     target: dict[str, Any] = {}
+    if any(row[len(names) :]):
+        raise InputError(
+            "has more cells than there are names of columns",
+            value=delimiter.join(row),
+            allowed=f"{len(names)} cells",
+            remedy="with decimal commas, separate the columns by semicolons",
+        )
     for i, key in columns.items():
         cell = row[i] if i < len(row) else ""
         if cell.lower() in MISSING:
@@ -139,6 +148,8 @@ def _values(key: str, cell: str, column: str) -> dict[str, float]:
         )
     percent = damps and bool(PERCENT.search(column) or match["unit"] == "%" or match["unit2"] == "%")
     scale = 0.01 if percent else 1.0
+    if not damps and match["unit"] != "Hz":
+        scale = next((hertz for unit, hertz in HERTZ if unit.search(column)), 1.0)
     if damps and DECREMENT.search(column):
         scale /= 2.0 * pi
     if damps and not percent and scale * float(match["value"]) > MOST_RATIO:
