@@ -60,6 +60,20 @@ def test_damping_that_no_source_explains_is_shared_out_to_none() -> None:
     assert "unexplained" not in owners[0]
 
 
+def test_a_law_is_not_called_the_only_one_tried_where_others_lock_a_damper() -> None:
+    """It was "about 100 % probable among 1 law; no other was tried", after four had been."""
+    first, second = ANSWERS.laws
+    title = "How far can this be trusted?"
+
+    def said(*laws: LawAnswer) -> str:
+        page = sentences(replace(ANSWERS, laws=(replace(first, probability=1.0), *laws)))
+        return next(q for q in page.questions if q.title == title).short[-1]
+
+    assert said(replace(second, probability=None, locked=True)).endswith("; all others lock a damper.")
+    assert said().endswith("; no other was tried.")
+    assert "%" not in said()
+
+
 def test_where_nothing_is_identified_that_is_said() -> None:
     lost = replace(ANSWERS, ground=(replace(STIFF, verdict="unidentified"), LOSS))
     assert sentences(lost).headline[0].startswith("Nothing of the ground is known from these 5 records")

@@ -362,7 +362,8 @@ def _law(a: Answers) -> list[str]:
     open_ = bool(others) and best >= 0.1 * law.probability
     verdict = "the data do not tell the laws apart" if open_ else "no other law comes near"
     if not others:
-        verdict = "no other was tried"
+        verdict = "all others lock a damper" if len(a.laws) > 1 else "no other was tried"
+        return [f"Recommended law: {law.law} ({why}); {verdict}."]
     return [
         f"Recommended law: {law.law} ({why}), {about}{100 * law.probability:.0f} % probable among "
         f"{count(len(others) + 1, 'law')}; {verdict}."
