@@ -15,6 +15,7 @@ from jackettwin.service import add_conditions, add_twin, catalogue, take_here
 from jackettwin.service.context import Service
 from jackettwin.service.server import take_from_inbox
 from jackettwin.store import reading, tables, work, writing
+from jackettwin.store.assets import found_version
 
 
 def names(client: TestClient, query: str = "") -> list[str]:
@@ -91,3 +92,10 @@ def test_what_an_archived_turbine_left_waits_for_all_others(client: TestClient, 
     client.post("/api/v1/assets/wtg/unarchive")
     with reading(service.database) as connection:
         assert work.any_queued(connection, work.OBSERVE, gone=True) is False
+
+
+def test_a_version_that_is_not_there_is_refused_with_those_that_are(service: Service) -> None:
+    """The names of all assets were given as allowed, and adding the asset as the remedy."""
+    with reading(service.database) as connection, pytest.raises(InputError) as refused:
+        found_version(connection, "wtg", 9)
+    assert refused.value.field == "version" and refused.value.allowed == "1"

@@ -180,10 +180,19 @@ def found_version(connection: Connection, name: str, version: int | None = None)
     row = connection.execute(query.where(versions.c.version == wanted)).one_or_none()
     if row is None:
         known = asset_names(connection)
+        if name in known:
+            numbers = connection.scalars(select(versions.c.version).where(versions.c.asset == name))
+            raise InputError(
+                "no such version of the asset",
+                field="version",
+                value=version,
+                allowed=", ".join(map(str, sorted(numbers))),
+                remedy=f"`jackettwin asset show {name} --store STORE` lists them",
+            )
         raise InputError(
-            "no such asset" if name not in known else "no such version of the asset",
-            field="asset" if name not in known else "version",
-            value=name if name not in known else version,
+            "no such asset",
+            field="asset",
+            value=name,
             allowed=", ".join(known[:20]) or "none yet",
             remedy="add it with `jackettwin asset add NAME TWIN --store STORE`",
         )
