@@ -295,8 +295,11 @@ def in_common(
 
 
 def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
+    """Return the sum at ``size`` delays: its squares are series in the lags within the sub-bands, which add."""
+    short = 2 * int(np.diff(edges).max())
     parts = (cross[first:last] for first, last in pairwise(edges))
-    return np.asarray(sum(np.abs(np.fft.ifft(part, size) * size) ** 2 / len(part) for part in parts))
+    powers = sum(np.abs(np.fft.ifft(part, short)) ** 2 / len(part) for part in parts)
+    return np.asarray(np.fft.irfft(np.fft.rfft(np.asarray(powers)) * short, size) * size)
 
 
 def long_delays(
