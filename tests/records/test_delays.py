@@ -10,6 +10,7 @@ import pytest
 from jackettwin.records.channel_delays import Network, against_main, per_channel, ties
 from jackettwin.records.delays import (
     aligned,
+    band_lines,
     doubled,
     gain_trajectories,
     long_delays,
@@ -89,7 +90,7 @@ def test_long_delays_are_found_and_independent_channels_have_none(rng: np.random
     common = rng.standard_normal(12_000)
     y = np.array([common, late(common, 240), rng.standard_normal(12_000)])
     pairs = np.array([[0, 1], [0, 2], [1, 2]])
-    delay, weight = long_delays(y, RATE, pairs, 2.0)
+    delay, weight = long_delays(band_lines(y, RATE), pairs, 2.0)
     assert delay == pytest.approx([-12.0, 0.0, 0.0], abs=0.1)
     assert weight[0] > 0.0
     assert weight[1] == weight[2] == 0.0

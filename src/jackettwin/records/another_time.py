@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.channel_delays import connected
 from jackettwin.records.clocks import Strangers
-from jackettwin.records.delays import Phases, long_delays
+from jackettwin.records.delays import BandLines, Phases, band_lines, long_delays
 
 COMMON = 75.0
 """Sum of ``long_delays`` from which two channels have something in common: that of independent ones is larger
@@ -69,12 +69,13 @@ def strangers(
     compared : (n_channels, n_channels)
         Which channels must have something in common.
     """
-    common = _common(y, sample_rate_hz, tree)
+    looks = _looks(y, sample_rate_hz)
+    common = _common(looks, tree)
     reached = np.zeros(len(y))
     np.maximum.at(reached, tree, common[:, None])
     if reached.max(initial=0.0) < TELLING * COMMON:
         return ()
-    groups = sorted(_groups(y, sample_rate_hz, tree[common > COMMON]), key=lambda rows: (-len(rows), rows))
+    groups = sorted(_groups(looks, len(y), tree[common > COMMON]), key=lambda rows: (-len(rows), rows))
     alike = _alike(seen)
     out: list[Strangers] = []
     for k, rows in enumerate(groups):
@@ -85,26 +86,28 @@ def strangers(
         likest, _ = nearest = pairs[np.argmax(alike[pairs[:, 0], pairs[:, 1]])]
         if alike[tuple(nearest)] < ALIKE or reached[[likest, *rows]].max() < TELLING * COMMON:
             continue
-        turned = np.concatenate([y, y[:, ::-1]])
-        backwards = _common(turned, sample_rate_hz, np.asarray(pairs + [0, len(y)], dtype=np.intp))
+        turned = _looks(np.concatenate([y, y[:, ::-1]]), sample_rate_hz)
+        backwards = _common(turned, np.asarray(pairs + [0, len(y)], dtype=np.intp))
         out.append(Strangers(tuple(rows), bool(np.any(backwards > COMMON)), len(rows) < len(groups[0])))
     return tuple(out)
 
 
-def _common(y: FloatArray, sample_rate_hz: float, pairs: IntArray) -> FloatArray:
-    """Return how much pairs have in common, in the whole record or in half of it.
+def _looks(y: FloatArray, sample_rate_hz: float) -> list[BandLines | None]:
+    """Return the lines of the record and of its halves.
 
     A sign that turns in the middle leaves nothing in common over the whole.
     """
     half = y.shape[1] // 2
-    parts = (y, y[:, :half], y[:, half:])
-    found = [long_delays(part, sample_rate_hz, pairs, 0.0, ALL_DELAYS)[1] for part in parts]
-    return np.asarray(np.max(found, axis=0))
+    return [band_lines(part, sample_rate_hz) for part in (y, y[:, :half], y[:, half:])]
 
 
-def _groups(y: FloatArray, sample_rate_hz: float, joined: IntArray) -> list[list[int]]:
+def _common(looks: Sequence[BandLines | None], pairs: IntArray) -> FloatArray:
+    """Return how much pairs have in common, in the whole record or in half of it."""
+    return np.asarray(np.max([long_delays(look, pairs, 0.0, ALL_DELAYS)[1] for look in looks], axis=0))
+
+
+def _groups(looks: Sequence[BandLines | None], n: int, joined: IntArray) -> list[list[int]]:
     """Return the groups of channels that have something in common, directly or through others."""
-    n = len(y)
     near = np.eye(n, dtype=bool)
     near[joined[:, 0], joined[:, 1]] = near[joined[:, 1], joined[:, 0]] = True
     groups = connected(near)
@@ -113,7 +116,7 @@ def _groups(y: FloatArray, sample_rate_hz: float, joined: IntArray) -> list[list
         for k, rows in enumerate(groups):
             group[rows] = k
         apart = np.array([(i, j) for j in range(n) for i in range(j) if group[i] != group[j]], dtype=np.intp)
-        for i, j in apart[_common(y, sample_rate_hz, apart) > COMMON]:
+        for i, j in apart[_common(looks, apart) > COMMON]:
             near[i, j] = near[j, i] = True
         groups = connected(near)
     return groups

@@ -19,6 +19,7 @@ import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.records.sensor_polarity import LEAST_CYCLES, strongest_line
+from jackettwin.records.transforms import of_fast_length
 
 PARTS = 20
 """Parts of a record over which the gain is taken."""
@@ -118,6 +119,7 @@ def _envelopes(y: FloatArray) -> list[ComplexArray]:
     The ends are tapered, lest the jump between them leak into every band.
     """
     out: list[ComplexArray] = []
+    y = of_fast_length(y)
     n = y.shape[1]
     if n < 4 * LEAST_CYCLES:
         return out

@@ -21,8 +21,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+import scipy  # scipy.fft is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
+from jackettwin.records.transforms import hann_lines
 
 FEWEST_LINES = 4
 """Lines over which a cross spectrum is averaged at least: the coherence of independent lines is biased by a
@@ -65,6 +67,21 @@ FINE_COARSE = 2
 """Delays tried for each line of the band."""
 FINE = 24.0
 """Steps of the search in a period of the highest bin."""
+
+
+@dataclass(frozen=True)
+class BandLines:
+    """Lines of the channels' spectra in the band of most power, each of unit size.
+
+    Attributes
+    ----------
+    unit : (n_channels, n_lines) complex
+    duration_s : float
+        Of the samples they are of.
+    """
+
+    unit: ComplexArray
+    duration_s: float
 
 
 @dataclass(frozen=True)
@@ -118,15 +135,16 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     n = y.shape[1]
     if n < SHORTEST:
         return None
-    low_hz, high_hz = band_hz(y, sample_rate_hz)
+    lines, used = hann_lines(y)
+    low_hz, high_hz = (edge * sample_rate_hz / used for edge in _band(lines))
     most = min(low_hz / CYCLES_A_WINDOW, (high_hz - low_hz) / (FEWEST_LINES * WANTED_BINS))
     windows = int(np.clip(n / sample_rate_hz * most, *WINDOWS))
     length = n // windows
     df = sample_rate_hz / length
     first = max(int(low_hz / df), 2)
-    lines = int(high_hz / df) - first
-    each = max(FEWEST_LINES, -(-lines // MOST_BINS))
-    bins = lines // each
+    wanted = int(high_hz / df) - first
+    each = max(FEWEST_LINES, -(-wanted // MOST_BINS))
+    bins = wanted // each
     if bins < FEWEST_BINS:
         return None
     kept = slice(first, first + bins * each)
@@ -140,15 +158,14 @@ def phases(y: FloatArray, sample_rate_hz: float, turn: ComplexArray) -> Phases |
     return Phases(f, coherency, weight, pairs, each * df, log_amplitude)
 
 
-def band_hz(y: FloatArray, sample_rate_hz: float) -> tuple[float, float]:
-    """Return the edges of the band that holds most of the power of every channel [Hz]."""
-    power = np.abs(np.fft.rfft(y * np.hanning(y.shape[1]), axis=1)) ** 2
+def _band(lines: ComplexArray) -> tuple[float, float]:
+    """Return the edges of the band that holds most of the power of every channel, in lines."""
+    power = np.abs(lines) ** 2
     power = np.maximum(power - FLOOR * np.median(power, axis=1, keepdims=True), 0.0)
     total = power.sum(axis=1, keepdims=True)
     passed = np.cumsum(np.mean(power / np.where(total > 0.0, total, 1.0), axis=0))
     low, high = (float(np.searchsorted(passed, share)) for share in BAND)
-    top = min(ABOVE * high, 0.45 * y.shape[1])
-    return BELOW * low * sample_rate_hz / y.shape[1], top * sample_rate_hz / y.shape[1]
+    return BELOW * low, min(ABOVE * high, 0.9 * (lines.shape[1] - 1))
 
 
 def _coherency(y: FloatArray, windows: int, kept: slice, each: int) -> tuple[ComplexArray, FloatArray]:
@@ -265,9 +282,23 @@ def refined_peak(search_s: FloatArray, values: FloatArray) -> tuple[FloatArray, 
     return np.asarray(search_s[at] + move * step), np.asarray(top - 0.25 * (left - right) * move)
 
 
-def in_common(
-    y: FloatArray, sample_rate_hz: float, pairs: IntArray
-) -> tuple[FloatArray, Iterator[FloatArray]] | None:
+def band_lines(y: FloatArray, sample_rate_hz: float) -> BandLines | None:
+    """Return the lines in the band of most power; None if the record is too short to tell a delay.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero mean, without gaps.
+    """
+    lines, used = hann_lines(y)
+    low, high = (round(edge) for edge in _band(lines))
+    if high - low < SUB_BANDS * FEWEST_LINES:
+        return None
+    lines = lines[:, low:high]
+    return BandLines(lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0), used / sample_rate_hz)
+
+
+def in_common(lines: BandLines, pairs: IntArray) -> tuple[FloatArray, Iterator[FloatArray]]:
     r"""Return delays and, pair after pair, how much its channels have in common at each of them.
 
     .. math:: T(\tau) = \sum_s n_s\left|\frac1{n_s}\sum_{k\in s} e^{i\varphi_k + 2\pi i f_k\tau}\right|^2
@@ -280,34 +311,28 @@ def in_common(
     delay_s : (n_delays,)
         Of the first channel of a pair behind the second.
     sums : iterator over (n_delays,)
-        None instead of both if the record is too short to tell.
     """
-    n = y.shape[1]
-    low, high = (round(edge * n / sample_rate_hz) for edge in band_hz(y, sample_rate_hz))
-    if high - low < SUB_BANDS * FEWEST_LINES:
-        return None
-    lines = np.fft.rfft(y * np.hanning(n), axis=1)[:, low:high]
-    unit = lines / np.where(np.abs(lines) > 0.0, np.abs(lines), 1.0)
-    size = int(2 ** np.ceil(np.log2(FINE_COARSE * (high - low))))
-    delay = np.fft.fftfreq(size, 1.0 / size) * n / (size * sample_rate_hz)
-    edges = np.linspace(0, high - low, SUB_BANDS + 1).astype(int)
+    unit = lines.unit
+    size = int(2 ** np.ceil(np.log2(FINE_COARSE * unit.shape[1])))
+    delay = np.fft.fftfreq(size, 1.0 / size) * lines.duration_s / size
+    edges = np.linspace(0, unit.shape[1], SUB_BANDS + 1).astype(int)
     return delay, (_sum(unit[i] * unit[j].conj(), edges, size) for i, j in pairs)
 
 
 def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
-    """Return the sum at ``size`` delays: its squares are series in the lags within the sub-bands, which add."""
-    short = 2 * int(np.diff(edges).max())
+    """Return the sum at ``size`` delays: its squares are series in the lags within sub-bands, which add."""
+    short = scipy.fft.next_fast_len(2 * int(np.diff(edges).max()))
     parts = (cross[first:last] for first, last in pairwise(edges))
     powers = sum(np.abs(np.fft.ifft(part, short)) ** 2 / len(part) for part in parts)
     return np.asarray(np.fft.irfft(np.fft.rfft(np.asarray(powers)) * short, size) * size)
 
 
 def long_delays(
-    y: FloatArray, sample_rate_hz: float, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
+    lines: BandLines | None, pairs: IntArray, near_s: float, longest: float = LONGEST_SHARE
 ) -> tuple[FloatArray, FloatArray]:
     """Return delays of the pairs beyond ``near_s``, 0 where there is none, and their weights.
 
-    Delays up to the share ``longest`` of the record are tried.
+    Delays up to the share ``longest`` of the record are tried; no lines tell of none.
 
     Returns
     -------
@@ -315,11 +340,10 @@ def long_delays(
         The weight is 0 for pairs that are independent at all delays.
     """
     out, weight = np.zeros(len(pairs)), np.zeros(len(pairs))
-    found = in_common(y, sample_rate_hz, pairs)
-    if found is None:
+    if lines is None:
         return out, weight
-    delay, sums = found
-    far = np.abs(delay) < longest * y.shape[1] / sample_rate_hz
+    delay, sums = in_common(lines, pairs)
+    far = np.abs(delay) < longest * lines.duration_s
     near = np.abs(delay) <= near_s
     for pair, sum_ in enumerate(sums):
         best = int(np.argmax(np.where(far, sum_, 0.0)))

@@ -99,13 +99,12 @@ def _spread_around(x: FloatArray, at: Int64Array, hold: int) -> FloatArray:
 
 
 def _surroundings(departure: FloatArray) -> FloatArray:
-    """Return for every sample the largest median of its block and the two beside it."""
+    """Return for every sample the largest median of its block and the two beside it; the last goes on."""
     n_blocks = max(len(departure) // SPIKE_BLOCK, 1)
-    edges = np.linspace(0, len(departure), n_blocks + 1).astype(np.int64)
-    medians = np.array([np.median(departure[i:j]) for i, j in zip(edges[:-1], edges[1:], strict=True)])
-    wide = ndimage.maximum_filter1d(medians, 3, mode="nearest")
-    out: FloatArray = np.repeat(wide, np.diff(edges))
-    return out
+    block = len(departure) // n_blocks
+    medians = np.median(departure[: n_blocks * block].reshape(n_blocks, block), axis=1)
+    wide = np.repeat(ndimage.maximum_filter1d(medians, 3, mode="nearest"), block)
+    return np.pad(wide, (0, len(departure) - len(wide)), mode="edge")
 
 
 def clipped(y: FloatArray) -> BoolArray:

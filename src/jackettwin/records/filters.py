@@ -111,13 +111,11 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
 
 
 def _filtered(taps: FloatArray, y: FloatArray, up: int, down: int) -> FloatArray:
-    """Filter rows at ``up`` times the rate and keep every ``down``-th sample; at one rate by fast convolution."""
-    out: FloatArray
-    if up == down == 1:  # where every output is wanted, products of spectra are fewer than those of long filters
-        out = scipy.signal.oaconvolve(y, taps[None, :], axes=1)
-    else:
-        out = scipy.signal.upfirdn(taps, y, up, down, axis=1)
-    return out
+    """Filter rows at ``up`` times the rate and keep every ``down``-th sample."""
+    # where every output is wanted, the transforms of long filters take fewer products
+    if up == down == 1:
+        return np.asarray(scipy.signal.oaconvolve(y, taps[None, :], axes=1))
+    return np.asarray(scipy.signal.upfirdn(taps, y, up, down, axis=1))
 
 
 def half_length(taps: FloatArray, up: int = 1) -> int:

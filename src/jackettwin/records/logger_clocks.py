@@ -30,6 +30,7 @@ from jackettwin.records.clocks import ClockJump, LoggerClocks, Strangers
 from jackettwin.records.delays import (
     Phases,
     aligned,
+    band_lines,
     doubled,
     long_delays,
     objective,
@@ -173,7 +174,8 @@ def _long_delays(y: FloatArray, sample_rate_hz: float, seen: Phases, same_place:
     explained = objective(seen, doubled(seen), seen.search_s).max(axis=0)
     unknown = (seen.total <= LEAST_WEIGHT) | (explained < EXPLAINED * seen.total)
     delay, weight = np.zeros(len(seen.pairs)), np.where(unknown, 0.0, seen.total)
-    delay[unknown], weight[unknown] = long_delays(y, sample_rate_hz, seen.pairs[unknown], near_s)
+    lines = band_lines(y, sample_rate_hz) if unknown.any() else None
+    delay[unknown], weight[unknown] = long_delays(lines, seen.pairs[unknown], near_s)
     if not delay.any():
         return np.zeros(len(y))
     network = Network(len(y), seen.pairs, weight > 0.0, same_place, near_s)

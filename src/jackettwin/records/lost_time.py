@@ -16,7 +16,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.channel_delays import TIE, largest
 from jackettwin.records.clocks import LostTime
-from jackettwin.records.delays import Phases, in_common, phases, trajectories
+from jackettwin.records.delays import Phases, band_lines, in_common, phases, trajectories
 
 GO_ON = 0.75
 """Share of the phases of two groups that short delays explain while their clocks go on."""
@@ -181,11 +181,11 @@ def _likely(y: FloatArray, sample_rate_hz: float, seen: Phases, parting: _Partin
     # the second of a pair is of the group: it is ahead by what was lost
     swap = np.isin(pairs[:, 0], parting.rows)
     pairs = np.where(swap[:, None], pairs[:, ::-1], pairs)
-    found = in_common(after, sample_rate_hz, pairs)
-    if found is None:
+    lines = band_lines(after, sample_rate_hz)
+    if lines is None:
         return []
-    delay, sums = found
-    far = np.abs(delay) < LONGEST * after.shape[1] / sample_rate_hz
+    delay, sums = in_common(lines, pairs)
+    far = np.abs(delay) < LONGEST * lines.duration_s
     total = np.where(far, np.sum(list(sums), axis=0), 0.0)
     top = (total >= np.roll(total, 1)) & (total >= np.roll(total, -1))
     order = np.argsort(-np.where(top, total, 0.0))[:TRIED]

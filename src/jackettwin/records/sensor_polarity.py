@@ -25,6 +25,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.records import faults
 from jackettwin.records.filters import bridge
+from jackettwin.records.transforms import hann_lines
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Channel, Record
@@ -162,8 +163,7 @@ def around(spectra: ComplexArray, peak: float) -> ComplexArray:
 def windowed_spectra(y: FloatArray) -> ComplexArray:
     """Return the transforms of rows behind a Hann window, gaps bridged."""
     x = np.apply_along_axis(bridge, 1, y)
-    spectra: ComplexArray = np.fft.rfft((x - x.mean(axis=1, keepdims=True)) * np.hanning(y.shape[1]), axis=1)
-    return spectra
+    return hann_lines(x - x.mean(axis=1, keepdims=True))[0]
 
 
 def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:

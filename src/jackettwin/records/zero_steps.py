@@ -13,6 +13,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.records.filters import bridge
+from jackettwin.records.transforms import of_fast_length
 
 SLOW = 20
 """Cycles a record below which motion is slow."""
@@ -63,7 +64,7 @@ def zero_step(y: FloatArray) -> ZeroStep | None:
     at = int(k[np.argmax(gain)])
     by = float(x[at:].mean() - x[:at].mean())
     rest = x - np.where(np.arange(n) >= at, by, 0.0)
-    slow = [float(np.sum(np.abs(np.fft.rfft(s - s.mean())[1:SLOW]) ** 2)) for s in (x, rest)]
+    slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
     rms = float(rest.std())
     if rms == 0.0 or abs(by) < LEAST_SIZE * rms or slow[1] > (1.0 - EXPLAINED) * slow[0]:
         return None
