@@ -47,6 +47,14 @@ def test_a_force_that_changes_is_no_change_of_a_sensor(tower: SimpleNamespace) -
     assert changes(data) == []
 
 
+def test_a_structure_that_comes_to_rest_in_noise_breaks_no_sensor(tower: SimpleNamespace) -> None:
+    """At rest every channel shows its own noise, and nothing of what the others do."""
+    for seed in range(5):
+        data = tower.record(seed).data * np.exp(-np.arange(N) / 1_000.0)
+        noise = np.random.default_rng(seed).standard_normal(data.shape)
+        assert changes(data + 0.2 * data.std(axis=1, keepdims=True) * noise) == []
+
+
 @pytest.mark.parametrize("factor", [3.0, 0.3, -1.0])
 @pytest.mark.parametrize(("at", "before"), [(6_000, False), (3_777, True), (9_000, False)])
 def test_gain_and_sign_are_found_where_they_change(

@@ -44,7 +44,8 @@ EXPLAINED = 0.95
 FACTOR = 1.5
 """Least change of gain that is reported."""
 CLEARER = 4.0
-"""So many times less must be left unexplained by two gains than by one."""
+"""So many times less must be left unexplained by two gains than by one, and than the others move where one
+shows nothing."""
 DEAD = 0.15
 """Gain below which a channel shows nothing of what the others do."""
 PRESENT = 0.9
@@ -189,6 +190,10 @@ class _Against:
         """Power of the channel its prediction does not explain."""
         return float(self.own.sum()) * (1.0 - self.explained**2)
 
+    def a_part(self, power: float) -> float:
+        """Return so much power over the parts in which samples are there."""
+        return power / max(np.count_nonzero(self.predicted), 1)
+
 
 def _against_others(
     z: ComplexArray, there: BoolArray, rows: list[int], i: int, some: slice
@@ -254,7 +259,9 @@ def _gain_of_the_worse(left: _Against, right: _Against, *, first: bool) -> tuple
     better, worse = (left, right) if better_is_left else (right, left)
     ratio = worse.gain / better.gain
     if abs(ratio) < DEAD and not all(sound):
-        return 0.0, not better_is_left
+        # where a structure comes to rest, what is left of a prediction is noise
+        moves = worse.a_part(float(worse.predicted.sum())) > CLEARER * better.a_part(better.left_over)
+        return (0.0, not better_is_left) if moves else None
     turned = abs(ratio.imag) > 0.5 * abs(ratio)
     if not all(sound) or turned or 1.0 / FACTOR < ratio.real < FACTOR:
         return None

@@ -63,6 +63,16 @@ def test_a_rotor_stop_is_a_decay(seed: int) -> None:
         assert mode.status != "ok" or np.min(np.abs(np.log(mode.frequency_hz / F))) < 0.02
 
 
+def test_a_channel_with_a_gap_hides_no_decay_from_the_others() -> None:
+    whole = after_a_stop(0)
+    data = whole.data.copy()
+    data[1, 4000:] = np.nan
+    found = identify(replace(whole, data=data))
+    assert {mode.method for mode in found.modes} == {"decay"}
+    assert [c.name for c in found.channels] == ["s0", *(f"s{i}" for i in range(2, 8))]
+    assert any("s1 left out: 33% missing" in text for text in found.warnings)
+
+
 def test_pull_and_release_seen_as_displacement() -> None:
     omega = 2.0 * np.pi * F[:, None]
     swing = np.exp(-ZETA[:, None] * omega * T[:900]) * np.cos(omega * T[:900])

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 SAMPLES_A_CYCLE = 40.0
 """Of the strongest frequency, at least: modes up to sixteen times as high are seen."""
 MOST_MISSING = 0.02
-"""Share of a channel's samples that are bridged; with more, a decay is not looked for."""
+"""Share of a channel's samples that are bridged; one with more is left out of a decay."""
 DEEP = 1.5
 """E-folds of a decay from which ambient fading is hardly ever mistaken for one …"""
 MOSTLY = 0.88
@@ -121,9 +121,13 @@ def transient(record: Record, settings: IdentificationSettings, *, knocks: bool 
         If no channel is usable.
     """
     usable, warnings = usable_channels(record)
-    measured = detrend(usable)
-    if np.isnan(measured.data).mean(axis=1).max() > MOST_MISSING:
+    missing = dict(zip(usable.channel_names, np.isnan(usable.data).mean(axis=1), strict=True))
+    gaps = {name: share for name, share in missing.items() if share > MOST_MISSING}
+    if len(gaps) == len(missing):
         return None
+    usable = usable.select([name for name in missing if name not in gaps])
+    warnings += tuple(f"channel {name} left out: {share:.0%} missing" for name, share in gaps.items())
+    measured = detrend(usable)
     level, times = accelerated(measured, as_declared=True)
     part, level = _falling(level)
     if part is None and times.any():
