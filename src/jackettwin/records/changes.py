@@ -192,7 +192,7 @@ class _Against:
 
     def a_part(self, power: float) -> float:
         """Return so much power over the parts in which samples are there."""
-        return power / max(np.count_nonzero(self.predicted), 1)
+        return power / max(int(np.count_nonzero(self.predicted)), 1)
 
 
 def _against_others(

@@ -31,6 +31,10 @@ from jackettwin.arrays import ComplexArray, FloatArray
 REWEIGHTED = 2
 """Times the noise of each channel is estimated anew."""
 MOST_DAMPING = 0.5
+CONVERGED = 1e-3
+"""Slope that ends a fit, by parameters in units of their standard deviations."""
+MOST_STEPS = 40
+"""Of a fit; one that takes more leans against its bounds."""
 FARTHEST = 0.2
 """Largest change of ln ω from where a mode started: farther is another mode."""
 LEAST_NOISE = 1e-6
@@ -108,7 +112,7 @@ def damped_cosines(
         free = max(len(t) - 2 * n - 1, 1)
         sigma = np.sqrt(np.sum(residual**2, axis=1) / free) + least
     white = y / sigma[:, None]
-    left, amplitudes = _projected(white, t, p)
+    left, amplitudes, _, _ = _projected(white, t, p)
     jacobian = _jacobian(white, t, p)
     flat = jacobian.reshape(len(p), -1)
     bound = np.linalg.pinv(flat @ flat.T)
@@ -132,15 +136,57 @@ def damped_cosines(
 def _least_squares(
     y: FloatArray, t: FloatArray, p: FloatArray, bounds: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
-    """Return the parameters within bounds that leave least, from p on."""
+    """Return the parameters within bounds that leave least, from p on, by Gauss–Newton steps.
 
-    def left(q: FloatArray) -> FloatArray:
-        return _projected(y, t, q)[0].ravel()
+    What the amplitudes take is projected out (variable projection: Golub & Pereyra 1973; slopes as Kaufman
+    1975), and only products of the slopes are formed, which costs the same for any number of channels.
+    """
+    low, high = bounds
+    # in units of what the data tell of each parameter
+    unit = 1.0 / np.sqrt(np.diag(_products(y, t, p)[2]) + 1e-300)
+    nowhere = (np.inf, np.zeros(len(p)), np.eye(len(p)))
+    seen: dict[bytes, tuple[float, FloatArray, FloatArray]] = {}
 
-    def slope(q: FloatArray) -> FloatArray:
-        return _jacobian(y, t, q).reshape(len(q), -1).T
+    def at(q: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        if q.tobytes() not in seen:
+            seen.clear()
+            inside = np.all((unit * q > low) & (unit * q < high))
+            seen[q.tobytes()] = _products(y, t, unit * q) if inside else nowhere
+        return seen[q.tobytes()]
 
-    return np.asarray(optimize.least_squares(left, p, jac=slope, bounds=bounds, x_scale="jac").x)
+    found = optimize.minimize(  # type: ignore[call-overload]
+        lambda q: at(q)[0],
+        p / unit,
+        method="trust-exact",
+        jac=lambda q: unit * at(q)[1],
+        hess=lambda q: np.outer(unit, unit) * at(q)[2],
+        options={"gtol": CONVERGED, "maxiter": MOST_STEPS},
+    )
+    return np.asarray(unit * found.x)
+
+
+def _products(y: FloatArray, t: FloatArray, p: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+    """Return half the sum of squares of what is left, its slope, and the slopes' products."""
+    left, amplitudes, q, moved = _projected(y, t, p)
+    parts = np.concatenate([moved.real, -moved.imag], axis=1)
+    parts -= q @ (q.T @ parts)
+    twice = np.concatenate([amplitudes, amplitudes])
+    weight = np.concatenate([twice.real, twice.imag])
+    slope = -np.sum(weight * (left @ parts).T, axis=1)
+    second = (parts.T @ parts) * (weight @ weight.T)
+    n = len(p)
+    return (
+        0.5 * float(np.sum(left**2)),
+        slope[:n] + slope[n:],
+        second[:n, :n] + second[:n, n:] + second[n:, :n] + second[n:, n:],
+    )
+
+
+def _pole_slopes(p: FloatArray) -> ComplexArray:
+    """Return the derivatives of the poles by their ln ω, and by their ln ζ."""
+    omega, zeta = np.exp(p[: len(p) // 2]), np.exp(p[len(p) // 2 :])
+    by_log_zeta = omega * zeta * (-1.0 - 1j * zeta / np.sqrt(1.0 - zeta**2))
+    return np.concatenate([_poles(p), by_log_zeta])
 
 
 def _sums(p: FloatArray, amplitudes: ComplexArray, t: FloatArray) -> FloatArray:
@@ -153,32 +199,33 @@ def _poles(p: FloatArray) -> ComplexArray:
     return np.asarray(omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2)))
 
 
-def _basis(t: FloatArray, p: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Return Re and −Im of the decays and a constant, (n_samples, 2 n_modes + 1), and the decays."""
+def _projected(
+    y: FloatArray, t: FloatArray, p: FloatArray
+) -> tuple[FloatArray, ComplexArray, FloatArray, ComplexArray]:
+    """Project out what the best amplitudes, and a constant, take.
+
+    Returns
+    -------
+    left : (n_channels, n_samples)
+    amplitudes : (n_modes, n_channels)
+    q : (n_samples, 2 n_modes + 1)
+        Orthonormal, along Re and −Im of the decays and the constant.
+    moved : (n_samples, 2 n_modes)
+        Derivatives of the decays by ln ω, then by ln ζ.
+    """
     decays = np.exp(np.outer(t, _poles(p)))
-    return np.concatenate([decays.real, -decays.imag, np.ones((len(t), 1))], axis=1), decays
-
-
-def _projected(y: FloatArray, t: FloatArray, p: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Return what the best amplitudes leave, and these, (n_modes, n_channels)."""
-    basis, decays = _basis(t, p)
+    basis = np.concatenate([decays.real, -decays.imag, np.ones((len(t), 1))], axis=1)
     q, r = np.linalg.qr(basis)
     linear = np.linalg.solve(r + 1e-12 * np.trace(np.abs(r)) / len(r) * np.eye(len(r)), q.T @ y.T)
     n = decays.shape[1]
-    return np.asarray(y - (y @ q) @ q.T), np.asarray(linear[:n] + 1j * linear[n : 2 * n])
+    moved = t[:, None] * np.concatenate([decays, decays], axis=1) * _pole_slopes(p)
+    return y - (y @ q) @ q.T, linear[:n] + 1j * linear[n : 2 * n], q, moved
 
 
 def _jacobian(y: FloatArray, t: FloatArray, p: FloatArray) -> FloatArray:
     """Return the residual's derivatives by ln ω and ln ζ, (2 n_modes, n_channels, n_samples)."""
-    basis, decays = _basis(t, p)
-    _, amplitudes = _projected(y, t, p)
+    _, amplitudes, q, moved = _projected(y, t, p)
     n = len(p) // 2
-    omega, zeta = np.exp(p[:n]), np.exp(p[n:])
-    by_log_omega = _poles(p)
-    by_log_zeta = omega * zeta * (-1.0 - 1j * zeta / np.sqrt(1.0 - zeta**2))
-    slope = np.concatenate([by_log_omega, by_log_zeta])
-    moved = t[:, None] * np.concatenate([decays, decays], axis=1) * slope
-    q, _ = np.linalg.qr(basis)
     out = np.empty((2 * n, *y.shape))
     for i in range(2 * n):
         change = np.outer(moved[:, i], amplitudes[i % n]).real.T

@@ -54,7 +54,7 @@ STILL_FORCED = 1.5
 """Power that the fit leaves of the first quarter, over that of the rest: forces still act."""
 LATER_STARTS = 8
 """Times the start is put off by two cycles."""
-HOPELESS = 0.5
+HOPELESS = 0.8
 """Share of a decay that damped cosines explain, below which no later start makes it a free one: of those that
 end as one the first explains 0.95, of a shaking table that fades 0.3, wherever it begins."""
 CLEAR = 25.0
@@ -212,15 +212,22 @@ def _falling(level: Record) -> tuple[DecayPart | None, Record]:
 def _free(part: DecayPart, y: FloatArray, rate: float) -> _Decay | None:
     """Return the part of a decay in which no force acts any more, and its modes."""
     step, whole = round(CYCLES * rate / part.strongest_hz), part
-    for _ in range(LATER_STARTS):
-        if part.last - part.first < 4 * step:
+    fit: DampedCosines | None = None
+    for put_off in range(LATER_STARTS):
+        falling = y[:, part.first : part.last]
+        if falling.shape[1] < 4 * step:
             return None
-        found = modes_of_decay(y[:, part.first : part.last], rate, part.strongest_hz, y[:, part.last :])
-        if found is None or found.fit.explained < HOPELESS:
-            return None
-        if not _still_forced(found.fit):
-            enough = MOSTLY if part.fall >= DEEP else NEARLY_ALL
-            return _Decay(whole, part, found) if found.fit.explained >= enough else None
+        if fit is not None:
+            # the modes found first tell where forces act no more; from there they are sought again
+            fit = damped_cosines(falling, rate, fit.frequency_hz, fit.damping_ratio)
+        if fit is None or not _still_forced(fit) or put_off == LATER_STARTS - 1:
+            found = modes_of_decay(falling, rate, part.strongest_hz, y[:, part.last :])
+            if found is None or found.fit.explained < HOPELESS:
+                return None
+            if not _still_forced(found.fit):
+                enough = MOSTLY if part.fall >= DEEP else NEARLY_ALL
+                return _Decay(whole, part, found) if found.fit.explained >= enough else None
+            fit = found.fit
         part = replace(part, first=part.first + step)
     return None
 

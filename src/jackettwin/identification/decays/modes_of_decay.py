@@ -27,6 +27,11 @@ NEAR = 0.25
 """Logarithm of the ratio of two frequencies within which two modes …"""
 SAME_SHAPE = 0.9
 """… of at least this MAC are one."""
+WITHIN_REACH = 0.5
+"""Share of a decay that the cosines of all poles explain, below which no fit is tried: of a structure that
+was let go it is 0.7 and more, of random forces that fade 0.2 to 0.9."""
+SAME_COSINES = 1e-9
+"""Of the largest eigenvalue of the cosines' products: smaller ones are differences of poles of one mode."""
 LEAST_RATIO = 12.0
 """Power of a mode in the decay over what noise gives the same cosines, from which it is taken."""
 LIGHTEST, HEAVIEST = 2e-4, 0.12
@@ -61,19 +66,22 @@ def modes_of_decay(
         The same channels after it.
     """
     f, zeta = _poles(y, sample_rate_hz, strongest_hz)
-    taken: list[int] = []
+    if not len(f) or _of_all(y, sample_rate_hz, f, zeta) < WITHIN_REACH:
+        return None
     open_to = list(range(len(f)))
     best: DecayFit | None = None
     left, refused = y, 0
-    while open_to and len(taken) < MOST_MODES and refused < MOST_REFUSED:
+    while open_to and (best is None or len(best.ratio) < MOST_MODES) and refused < MOST_REFUSED:
         gains = [_explained(left, sample_rate_hz, float(f[i]), float(zeta[i])) for i in open_to]
         k = open_to[int(np.argmax(gains))]
         open_to = [i for i in open_to if abs(np.log(f[i] / f[k])) > APART]
-        tried = [*taken, k]
-        fit = damped_cosines(y, sample_rate_hz, f[tried], zeta[tried], noise=noise)
+        start = np.array([[f[k]], [zeta[k]]])
+        if best is not None:
+            start = np.hstack([[best.fit.frequency_hz, best.fit.damping_ratio], start])
+        fit = damped_cosines(y, sample_rate_hz, *start, noise=noise)
         found = DecayFit(fit, _ratios(fit, sample_rate_hz, y.shape[1], noise))
         if found.ratio.min() > LEAST_RATIO and fit.damping_ratio.max() < HEAVIEST and _distinct(fit):
-            taken, best, left = tried, found, fit.residual
+            best, left = found, fit.residual
         else:
             refused += 1
     return best
@@ -123,6 +131,19 @@ def _sums(lags: FloatArray, rows: int) -> FloatArray:
     size = 2 * rows + 1
     head = y[:, : n - size]
     return np.stack([y[:, k : k + head.shape[1]] @ head.T / head.shape[1] for k in range(size)])
+
+
+def _of_all(y: FloatArray, sample_rate_hz: float, f: FloatArray, zeta: FloatArray) -> float:
+    """Return the share of a decay that the damped cosines of all poles explain together, unrefined."""
+    t = np.arange(y.shape[1]) / sample_rate_hz
+    decays = np.exp(np.outer(2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2)), t))
+    basis = np.concatenate([decays.real, decays.imag])
+    about = y - y.mean(axis=1, keepdims=True)
+    gram, along = basis @ basis.T, basis @ about.T
+    values, vectors = np.linalg.eigh(gram)
+    kept = values > SAME_COSINES * values[-1]
+    power = np.sum((vectors[:, kept].T @ along) ** 2 / values[kept, None], axis=0)
+    return float(np.mean(power / (np.sum(about**2, axis=1) + 1e-300)))
 
 
 def _explained(y: FloatArray, sample_rate_hz: float, f: float, zeta: float) -> float:
