@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate, identify
-from jackettwin.identification.selection.neighbours import of_neighbours
+from jackettwin.identification.selection.candidates import with_covariance
+from jackettwin.identification.selection.neighbours import of_neighbours, told_twice
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 
@@ -42,6 +45,21 @@ def test_of_two_that_may_each_be_of_the_others_the_broader_is_told(
         estimate(f, z, s) for f, z, s in zip([0.3, 0.6, 1.0, 3.0], [0.01, *zeta, 0.01], shapes, strict=True)
     ]
     assert of_neighbours(modes, np.ones(6), 2.0) == told
+
+
+def test_of_three_close_modes_in_one_plane_the_least_known_is_told_twice() -> None:
+    shapes = [SHAPES[0], 0.8 * SHAPES[0] + 0.5 * SHAPES[1], SHAPES[1]]
+    modes = [
+        with_covariance(estimate(f, 0.02, s), np.diag([std, 0.3]) ** 2)
+        for f, s, std in zip([0.74, 0.755, 0.76], shapes, [0.008, 0.012, 0.004], strict=True)
+    ]
+    assert told_twice(modes, np.ones(6), 2.0) == [1]
+    # a fit of all three parts them; farther away it is no matter; a third may move in its own shape
+    assert told_twice([replace(m, unrefined=m) for m in modes], np.ones(6), 2.0) == []
+    assert told_twice([modes[0], replace(modes[1], frequency_hz=0.9), modes[2]], np.ones(6), 2.0) == []
+    assert (
+        told_twice([modes[0], replace(modes[1], mode_shape=SHAPES[2] + 0j), modes[2]], np.ones(6), 2.0) == []
+    )
 
 
 def test_in_few_channels_nothing_is_said() -> None:

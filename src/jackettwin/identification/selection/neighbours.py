@@ -1,9 +1,10 @@
-r"""Peaks of the forces between two modes, told by their shape.
+r"""Peaks of the forces between two modes, and modes told twice, by their shape.
 
 Between its modes a structure moves in a combination of those on either side,
 :math:`y(f) = \sum_i \phi_i h_i(f) p_i(f)`: a peak of the forces p makes a peak of y, sharp and stable as that
 of a mode, whose shape lies in the plane of its neighbours' shapes. So does a peak of what shakes the
-structure and is not measured itself. That of a mode of the structure lies there by chance only.
+structure and is not measured itself. That of a mode of the structure lies there by chance only. Of close
+modes that no fit describes, one may be told twice: then its second shape is a combination of theirs.
 """
 
 from __future__ import annotations
@@ -43,23 +44,55 @@ def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: floa
     found: list[int] = []
     while True:
         free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        theirs = [i for i in free if _outside(modes, free, i, scale, close) < OUTSIDE]
+        theirs = [i for i in free if _outside(modes, i, _either_side(modes, free, i, close), scale) < OUTSIDE]
         if not theirs:
             return found
         found.append(max(theirs, key=lambda i: modes[i].damping_ratio))
 
 
-def _outside(
-    modes: Sequence[ModalEstimate], free: Sequence[int], i: int, scale: FloatArray, close: float
-) -> float:
-    """Return the share of a shape outside of those of its neighbours; 1 if it has none on one side."""
+def told_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
+    """Return the modes that no fit describes whose shapes are combinations of those of modes close to them.
+
+    Of several that are so of one another the one of least known frequency is told first. Two close modes of
+    nearly one shape are told by its MAC alone; here they are at least three.
+
+    Parameters
+    ----------
+    modes : by ascending frequency
+    scale : (n_channels,)
+        By which shapes are divided.
+    close : float
+        Half bandwidths together within which modes are close.
+    """
+    found: list[int] = []
+    while True:
+        free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
+        near = {i: [j for j in free if j != i and apart(modes[i], modes[j]) < close] for i in free}
+        twice = [
+            i
+            for i, beside in near.items()
+            if modes[i].unrefined is None and len(beside) > 1 and _outside(modes, i, beside, scale) < OUTSIDE
+        ]
+        if not twice:
+            return found
+        found.append(max(twice, key=lambda i: (modes[i].frequency_std_hz or np.inf) / modes[i].frequency_hz))
+
+
+def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, close: float) -> list[int]:
+    """Return the neighbours of a mode and those close to them; none if it has none on one side."""
     below = [j for j in free if j < i and apart(modes[i], modes[j]) >= close]
     above = [j for j in free if j > i and apart(modes[i], modes[j]) >= close]
     if not below or not above:
-        return 1.0
-    beside = [j for j in below if apart(modes[j], modes[below[-1]]) < close]
-    beside += [j for j in above if apart(modes[j], modes[above[0]]) < close]
-    if len(beside) > len(scale) - LEFT:
+        return []
+    return [
+        *(j for j in below if apart(modes[j], modes[below[-1]]) < close),
+        *(j for j in above if apart(modes[j], modes[above[0]]) < close),
+    ]
+
+
+def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scale: FloatArray) -> float:
+    """Return the share of a shape outside of those of others; 1 if these are none or leave too little room."""
+    if not beside or len(beside) > len(scale) - LEFT:
         return 1.0
     basis: ComplexArray = np.linalg.qr(np.array([modes[j].mode_shape / scale for j in beside]).T)[0]
     shape = modes[i].mode_shape / scale

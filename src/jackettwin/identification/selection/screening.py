@@ -27,7 +27,7 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.mac import mac
 from jackettwin.identification.preparation.spectra import welch
-from jackettwin.identification.selection.neighbours import apart, of_neighbours
+from jackettwin.identification.selection.neighbours import apart, of_neighbours, told_twice
 from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
@@ -195,6 +195,8 @@ def screened(modes: Sequence[ModalEstimate], known: Evidence) -> list[ModalEstim
     judged = [_judged(mode, [m for m in modes if m is not mode], known) for mode in modes]
     for i in of_neighbours(judged, known.scale, CLOSE):
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_of_neighbours"))
+    for i in told_twice(judged, known.scale, CLOSE):
+        judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("shape_twice"))
     for i, share in _of_one_part(judged, known).items():
         judged[i] = judged[i].flagged(ModeStatus.DOUBTFUL, Finding("one_part", params={"share": share}))
     if known.sensors and len(known.scale) >= ENOUGH_SENSORS:
