@@ -91,7 +91,7 @@ def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, cl
 
 
 def _outside(modes: Sequence[ModalEstimate], i: int, beside: Sequence[int], scale: FloatArray) -> float:
-    """Return the share of a shape outside of those of others; 1 if these are none or leave too little room."""
+    """Return the share of a shape outside of those of others; 1 if there are none or too many of them."""
     if not beside or len(beside) > len(scale) - LEFT:
         return 1.0
     basis: ComplexArray = np.linalg.qr(np.array([modes[j].mode_shape / scale for j in beside]).T)[0]
