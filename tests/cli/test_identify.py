@@ -116,3 +116,9 @@ def test_findings_of_many_records_are_counted(capsys: pytest.CaptureFixture[str]
         "quality: acc_20_y, 2 of 3 records: it is 9.81 times too small",
         "quality: record, 1 of 3 records: vectors of another length are left out: wind (6)",
     ]
+
+
+def test_a_report_under_another_name_than_that_of_a_page_is_refused(tmp_path: Path) -> None:
+    page = tmp_path / "modes.txt"
+    code, _, err = run(str(RECORDS / "pile_U12_s301.parquet"), "--report", str(page))
+    assert code == 2 and "'modes.txt' is no name of a page" in err and not page.exists()

@@ -31,7 +31,7 @@ def test_everything_at_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--out", "view.pdf"], "unknown format of a page"),
+        (["--out", "view.pdf"], "ends in .html"),
         (["--out", "v.html", "--growth", "2,-40"], "not TOP,BOTTOM,THICKNESS"),
         (["--out", "v.html", "--flooded", "jackett"], "no such member or part"),
         (["--out", "v.html", "--wave", "80,9"], "height"),

@@ -34,3 +34,13 @@ def test_who_is_not_there_is_an_error_of_input(tmp_path: Path) -> None:
     ran(tmp_path, "user", "add", "anna", "--role", "viewer", "--password-stdin", given=password)
     for words in (("user", "remove", "ana"), ("token", "revoke", "ana"), ("token", "add", "ana")):
         assert "no such user" in ran(tmp_path, *words, code=2)
+
+
+def test_without_a_terminal_nobody_is_asked(tmp_path: Path) -> None:
+    assert "--password-stdin" in ran(tmp_path, "user", "add", "anna", "--role", "viewer", code=2)
+
+
+def test_a_question_that_is_denied_is_no_fault_of_ours(tmp_path: Path) -> None:
+    (tmp_path / "twin.yaml").write_text("structure: jacket15\n")
+    ran(tmp_path, "asset", "add", "wtg", str(tmp_path / "twin.yaml"))
+    assert "nothing was changed" in ran(tmp_path, "asset", "archive", "wtg", given="n\n", code=130)

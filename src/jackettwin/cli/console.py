@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from math import isfinite
+from pathlib import Path
 from threading import Event, Thread
 from typing import Any
 
@@ -106,7 +107,10 @@ class Commands(click.Group):
         except JackettwinError as error:
             messages.print(f"[bold red]failed:[/] {plain(str(error))}", soft_wrap=True)
             ctx.exit(OUR_FAULT)
-        except (click.ClickException, click.exceptions.Exit, click.Abort):
+        except click.Abort:
+            messages.print("stopped: nothing was changed")
+            ctx.exit(INTERRUPTED)
+        except (click.ClickException, click.exceptions.Exit):
             raise
         except Exception as error:
             if ctx.params.get("traceback"):
@@ -117,6 +121,22 @@ class Commands(click.Group):
                 soft_wrap=True,
             )
             ctx.exit(OUR_FAULT)
+
+
+class PageFile(click.Path):
+    """The file of an option that a page is written to."""
+
+    name = "file.html"
+
+    def __init__(self) -> None:
+        super().__init__(dir_okay=False, path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path; refuse one that no browser takes for a page."""
+        path = Path(value)
+        if path.suffix.lower() not in (".html", ".htm"):
+            self.fail(f"{path.name!r} is no name of a page: it ends in .html.", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class FiniteFloat(click.FloatRange):

@@ -12,7 +12,7 @@ import click
 from rich.table import Table
 
 from jackettwin.cli.cache import MOST_RECORDS, keeping, kept_in
-from jackettwin.cli.console import FiniteFloat, messages, number, output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, PageFile, messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
 from jackettwin.files import check_room, read_mapping, read_yaml, validate, write_json
 from jackettwin.identification import IdentificationSettings
@@ -46,7 +46,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 )
 @click.option(
     "--report",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=PageFile(),
     help="HTML page: spectra, stabilisation and moving shapes of one record, or modes followed over many.",
 )
 @click.option("--compare", is_flag=True, help="One record by every method, side by side.")

@@ -10,7 +10,7 @@ import click
 import numpy as np
 from rich.table import Table
 
-from jackettwin.cli.console import FiniteFloat, messages, output, plain, print_json, working
+from jackettwin.cli.console import FiniteFloat, PageFile, messages, output, plain, print_json, working
 from jackettwin.soil.curves import Curve
 from jackettwin.soil.foundation import Foundation, read_foundation
 from jackettwin.soil.impedance import head_impedance
@@ -42,9 +42,7 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
     help="Height of the lateral load [m].",
 )
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
-@click.option(
-    "--out", type=click.Path(dir_okay=False, path_type=Path), help="The page; default out/NAME_soil.html."
-)
+@click.option("--out", type=PageFile(), help="The page; default out/NAME_soil.html.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def soil_command(
     foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None, as_json: bool

@@ -10,6 +10,7 @@ import click
 
 from jackettwin.cli.console import output, print_json
 from jackettwin.cli.store_options import opened, store_options
+from jackettwin.errors import InputError
 
 
 @click.group("user")
@@ -27,6 +28,12 @@ def add_user(
     name: str, role: str, password_stdin: bool, as_json: bool, store: Path, database: str | None
 ) -> None:
     """Add the user NAME, or give one another role and password."""
+    if not password_stdin and not sys.stdin.isatty():
+        raise InputError(
+            "there is no terminal to ask for it on",
+            field="password",
+            remedy="give it on standard input, with --password-stdin",
+        )
     engine = opened(store, database, make=True)
     from jackettwin.service.auth import hashed
     from jackettwin.store import writing

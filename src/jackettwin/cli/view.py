@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.cli.check import nodal_force
-from jackettwin.cli.console import numbers_of, output, print_json
+from jackettwin.cli.console import PageFile, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.errors import InputError, located
 from jackettwin.loads.coefficients import Coefficients, GrowthBand
@@ -46,9 +46,7 @@ _MOST_PARTS = 8
 
 @click.command("view")
 @click.argument("structure")
-@click.option(
-    "--out", type=click.Path(dir_okay=False, path_type=Path), help="FILE.html; default out/NAME.html"
-)
+@click.option("--out", type=PageFile(), help="The page; default out/NAME.html.")
 @click.option("--support", help="As for `jackettwin modes`.")
 @click.option(
     "--modes", "number", default=8, show_default=True, type=click.IntRange(0, 40), help="How many modes."
@@ -93,8 +91,6 @@ def view_command(
     as_json: bool,
 ) -> None:
     """Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record."""
-    if out is not None and out.suffix.lower() not in (".html", ".htm"):
-        raise InputError("unknown format of a page", field="--out", value=out.name, allowed=".html")
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
     held = support_option(support, assembly)
