@@ -71,6 +71,25 @@ def test_noise_that_is_strongest_at_the_mode_widens_the_interval() -> None:
     assert np.all(ratio > 3.0)
 
 
+@pytest.mark.parametrize("after", [500, 3000])
+def test_intervals_hold_the_truth_where_wind_goes_on(after: int) -> None:
+    """Wind moves the mode that decays: some lines of noise tell how much, few of a short rest."""
+    pole = np.exp(2.0 * np.pi * F / RATE * (-ZETA + 1j))
+    b, a = [1.0], np.real(np.poly([pole, pole.conjugate()]))
+    scores = []
+    for seed in range(150):
+        forces = np.random.default_rng(seed).standard_normal(3500 + after)
+        wind = signal.lfilter(b, a, forces)[500:]
+        both = np.outer(SHAPE, 0.05 * wind / wind.std())
+        y = np.outer(SHAPE, decay()) + both[:, :3000]
+        fit = damped_cosines(y, RATE, np.array([0.3]), np.array([0.02]), noise=both[:, 3000:])
+        off = np.log([fit.frequency_hz[0] / F, fit.damping_ratio[0] / ZETA])
+        scores.append(off / np.sqrt(np.diag(fit.log_covariance)))
+    inside = np.mean(np.abs(scores) < 1.96, axis=0)
+    # 150 draws of 95 % fall below 90 % once in a hundred
+    assert np.all(inside >= 0.90), inside
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_record_of_forces_is_not_explained(seed: int) -> None:
     pole = 0.98 * np.exp(2j * np.pi * F / RATE)

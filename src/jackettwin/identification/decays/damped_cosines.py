@@ -24,7 +24,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, optimize
+from scipy import fft, optimize, special
 
 from jackettwin.arrays import ComplexArray, FloatArray
 
@@ -37,10 +37,12 @@ MOST_STEPS = 40
 """Of a fit; one that takes more leans against its bounds."""
 FARTHEST = 0.2
 """Largest change of ln ω from where a mode started: farther is another mode."""
+LEAST_AFTER = 0.125
+"""Length of the noise after a decay, over the decay's, from which it tells more than what a fit leaves."""
 LEAST_NOISE = 1e-6
 """Of a channel's rms: noise below it is not believed."""
-SEGMENTS = 4
-"""Of the noise, in the average that smooths its spectrum."""
+FEWEST_FREEDOM = 2.0
+"""Degrees of freedom of a variance that rests on one line of noise."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,7 @@ def damped_cosines(
         Nothing missing.
     frequency_hz, damping_ratio : (n_modes,)
     noise : (n_channels, n_more), optional
-        The same channels after the decay, if there is as much: less what still decays its spectrum is that of
-        the noise.
+        The same channels after the decay: less what still decays, its spectrum is that of the noise.
 
     Examples
     --------
@@ -117,10 +118,13 @@ def damped_cosines(
     flat = jacobian.reshape(len(p), -1)
     bound = np.linalg.pinv(flat @ flat.T)
     background = left
-    if noise is not None and noise.shape[1] >= len(t):
+    if noise is not None and noise.shape[1] >= LEAST_AFTER * len(t):
         later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
         background = noise / sigma[:, None] - _sums(p, amplitudes, later)
-    covariance = bound @ _score_variance(jacobian, background) @ bound
+    variance, freedom = _score_variance(jacobian, background)
+    # of few lines of noise the variance is itself hardly known: intervals are Student's
+    wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)
+    covariance = bound @ variance @ bound * np.outer(wider, wider)
     about = white - white.mean(axis=1, keepdims=True)
     return DampedCosines(
         frequency_hz=np.exp(p[:n]) / (2.0 * np.pi),
@@ -233,10 +237,16 @@ def _jacobian(y: FloatArray, t: FloatArray, p: FloatArray) -> FloatArray:
     return out
 
 
-def _score_variance(jacobian: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return the variance of Jᵀe for noise e of the spectrum of a sample of it, (n_parameters, n_parameters).
+def _score_variance(jacobian: FloatArray, noise: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the variance of Jᵀe for noise e of the spectrum of a sample of it, and its degrees of freedom.
 
     Averaged over all times the sample may begin at, and never less than in white noise of its power.
+
+    Returns
+    -------
+    variance : (n_parameters, n_parameters)
+    freedom : (n_parameters,)
+        Of the variance of each, two for every line of the sample that it rests on (Welch & Satterthwaite).
     """
     n_parameters, n_channels, n_samples = jacobian.shape
     length = noise.shape[1]
@@ -250,7 +260,10 @@ def _score_variance(jacobian: FloatArray, noise: FloatArray) -> FloatArray:
     power = np.mean(noise**2, axis=1)
     white = np.einsum("pct,qct,c->pq", jacobian, jacobian, power)
     values, vectors = _generalised(variance.real, white)
-    return np.asarray(vectors @ np.diag(np.maximum(values, 1.0)) @ vectors.T)
+    # of one line two; padding spreads a line over several
+    each = np.abs(score) ** 2
+    freedom = 2.0 * each.sum(axis=1) ** 2 / np.sum(each**2, axis=1) * length / size
+    return vectors @ np.diag(np.maximum(values, 1.0)) @ vectors.T, np.maximum(freedom, FEWEST_FREEDOM)
 
 
 def _generalised(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
