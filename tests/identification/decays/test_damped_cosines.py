@@ -8,7 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import signal
 
-from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
+from jackettwin.identification.decays.damped_cosines import (
+    DampedCosines,
+    _jacobian,
+    _products,
+    damped_cosines,
+)
 from jackettwin.identification.mac import mac
 
 RATE, F, ZETA, SIGMA = 10.0, 0.3, 0.02, 0.05
@@ -36,6 +41,20 @@ def test_two_modes_and_a_constant() -> None:
     fit = damped_cosines(y, RATE, np.array([0.305, 0.325]), np.array([0.03, 0.03]))
     assert_allclose(fit.frequency_hz, [F, 0.33], rtol=1e-6)
     assert_allclose(fit.damping_ratio, [ZETA, 0.01], rtol=1e-5)
+
+
+def test_products_are_those_of_the_slopes() -> None:
+    """Steps rest on products formed without the slopes themselves; the score's variance on the slopes."""
+    rng, t = np.random.default_rng(7), T[:400]
+    y = rng.standard_normal((4, 400))
+    p = np.log([2.0 * np.pi * 0.3, 2.0 * np.pi * 0.7, 0.02, 0.05])
+    value, slope, second = _products(y, t, p)
+    flat = _jacobian(y, t, p).reshape(4, -1)
+    assert_allclose(second, flat @ flat.T, rtol=1e-9)
+    step = 1e-6 * np.eye(4)
+    ahead, behind = ([_products(y, t, p + side * d)[0] for d in step] for side in (1.0, -1.0))
+    assert value > 0.0
+    assert_allclose(slope, np.subtract(ahead, behind) / 2e-6, rtol=1e-5)
 
 
 def test_intervals_hold_the_truth_and_the_bound_is_that_of_yao_and_pandit() -> None:

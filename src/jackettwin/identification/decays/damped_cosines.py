@@ -114,14 +114,12 @@ def damped_cosines(
         sigma = np.sqrt(np.sum(residual**2, axis=1) / free) + least
     white = y / sigma[:, None]
     left, amplitudes, _, _ = _projected(white, t, p)
-    jacobian = _jacobian(white, t, p)
-    flat = jacobian.reshape(len(p), -1)
-    bound = np.linalg.pinv(flat @ flat.T)
+    bound = np.linalg.pinv(_products(white, t, p)[2])
     background = left
     if noise is not None and noise.shape[1] >= LEAST_AFTER * len(t):
         later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
         background = noise / sigma[:, None] - _sums(p, amplitudes, later)
-    variance, freedom = _score_variance(jacobian, background)
+    variance, freedom = _score_variance(_jacobian(white, t, p), background)
     # of few lines of noise the variance is itself hardly known: intervals are Student's
     wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)
     covariance = bound @ variance @ bound * np.outer(wider, wider)
