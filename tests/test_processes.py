@@ -8,9 +8,11 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
-from jackettwin.processes import GRACE_S, in_processes
+from jackettwin.processes import GRACE_S, in_processes, on_one_blas_thread
 
 PARENT = """
 import os, sys, time
@@ -57,7 +59,7 @@ def test_an_error_of_the_work_is_raised() -> None:
 INTERRUPTED = """
 import sys, time
 from jackettwin.files import atomic_path
-from jackettwin.processes import GRACE_S, in_processes
+from jackettwin.processes import GRACE_S, in_processes, on_one_blas_thread
 
 def work(path):
     with atomic_path(path):
@@ -85,3 +87,12 @@ def test_ctrl_c_ends_what_runs_within_two_seconds_and_leaves_nothing(tmp_path: P
     # one second of grace, and a machine that may be busy
     assert took < 2.0 + GRACE_S
     assert list(out.iterdir()) == []
+
+
+def test_on_one_blas_thread_and_afterwards_on_as_many_as_before() -> None:
+    def threads() -> set[int]:
+        np.linalg.inv(np.eye(2))
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        assert (threads(), on_one_blas_thread(threads)(), threads()) == ({2}, {1}, {2})

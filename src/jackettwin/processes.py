@@ -9,10 +9,12 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+from functools import wraps
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.process import BaseProcess
-from typing import TypeVar
+from typing import ParamSpec, TypeVar
 
+P = ParamSpec("P")
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -25,6 +27,22 @@ ASKED_EVERY_S = 0.1
 """Time between two requests to end: enough to remove a file."""
 _ORPHANED = 1
 """Exit code of a worker whose parent died."""
+
+
+def on_one_blas_thread(function: Callable[P, R]) -> Callable[P, R]:
+    """Return a function that runs with one BLAS thread, whatever its process has.
+
+    Matrices are small here: threads that wait for each other take three times the CPU seconds, and longer.
+    """
+
+    @wraps(function)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        from threadpoolctl import threadpool_limits  # a help text needs none of it
+
+        with threadpool_limits(limits=1, user_api="blas"):
+            return function(*args, **kwargs)
+
+    return run
 
 
 @contextmanager

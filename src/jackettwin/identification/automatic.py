@@ -22,6 +22,7 @@ from jackettwin.identification.selection.picked import left_out, picked_clusters
 from jackettwin.identification.selection.screening import evidence
 from jackettwin.identification.settings import IdentificationSettings
 from jackettwin.identification.status import ModeStatus
+from jackettwin.processes import on_one_blas_thread
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -35,6 +36,7 @@ STEADFAST = 0.8
 """Share of the orders in which a mode must appear where no uncertainty speaks for it."""
 
 
+@on_one_blas_thread
 def identify(
     record: Record,
     settings: IdentificationSettings | None = None,

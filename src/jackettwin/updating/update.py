@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
+from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
 from jackettwin.updating.identifiability import Verdict, identifiability
@@ -154,6 +155,7 @@ class Update:
         return self.model.family.name
 
 
+@on_one_blas_thread
 def update(
     problem: Problem,
     *,
