@@ -22,6 +22,8 @@ record after the decay.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft, optimize, special
@@ -109,17 +111,17 @@ def damped_cosines(
     for _ in range(REWEIGHTED):
         white = y / sigma[:, None]
         p = _least_squares(white, t, p, (low, high))
-        residual = _projected(y, t, p)[0]
+        residual = _projected(y, t, p).left
         free = max(len(t) - 2 * n - 1, 1)
         sigma = np.sqrt(np.sum(residual**2, axis=1) / free) + least
     white = y / sigma[:, None]
-    left, amplitudes, _, _ = _projected(white, t, p)
-    bound = np.linalg.pinv(_products(white, t, p)[2])
-    background = left
+    fit = _projected(white, t, p)
+    bound = np.linalg.pinv(_products(fit)[2])
+    background = fit.left
     if noise is not None and noise.shape[1] >= LEAST_AFTER * len(t):
         later = t[-1] + np.arange(1, noise.shape[1] + 1) / sample_rate_hz
-        background = noise / sigma[:, None] - _sums(p, amplitudes, later)
-    variance, freedom = _score_variance(_jacobian(white, t, p), background)
+        background = noise / sigma[:, None] - _sums(p, fit.amplitudes, later)
+    variance, freedom = _score_variance(_jacobian(fit), background)
     # of few lines of noise the variance is itself hardly known: intervals are Student's
     wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)
     covariance = bound @ variance @ bound * np.outer(wider, wider)
@@ -127,11 +129,11 @@ def damped_cosines(
     return DampedCosines(
         frequency_hz=np.exp(p[:n]) / (2.0 * np.pi),
         damping_ratio=np.exp(p[n:]),
-        amplitudes=amplitudes * sigma,
-        residual=left * sigma[:, None],
+        amplitudes=fit.amplitudes * sigma,
+        residual=fit.left * sigma[:, None],
         log_covariance=np.asarray(covariance),
         cramer_rao=np.asarray(bound),
-        explained=1.0 - float(np.sum(left**2) / np.sum(about**2)),
+        explained=1.0 - float(np.sum(fit.left**2) / np.sum(about**2)),
     )
 
 
@@ -145,38 +147,35 @@ def _least_squares(
     """
     low, high = bounds
     # in units of what the data tell of each parameter
-    unit = 1.0 / np.sqrt(np.diag(_products(y, t, p)[2]) + 1e-300)
+    unit = 1.0 / np.sqrt(np.diag(_products(_projected(y, t, p))[2]) + 1e-300)
     nowhere = (np.inf, np.zeros(len(p)), np.eye(len(p)))
-    seen: dict[bytes, tuple[float, FloatArray, FloatArray]] = {}
 
-    def at(q: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        if q.tobytes() not in seen:
-            seen.clear()
-            inside = np.all((unit * q > low) & (unit * q < high))
-            seen[q.tobytes()] = _products(y, t, unit * q) if inside else nowhere
-        return seen[q.tobytes()]
+    @lru_cache(maxsize=1)
+    def at(scaled: bytes) -> tuple[float, FloatArray, FloatArray]:
+        q = unit * np.frombuffer(scaled)
+        return _products(_projected(y, t, q)) if np.all((q > low) & (q < high)) else nowhere
 
     found = optimize.minimize(  # type: ignore[call-overload]
-        lambda q: at(q)[0],
+        lambda q: at(q.tobytes())[0],
         p / unit,
         method="trust-exact",
-        jac=lambda q: unit * at(q)[1],
-        hess=lambda q: np.outer(unit, unit) * at(q)[2],
+        jac=lambda q: unit * at(q.tobytes())[1],
+        hess=lambda q: np.outer(unit, unit) * at(q.tobytes())[2],
         options={"gtol": CONVERGED, "maxiter": MOST_STEPS},
     )
     return np.asarray(unit * found.x)
 
 
-def _products(y: FloatArray, t: FloatArray, p: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+def _products(fit: _Projection) -> tuple[float, FloatArray, FloatArray]:
     """Return half the sum of squares of what is left, its slope, and the slopes' products."""
-    left, amplitudes, q, moved = _projected(y, t, p)
+    left, amplitudes, q, moved = fit
     parts = np.concatenate([moved.real, -moved.imag], axis=1)
     parts -= q @ (q.T @ parts)
     twice = np.concatenate([amplitudes, amplitudes])
     weight = np.concatenate([twice.real, twice.imag])
     slope = -np.sum(weight * (left @ parts).T, axis=1)
     second = (parts.T @ parts) * (weight @ weight.T)
-    n = len(p)
+    n = moved.shape[1]
     return (
         0.5 * float(np.sum(left**2)),
         slope[:n] + slope[n:],
@@ -201,13 +200,11 @@ def _poles(p: FloatArray) -> ComplexArray:
     return np.asarray(omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2)))
 
 
-def _projected(
-    y: FloatArray, t: FloatArray, p: FloatArray
-) -> tuple[FloatArray, ComplexArray, FloatArray, ComplexArray]:
-    """Project out what the best amplitudes, and a constant, take.
+class _Projection(NamedTuple):
+    """What the best amplitudes, and a constant, leave, and what its derivatives are made of.
 
-    Returns
-    -------
+    Attributes
+    ----------
     left : (n_channels, n_samples)
     amplitudes : (n_modes, n_channels)
     q : (n_samples, 2 n_modes + 1)
@@ -215,20 +212,29 @@ def _projected(
     moved : (n_samples, 2 n_modes)
         Derivatives of the decays by ln ω, then by ln ζ.
     """
+
+    left: FloatArray
+    amplitudes: ComplexArray
+    q: FloatArray
+    moved: ComplexArray
+
+
+def _projected(y: FloatArray, t: FloatArray, p: FloatArray) -> _Projection:
+    """Project out what the best amplitudes, and a constant, take."""
     decays = np.exp(np.outer(t, _poles(p)))
     basis = np.concatenate([decays.real, -decays.imag, np.ones((len(t), 1))], axis=1)
     q, r = np.linalg.qr(basis)
     linear = np.linalg.solve(r + 1e-12 * np.trace(np.abs(r)) / len(r) * np.eye(len(r)), q.T @ y.T)
     n = decays.shape[1]
     moved = t[:, None] * np.concatenate([decays, decays], axis=1) * _pole_slopes(p)
-    return y - (y @ q) @ q.T, linear[:n] + 1j * linear[n : 2 * n], q, moved
+    return _Projection(y - (y @ q) @ q.T, linear[:n] + 1j * linear[n : 2 * n], q, moved)
 
 
-def _jacobian(y: FloatArray, t: FloatArray, p: FloatArray) -> FloatArray:
+def _jacobian(fit: _Projection) -> FloatArray:
     """Return the residual's derivatives by ln ω and ln ζ, (2 n_modes, n_channels, n_samples)."""
-    _, amplitudes, q, moved = _projected(y, t, p)
-    n = len(p) // 2
-    out = np.empty((2 * n, *y.shape))
+    left, amplitudes, q, moved = fit
+    n = len(amplitudes)
+    out = np.empty((2 * n, *left.shape))
     for i in range(2 * n):
         change = np.outer(moved[:, i], amplitudes[i % n]).real.T
         out[i] = -(change - (change @ q) @ q.T)

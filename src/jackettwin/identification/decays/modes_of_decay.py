@@ -66,13 +66,14 @@ def modes_of_decay(
         The same channels after it.
     """
     f, zeta = _poles(y, sample_rate_hz, strongest_hz)
-    if not len(f) or _of_all(y, sample_rate_hz, f, zeta) < WITHIN_REACH:
+    about = y - y.mean(axis=1, keepdims=True)
+    if not len(f) or _explained(about, sample_rate_hz, f, zeta) < WITHIN_REACH:
         return None
     open_to = list(range(len(f)))
     best: DecayFit | None = None
     left, refused = y, 0
     while open_to and (best is None or len(best.ratio) < MOST_MODES) and refused < MOST_REFUSED:
-        gains = [_explained(left, sample_rate_hz, float(f[i]), float(zeta[i])) for i in open_to]
+        gains = [_explained(left, sample_rate_hz, f[[i]], zeta[[i]]) for i in open_to]
         k = open_to[int(np.argmax(gains))]
         open_to = [i for i in open_to if abs(np.log(f[i] / f[k])) > APART]
         start = np.array([[f[k]], [zeta[k]]])
@@ -133,25 +134,15 @@ def _sums(lags: FloatArray, rows: int) -> FloatArray:
     return np.stack([y[:, k : k + head.shape[1]] @ head.T / head.shape[1] for k in range(size)])
 
 
-def _of_all(y: FloatArray, sample_rate_hz: float, f: FloatArray, zeta: FloatArray) -> float:
-    """Return the share of a decay that the damped cosines of all poles explain together, unrefined."""
+def _explained(y: FloatArray, sample_rate_hz: float, f: FloatArray, zeta: FloatArray) -> float:
+    """Return the power along damped cosines, one or many, every channel over its own."""
     t = np.arange(y.shape[1]) / sample_rate_hz
     decays = np.exp(np.outer(2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2)), t))
     basis = np.concatenate([decays.real, decays.imag])
-    about = y - y.mean(axis=1, keepdims=True)
-    gram, along = basis @ basis.T, basis @ about.T
-    values, vectors = np.linalg.eigh(gram)
+    values, vectors = np.linalg.eigh(basis @ basis.T)
     kept = values > SAME_COSINES * values[-1]
-    power = np.sum((vectors[:, kept].T @ along) ** 2 / values[kept, None], axis=0)
-    return float(np.mean(power / (np.sum(about**2, axis=1) + 1e-300)))
-
-
-def _explained(y: FloatArray, sample_rate_hz: float, f: float, zeta: float) -> float:
-    """Return the power along one damped cosine, every channel over its own."""
-    t = np.arange(y.shape[1]) / sample_rate_hz
-    decay = np.exp(2.0 * np.pi * f * (-zeta + 1j * np.sqrt(1.0 - zeta**2)) * t)
-    q, _ = np.linalg.qr(np.stack([decay.real, decay.imag], axis=1))
-    return float(np.mean(np.sum((y @ q) ** 2, axis=1) / (np.sum(y**2, axis=1) + 1e-300)))
+    power = np.sum((vectors[:, kept].T @ (basis @ y.T)) ** 2 / values[kept, None], axis=0)
+    return float(np.mean(power / (np.sum(y**2, axis=1) + 1e-300)))
 
 
 def _ratios(

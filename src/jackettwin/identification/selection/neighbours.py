@@ -9,7 +9,7 @@ modes that no fit describes, one may be told twice: then its second shape is a c
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,13 +41,9 @@ def of_neighbours(modes: Sequence[ModalEstimate], scale: FloatArray, close: floa
     close : float
         Half bandwidths together within which modes are neighbours of one another, not on either side.
     """
-    found: list[int] = []
-    while True:
-        free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        theirs = [i for i in free if _outside(modes, i, _either_side(modes, free, i, close), scale) < OUTSIDE]
-        if not theirs:
-            return found
-        found.append(max(theirs, key=lambda i: modes[i].damping_ratio))
+    return _one_after_another(
+        modes, scale, lambda free, i: _either_side(modes, free, i, close), lambda mode: mode.damping_ratio
+    )
 
 
 def told_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) -> list[int]:
@@ -64,18 +60,33 @@ def told_twice(modes: Sequence[ModalEstimate], scale: FloatArray, close: float) 
     close : float
         Half bandwidths together within which modes are close.
     """
+
+    def beside(free: Sequence[int], i: int) -> list[int]:
+        near = [j for j in free if j != i and apart(modes[i], modes[j]) < close]
+        return near if modes[i].unrefined is None and len(near) > 1 else []
+
+    return _one_after_another(
+        modes, scale, beside, lambda mode: (mode.frequency_std_hz or np.inf) / mode.frequency_hz
+    )
+
+
+def _one_after_another(
+    modes: Sequence[ModalEstimate],
+    scale: FloatArray,
+    beside: Callable[[Sequence[int], int], Sequence[int]],
+    rank: Callable[[ModalEstimate], float],
+) -> list[int]:
+    """Return the modes whose shapes are those of others beside them, that of the highest rank first.
+
+    ``beside`` says which of the modes that are free, neither doubted nor told, lie beside one of them.
+    """
     found: list[int] = []
     while True:
         free = [i for i, m in enumerate(modes) if i not in found and m.status != ModeStatus.DOUBTFUL]
-        near = {i: [j for j in free if j != i and apart(modes[i], modes[j]) < close] for i in free}
-        twice = [
-            i
-            for i, beside in near.items()
-            if modes[i].unrefined is None and len(beside) > 1 and _outside(modes, i, beside, scale) < OUTSIDE
-        ]
-        if not twice:
+        theirs = [i for i in free if _outside(modes, i, beside(free, i), scale) < OUTSIDE]
+        if not theirs:
             return found
-        found.append(max(twice, key=lambda i: (modes[i].frequency_std_hz or np.inf) / modes[i].frequency_hz))
+        found.append(max(theirs, key=lambda i: rank(modes[i])))
 
 
 def _either_side(modes: Sequence[ModalEstimate], free: Sequence[int], i: int, close: float) -> list[int]:
