@@ -10,7 +10,6 @@ from rich.table import Table
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.errors import located
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report.follow_page import build_follow_page
 from jackettwin.soil.families import family
@@ -60,8 +59,7 @@ def follow_command(
     """
     config = read_twin(twin)
     if law is not None:
-        with located(field="--law"):
-            family(law)
+        family(law, field="--law")
     if out is not None:
         check_room(out)
     prior = None if prior_file is None else read_followed(prior_file)

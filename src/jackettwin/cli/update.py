@@ -8,7 +8,6 @@ from rich.table import Table
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.errors import located
 from jackettwin.soil.families import family
 from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
 from jackettwin.twin.result import MeasuredMode
@@ -27,8 +26,7 @@ def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> No
     """Update the supports of TWIN under one law; writes nothing."""
     config = read_twin(twin)
     if law is not None:
-        with located(field="--law"):
-            family(law)
+        family(law, field="--law")
     laws = (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
         result = run_twin(config, laws=laws, progress=step, keep=keeping(fresh=fresh))

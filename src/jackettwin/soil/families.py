@@ -211,8 +211,8 @@ DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")
 """The first is the default: soil loses about as much at every frequency, and this law does, too."""
 
 
-def family(name: str) -> Family:
-    """Look a law up.
+def family(name: str, *, field: str | None = None) -> Family:
+    """Look a law up, asked for by a field or an option.
 
     Raises
     ------
@@ -222,6 +222,7 @@ def family(name: str) -> Family:
     if name not in FAMILIES:
         raise InputError(
             "unknown law",
+            field=field,
             value=name,
             allowed=", ".join(FAMILIES),
             remedy=did_you_mean(name, FAMILIES),
