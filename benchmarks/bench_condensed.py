@@ -13,12 +13,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from jackettwin.response.modal import damped_modes
-from jackettwin.response.numbered import Status, numbered_poles
+from jackettwin.decks import read_structure
+from jackettwin.response.condensation.mode_numbers import Status, numbered_poles
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.state import state_matrix
-from jackettwin.soil.viscoelastic import Prony
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.soil import family
+from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import SupportModel, support_model
 
 MODES = (1, 2, 4)
 BATCH = 2000

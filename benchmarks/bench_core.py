@@ -11,12 +11,13 @@ from functools import partial
 from statistics import median
 from time import process_time
 
-from jackettwin.response.condensed import condense
-from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.decks import read_structure
+from jackettwin.response.condensation.condensed import condense
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, pinned
-from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
-from jackettwin.structure import Rayleigh, assemble, read_structure
+from jackettwin.soil.laws.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.structure import Rayleigh, assemble
 
 LAWS = {
     "kelvin-voigt": kelvin_voigt(2.5e9, 7.6e8),

@@ -22,12 +22,13 @@ import yaml
 from common.hydrodyn_deck import Water, write_water
 from common.openfast_deck import Run, Turbine, write_case
 
+from jackettwin.decks import read_structure
+from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.simulate import read_scenario, simulate
-from jackettwin.simulate.scenario import Scenario
+from jackettwin.simulate.scenario.scenario import Scenario
 from jackettwin.soil import read_support, with_static_reactions
-from jackettwin.structure import Structure, read_structure
+from jackettwin.structure import Structure
 from jackettwin.structure.cut import at_interface
-from jackettwin.structure.subdyn_deck import write_subdyn
 
 SEA_M_S = 2.5, 8.0
 """Significant height and peak period of ``parked``."""

@@ -10,7 +10,7 @@ from time import perf_counter, process_time
 
 from jackettwin.simulate import read_scenario, simulate
 from jackettwin.simulate.batch import run_set
-from jackettwin.simulate.sets import read_set
+from jackettwin.simulate.scenario.sets import read_set
 
 CASES = 24
 """Of the 306 of dlc64: enough to tell a run's share; the whole set takes as many times longer."""

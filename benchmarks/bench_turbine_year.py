@@ -17,12 +17,12 @@ import numpy as np
 
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import write_record
-from jackettwin.twin.export import export_modes
-from jackettwin.twin.kept import KeptInFolder
-from jackettwin.twin.many import Batch, observe_many
-from jackettwin.twin.many_document import many_document
+from jackettwin.study.many_records.document import many_document
+from jackettwin.study.many_records.export import export_modes
+from jackettwin.study.many_records.identify import Batch, observe_many
+from jackettwin.study.many_records.summary import fuse_batch
+from jackettwin.twin.cache import KeptInFolder
 from jackettwin.twin.model import TwinModel
-from jackettwin.twin.together import fuse_batch
 
 YEAR, WORKERS = 52_560, 2
 

@@ -13,9 +13,10 @@ from pathlib import Path
 
 from common.page import write_page
 
+from jackettwin.decks import read_structure
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.structure import read_structure
-from jackettwin.twin import TwinResult, read_twin, run_twin
+from jackettwin.study import TwinResult, run_twin
+from jackettwin.twin import read_twin
 
 DATA = Path(str(resources.files("jackettwin") / "data"))
 RECORD = "pile_flexible_U12_s202"

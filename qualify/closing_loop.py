@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.simulate.batch import record_path, run_set
-from jackettwin.simulate.sets import read_set
-from jackettwin.twin import TwinResult, read_twin, run_twin
-from jackettwin.twin.truth import StatedMode, true_modes, true_parameters
+from jackettwin.simulate.scenario.sets import read_set
+from jackettwin.study import TwinResult, run_twin
+from jackettwin.study.truth import StatedMode, true_modes, true_parameters
+from jackettwin.twin import read_twin
 
 GROUPS, GROUP = 10, 6
 SET = f"{{scenario: known_feet, bins: [{{speed_m_s: 12, hs_m: 2.0, tp_s: 8.0}}], seeds: {GROUPS * GROUP}}}"

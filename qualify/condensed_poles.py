@@ -15,11 +15,13 @@ import numpy as np
 from common.cases import Result, cases
 from common.page import write_page
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import NumericalError
-from jackettwin.response.certified import all_modes
-from jackettwin.response.modal import damped_modes
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.response.condensation.certificate import all_modes
+from jackettwin.response.modes.modal import damped_modes
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import SupportModel, support_model
 
 CASES = [
     ("kelvin-voigt", "all", 0.35),

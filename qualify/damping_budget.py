@@ -14,11 +14,13 @@ from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.decks import read_structure
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.budget import SOURCES, damping_budget
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.solutions import search
+from jackettwin.updating.search.solutions import search
 
 MODES = (1, 2, 4)
 SECONDS = 600.0

@@ -20,18 +20,11 @@ from pathlib import Path
 import numpy as np
 from common.page import write_page
 
-from jackettwin.response.labels import LOCAL
-from jackettwin.structure import Structure, assemble, read_structure
-from jackettwin.twin.causes import (
-    _ONE_SIZE,
-    MODES,
-    Modes,
-    effect,
-    model_causes,
-    repeated,
-    seen_causes,
-)
-from jackettwin.twin.changed_structures import Happening, Standing, happenings
+from jackettwin.change.causes import _ONE_SIZE, MODES, Modes, effect, model_causes, repeated, seen_causes
+from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.decks import read_structure
+from jackettwin.response.modes.labels import LOCAL
+from jackettwin.structure import Structure, assemble
 from jackettwin.watching import Cause, Change, Diagnosis, diagnose
 from jackettwin.watching.scatter import STRONGER
 

@@ -22,10 +22,10 @@ from common.chain import Bench, Row, bench, identified, late, louder, record, se
 from common.page import write_page
 from diagnosis import SENSORS, TIMES, Case, calibration, case, jackets, name_of, page, planted, truth
 
+from jackettwin.change.causes import _ONE_SIZE, ModelCauses, Modes, model_causes, repeated, seen_causes
+from jackettwin.change.changed_structures import Happening, Standing
 from jackettwin.records import Record
 from jackettwin.structure import Structure, assemble
-from jackettwin.twin.causes import _ONE_SIZE, ModelCauses, Modes, model_causes, repeated, seen_causes
-from jackettwin.twin.changed_structures import Happening, Standing
 from jackettwin.watching import Change, History, Watch, diagnose, start, step
 
 RECORDS, BLOCK, SEASONS = 18, 6, 6

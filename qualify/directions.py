@@ -18,10 +18,10 @@ import numpy as np
 from common.page import write_page
 from diagnosis import jackets, planted, truth
 
-from jackettwin.response.labels import LOCAL
+from jackettwin.change.causes import _ONE_SIZE, MODES, Modes, effect, standings
+from jackettwin.change.changed_structures import Happening, Standing
+from jackettwin.response.modes.labels import LOCAL
 from jackettwin.structure import Assembly, Material, Structure, assemble
-from jackettwin.twin.causes import _ONE_SIZE, MODES, Modes, effect, standings
-from jackettwin.twin.changed_structures import Happening, Standing
 
 SPREADS = (0.01, 0.02, 0.04, 0.08)
 """Standard deviations of ln of stiffness and mass, group by group."""

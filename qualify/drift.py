@@ -11,9 +11,11 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import binomtest
 
+from jackettwin.decks import read_structure
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Residuals, SupportModel, Target, family, joint, support_model
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Residuals, SupportModel, Target, joint, support_model
 from jackettwin.updating.drift import Drift, find_drift
 from jackettwin.updating.joint import Growth
 

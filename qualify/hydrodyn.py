@@ -16,13 +16,14 @@ import numpy.typing as npt
 from common.hydrodyn_deck import Water, write_driver, write_water
 from common.page import write_page
 
-from jackettwin.loads.coefficients import Coefficients, GrowthBand
-from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
-from jackettwin.loads.morison import above_bed, morison_points, point_forces, wetness
-from jackettwin.loads.wave_series import resultant_columns
-from jackettwin.loads.waves import airy_wave
+from jackettwin.decks import read_structure
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand
+from jackettwin.loads.members.ends import EndCoefficients, end_forces, member_ends
+from jackettwin.loads.members.morison import above_bed, morison_points, point_forces, wetness
+from jackettwin.loads.sea.wave_series import resultant_columns
+from jackettwin.loads.sea.waves import airy_wave
 from jackettwin.records.readers.openfast import read_text
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -14,12 +14,14 @@ from common.cases import Result, cases
 from common.page import write_page
 from scipy.special import logsumexp
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import NumericalError
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
-from jackettwin.updating.identifiability import IDENTIFIED, WEAK, identifiability, verdict_of
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.posterior import sample_posterior
+from jackettwin.updating.posterior.identifiability import IDENTIFIED, WEAK, identifiability, verdict_of
+from jackettwin.updating.posterior.sampling import sample_posterior
 
 MODES = (1, 2, 4)
 DASHPOT = "c_side_side"

@@ -22,22 +22,28 @@ import yaml
 from common.openfast_deck import Run, Turbine, write_case
 from common.page import write_page
 
+from jackettwin.decks import read_structure
+from jackettwin.decks.blade_files import read_flexible_rotor
+from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.records.readers.openfast import read_text
-from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.own_damping import own_damping
-from jackettwin.response.static import self_weight, static_displacement
-from jackettwin.response.superelement import INTERFACE, Superelement, interface_centroid, superelement
-from jackettwin.response.superelement_files import write_superelement
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.modes.own_damping import own_damping
+from jackettwin.response.motion.static import self_weight, static_displacement
+from jackettwin.response.superelement.files import write_superelement
+from jackettwin.response.superelement.reduction import (
+    INTERFACE,
+    Superelement,
+    interface_centroid,
+    superelement,
+)
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support, with_static_reactions
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.support import Spring
-from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
-from jackettwin.structure.blade_files import read_flexible_rotor
+from jackettwin.structure import Rayleigh, Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Reaction
 from jackettwin.structure.rotor_modes import with_rotor
-from jackettwin.structure.subdyn_deck import write_subdyn
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

@@ -13,12 +13,14 @@ from common.cases import Result, cases
 from common.page import percent, write_page
 from scipy.stats import binomtest, chisquare
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import NumericalError
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, single, support_model
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.posterior import sample_posterior
+from jackettwin.updating.posterior.sampling import sample_posterior
 
 MODES = (1, 2, 4)
 SECONDS = 600.0

@@ -14,9 +14,11 @@ from common.measured import as_measured, sampled
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import Residuals, Target, family, single, support_model
-from jackettwin.updating.solutions import search
+from jackettwin.decks import read_structure
+from jackettwin.soil import family
+from jackettwin.structure import Assembly, Rayleigh, assemble
+from jackettwin.updating import Residuals, Target, single, support_model
+from jackettwin.updating.search.solutions import search
 
 MODES = (1, 2, 4)
 STEEL = Rayleigh.minimum(0.0055, 0.1832)

@@ -14,8 +14,9 @@ import numpy as np
 from common.cases import Result, cases
 from common.page import write_page
 
-from jackettwin.twin import read_twin, run_twin
-from jackettwin.twin.truth import true_modes
+from jackettwin.study import run_twin
+from jackettwin.study.truth import true_modes
+from jackettwin.twin import read_twin
 from jackettwin.updating.budget import SOURCES
 
 STIFFNESS = 4.1e9

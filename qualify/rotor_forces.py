@@ -24,13 +24,13 @@ from common.page import write_page
 from openfast import turbine
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads import rotor_wind
-from jackettwin.loads.turbulence import turbulence
+from jackettwin.loads.aerodynamics import rotor_wind
+from jackettwin.loads.aerodynamics.turbulence import turbulence
 from jackettwin.records.readers.openfast import read_text
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.model import aerodynamics
-from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.wind import rotor_loads_in, wind_field
+from jackettwin.simulate.motion.model import aerodynamics
+from jackettwin.simulate.motion.wind import rotor_loads_in, wind_field
+from jackettwin.simulate.scenario.scenario import Scenario
 
 CASES = ((8.0, 4), (10.0, 2), (12.0, 1), (16.0, 3))
 """Mean wind [m/s] and seed."""

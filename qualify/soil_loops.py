@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.soil.cyclic import CyclicPile, loop
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.piles import dashpots
+from jackettwin.soil.piles.cyclic import CyclicPile, loop
+from jackettwin.soil.piles.piles import dashpots
 from jackettwin.soil.support import ELASTIC
 
 PAGE = Path(__file__).parents[1] / "docs" / "verification" / "soil_loops.md"

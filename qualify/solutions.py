@@ -12,9 +12,11 @@ import numpy as np
 from common.cases import Result, cases
 from common.page import write_page
 
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
-from jackettwin.updating.solutions import LOCKED_DAMPER, Search, search
+from jackettwin.decks import read_structure
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
+from jackettwin.updating.search.solutions import LOCKED_DAMPER, Search, search
 
 MODES = (1, 2, 4)
 SEEDS = range(5)

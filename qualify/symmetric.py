@@ -24,12 +24,14 @@ from pathlib import Path
 import numpy as np
 from common.page import write_page
 
-from jackettwin.response.certified import all_modes
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import damped_modes
-from jackettwin.response.numbered import Status
-from jackettwin.structure import Rayleigh, Structure, assemble, read_structure
-from jackettwin.updating import SupportModel, family, numbered_modes, support_model
+from jackettwin.decks import read_structure
+from jackettwin.response.condensation.certificate import all_modes
+from jackettwin.response.condensation.mode_numbers import Status
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.modal import damped_modes
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, Structure, assemble
+from jackettwin.updating import SupportModel, numbered_modes, support_model
 
 DECKS = {
     "OC4 jacket, four legs": "qualify/decks/oc4_jacket.dat",

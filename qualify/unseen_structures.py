@@ -19,11 +19,14 @@ from common.cases import Result, cases
 from common.page import percent, write_page
 from scipy.stats import binomtest
 
+from jackettwin.decks import read_structure
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.soil import family
 from jackettwin.soil.files import read_support
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.twin import read_twin, run_twin
-from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.study import run_twin
+from jackettwin.twin import read_twin
+from jackettwin.updating import SupportModel, support_model
 from jackettwin.updating.prior import BoxPrior
 
 DECKS = Path(__file__).parent / "decks"

@@ -27,17 +27,15 @@ from common.seasons import FREQUENCY_HZ, Kind, Seasons, ramp, seasons, step
 from scipy.stats import poisson
 
 from jackettwin import watching
-from jackettwin.response.labels import LOCAL
-from jackettwin.structure import read_structure
-from jackettwin.twin.causes import model_causes
+from jackettwin.change.causes import model_causes
+from jackettwin.decks import read_structure
+from jackettwin.response.modes.labels import LOCAL
 from jackettwin.watching import History, Look, Pattern, Watch, diagnose, general_causes
-from jackettwin.watching.block import Block, begin, no_begins
-from jackettwin.watching.block import watched as columns_watched
+from jackettwin.watching.block import Block, begin, no_begins, watched as columns_watched
 from jackettwin.watching.design import Design, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Directions, directions_of
 from jackettwin.watching.memory import OCTAVES, learn
-from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES
-from jackettwin.watching.watch import Begins
+from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, Begins
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")
 BASELINE, YEARS = 365.0, 3

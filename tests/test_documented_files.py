@@ -5,12 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.identification import IdentificationSettings
-from jackettwin.response.labels import mode_kinds
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.labels import mode_kinds
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import pinned
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 
 PAGE = Path(__file__).parents[1] / "docs" / "reference" / "structure.md"
 EXAMPLE = Path(__file__).parents[1] / "examples" / "three_leg_jacket.yaml"

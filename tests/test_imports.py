@@ -9,17 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from jackettwin.doors import _homes
-
 SOURCE = Path(__file__).parents[1] / "src"
 
 
 def homes(root: Path) -> dict[str, str]:
     """Return which module each public name of a package lives in: {package.name: module}."""
     return {
-        ".".join((*path.relative_to(root).parent.parts, name)): home
-        for path in root.rglob("__init__.py")
-        for name, (home, _) in _homes(ast.parse(path.read_text())).items()
+        ".".join((*package, alias.name)): ".".join((*package, statement.module))
+        for path in root.rglob("__init__.pyi")
+        for package in [path.relative_to(root).parent.parts]
+        for statement in ast.parse(path.read_text()).body
+        if isinstance(statement, ast.ImportFrom) and statement.module
+        for alias in statement.names
     }
 
 

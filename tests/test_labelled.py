@@ -10,7 +10,7 @@ from observations import estimate, observation
 from jackettwin import Channel, Record, TwinState, advance, to_arviz, to_dataframe, to_xarray
 from jackettwin.errors import MissingExtra
 from jackettwin.updating import Posterior
-from jackettwin.updating.convergence import Convergence
+from jackettwin.updating.posterior.convergence import Convergence
 
 NOON = datetime(2025, 1, 1, 12, tzinfo=UTC)
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 import jackettwin
+from jackettwin.decks import read_structure
 from jackettwin.progress import Cancelled, Told
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.updating import Problem, Residuals, Target, family, single, support_model, update
-from jackettwin.updating.posterior import sample_posterior
-from jackettwin.updating.solutions import search
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.updating import Problem, Residuals, Target, single, support_model, update
+from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.search.solutions import search
 
 PACKAGE = Path(jackettwin.__file__).parent
 AT_THE_EDGE = {"cli", "__main__.py"}

@@ -17,7 +17,8 @@ import jackettwin
 PACKAGES = {
     "records": "Channel Record assess decimate detrend read_record repair write_record",
     "report": "PageSection PageTable Plot Text build_report",
-    "structure": "Assembly Material Rayleigh Section Structure assemble check jacket read_structure",
+    "decks": "read_structure shipped_structures",
+    "structure": "Assembly Material Rayleigh Section Structure assemble check jacket",
 }
 OF_OTHERS = {"None", "Any", "Path", "DataFrame", "DataArray"}
 """What public functions return that is documented elsewhere."""

@@ -9,25 +9,25 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from mutations import mutated
 
+from jackettwin.change.modal_table import read_modal_table
+from jackettwin.decks import read_structure
+from jackettwin.decks.blade_files import read_elastodyn_blade, read_flexible_rotor
 from jackettwin.errors import JackettwinError
-from jackettwin.loads.files import read_rotor
-from jackettwin.loads.given_waves import read_elevation
-from jackettwin.loads.hydrodyn_deck import read_hydrodyn
+from jackettwin.loads.aerodynamics.turbine_files import read_rotor
+from jackettwin.loads.members.hydrodyn_deck import read_hydrodyn
+from jackettwin.loads.sea.given_waves import read_elevation
 from jackettwin.records import read_record
-from jackettwin.simulate.files import read_scenario
-from jackettwin.simulate.sets import read_set
+from jackettwin.simulate.scenario.files import read_scenario
+from jackettwin.simulate.scenario.sets import read_set
 from jackettwin.soil.files import read_support
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.structure import Section, Structure, read_structure
-from jackettwin.structure.blade_files import read_elastodyn_blade, read_flexible_rotor
+from jackettwin.structure import Section, Structure
 from jackettwin.structure.model import STEEL, Member, Reaction
+from jackettwin.study.refinement import read_refinement
 from jackettwin.twin import read_twin
-from jackettwin.twin.modal_table import read_modal_table
-from jackettwin.twin.refinement import read_refinement
 from jackettwin.twin.targets_table import read_targets_table
 
 ROOT = Path(__file__).parents[1]

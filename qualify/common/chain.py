@@ -17,15 +17,15 @@ from typing import Any
 import numpy as np
 
 from common.seasons import Kind, Seasons, seasons, unexplained
+from jackettwin.change.changed_structures import Standing
 from jackettwin.records import Record
-from jackettwin.response.labels import LOCAL
+from jackettwin.response.modes.labels import LOCAL
 from jackettwin.simulate import Scenario, simulate
-from jackettwin.simulate.files import scenario_from
+from jackettwin.simulate.scenario.files import scenario_from
 from jackettwin.soil.files import read_support
 from jackettwin.soil.support import Spring, Support
 from jackettwin.structure import Structure
 from jackettwin.twin import read_twin
-from jackettwin.twin.changed_structures import Standing
 from jackettwin.twin.model import TwinModel, twin_model
 from jackettwin.twin.observe import observe
 from jackettwin.watching import History

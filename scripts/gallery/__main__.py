@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gallery.thesis_figures import thesis_figures
 from jackettwin.report import PageSection
-from jackettwin.report.page import write_figures, write_page
+from jackettwin.report.pages.page import write_figures, write_page
 from jackettwin.version import __version__
 
 

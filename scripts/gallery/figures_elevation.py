@@ -9,8 +9,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from gallery.structure_3d import MUD, segments
-from jackettwin.report import style
-from jackettwin.report.view import member_text
+from jackettwin.report.figures import style
+from jackettwin.report.view.page import member_text
 from jackettwin.structure import Assembly
 
 

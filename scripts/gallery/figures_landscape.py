@@ -11,8 +11,8 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.report import style
-from jackettwin.report.numbers import scientific, words
+from jackettwin.report.figures import style
+from jackettwin.report.tables.numbers import scientific, words
 
 _BRIGHTEST = 0.9
 """This share of a cost surface lies below the brightest colour."""

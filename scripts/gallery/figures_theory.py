@@ -10,8 +10,8 @@ from plotly.subplots import make_subplots
 
 from gallery import schematics
 from jackettwin.arrays import FloatArray
-from jackettwin.report import style
-from jackettwin.soil.viscoelastic import Law
+from jackettwin.report.figures import style
+from jackettwin.soil.laws.viscoelastic import Law
 
 
 def damping_regimes(ratios: Sequence[tuple[str, float]]) -> go.Figure:

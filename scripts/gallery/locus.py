@@ -8,9 +8,9 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.response.condensed import Condensed
-from jackettwin.response.numbered import Points, numbered_poles
-from jackettwin.soil.viscoelastic import Law
+from jackettwin.response.condensation.condensed import Condensed
+from jackettwin.response.condensation.mode_numbers import Points, numbered_poles
+from jackettwin.soil.laws.viscoelastic import Law
 
 
 def root_locus(

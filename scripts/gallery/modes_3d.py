@@ -12,8 +12,8 @@ import plotly.graph_objects as go
 
 from gallery.structure_3d import scene_of, segments
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.report import style
-from jackettwin.report.figures_measured import animated
+from jackettwin.report.figures import style
+from jackettwin.report.figures.measured_shapes import animated
 from jackettwin.response.sensors import Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
 

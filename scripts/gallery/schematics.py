@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.arrays import FloatArray
-from jackettwin.report import style
+from jackettwin.report.figures import style
 from jackettwin.structure import Assembly
 
 Point = tuple[float, float]

@@ -9,8 +9,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from jackettwin.arrays import FloatArray
-from jackettwin.report import style
-from jackettwin.report.view import member_text
+from jackettwin.report.figures import style
+from jackettwin.report.view.page import member_text
 from jackettwin.response.sensors import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 

@@ -14,21 +14,22 @@ from gallery.figures_elevation import elevation
 from gallery.landscape import cost_surface
 from gallery.modes_3d import Shape, mode_shapes_3d
 from gallery.structure_3d import structure_3d
+from jackettwin.decks import read_structure
 from jackettwin.identification import Identification, identify, mac
 from jackettwin.records import Record, read_record
-from jackettwin.report import figures_identification, figures_record
-from jackettwin.report.numbers import frequency, scientific, words
-from jackettwin.report.page import PageSection, Plot
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.report.figures import identification as figures_identification, record as figures_record
+from jackettwin.report.pages.page import PageSection, Plot
+from jackettwin.report.tables.numbers import frequency, scientific, words
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.modal import UndampedModes, undamped_modes
+from jackettwin.response.motion.time import free_decay
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.response.system import build_system
-from jackettwin.response.time import free_decay
-from jackettwin.soil import on_translations
-from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, zener
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import SupportModel, family, numbered_modes, single, support_model
-from jackettwin.updating.steel import only_parts
+from jackettwin.soil import family, on_translations
+from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, zener
+from jackettwin.structure import Assembly, Rayleigh, assemble
+from jackettwin.updating import SupportModel, numbered_modes, single, support_model
+from jackettwin.updating.steel.update import only_parts
 from jackettwin.verify import supports
 
 RECORD = "pile_U12_s301"

@@ -15,8 +15,11 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
+    from typing import TypeVar
+
+    Value = TypeVar("Value")
 
 
 class JackettwinError(Exception):
@@ -99,6 +102,63 @@ def located(*, file: Path | str | None = None, field: str | None = None) -> Iter
         yield
     except InputError as error:
         raise error.at(file=file, field=field) from None
+
+
+def require(
+    holds: object,
+    problem: str,
+    *,
+    file: Path | str | None = None,
+    field: str | None = None,
+    value: object = None,
+    allowed: str | None = None,
+    remedy: str | None = None,
+) -> None:
+    """Refuse an input unless what is required of it holds; the other arguments are those of :class:`InputError`.
+
+    Raises
+    ------
+    InputError
+        If ``holds`` is false.
+    """
+    if not holds:
+        raise InputError(problem, file=file, field=field, value=value, allowed=allowed, remedy=remedy)
+
+
+def look_up(
+    table: Mapping[str, Value],
+    name: str,
+    what: str,
+    *,
+    file: Path | str | None = None,
+    field: str | None = None,
+    remedy: str | None = None,
+) -> Value:
+    """Return the entry of a table that has this name.
+
+    Parameters
+    ----------
+    table : mapping of every known name to its entry
+    name : str
+    what : str
+        What a name of the table names, in the singular: ``"support law"``.
+    file, field, remedy : see :class:`InputError`; by default the remedy is the closest known name
+
+    Raises
+    ------
+    InputError
+        If the table has no such name: it lists those that it has.
+    """
+    if name not in table:
+        raise InputError(
+            f"no such {what}",
+            file=file,
+            field=field,
+            value=name,
+            allowed=", ".join(table) or None,
+            remedy=did_you_mean(name, table) or remedy,
+        )
+    return table[name]
 
 
 def require_between(field: str, value: float, low: float, high: float, unit: str = "") -> None:

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from jackettwin.records import Record
-    from jackettwin.twin import Observation, TwinResult, TwinState
+    from jackettwin.study import TwinResult
+    from jackettwin.twin import Observation, TwinState
     from jackettwin.updating import Posterior
 
 
@@ -40,7 +41,8 @@ def to_dataframe(result: TwinResult | Posterior | Observation | TwinState) -> pd
     MissingExtra
         If pandas is not installed.
     """
-    from jackettwin.twin import Observation, TwinResult
+    from jackettwin.study import TwinResult
+    from jackettwin.twin import Observation
     from jackettwin.updating import Posterior
 
     frame: Any = _library("pandas").DataFrame
@@ -117,8 +119,8 @@ def _modes(seen: Observation) -> list[dict[str, Any]]:
 
 
 def _days(state: TwinState) -> list[dict[str, Any]]:
+    from jackettwin.twin.exact_sums import average
     from jackettwin.twin.state import ALL, day_totals
-    from jackettwin.twin.sums import average
 
     rows = []
     for day in state.days.values():

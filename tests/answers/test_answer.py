@@ -11,14 +11,15 @@ from jackettwin.answers import Answers, Span, answer
 from jackettwin.answers.fit import moved_by
 from jackettwin.answers.next_steps import next_steps, records_for
 from jackettwin.answers.result import NORMAL_90
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.twin import TwinResult
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.decks import read_structure
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.study import TwinResult
+from jackettwin.study.result import MeasuredMode
 from jackettwin.updating import (
     Residuals,
     Target,
-    family,
     law_probability,
     numbered_modes,
     single,

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from jackettwin.checks.iso19902 import Tube
+from jackettwin.checks.iso19902_pressure import hoop_strength
 from jackettwin.cli import main
-from jackettwin.structure import read_structure
-from jackettwin.structure.iso19902 import Tube
-from jackettwin.structure.iso19902_pressure import hoop_strength
+from jackettwin.decks import read_structure
 
 
 def run(*arguments: str):

@@ -8,7 +8,8 @@ import yaml
 from click.testing import CliRunner
 
 from jackettwin.cli import main
-from jackettwin.structure import assemble, read_structure
+from jackettwin.decks import read_structure
+from jackettwin.structure import assemble
 from jackettwin.twin import read_twin
 from jackettwin.updating import numbered_modes
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.cli import main
-from jackettwin.cli import run as run_module
+from jackettwin.cli import main, run as run_module
 
 
 @pytest.fixture(scope="module")

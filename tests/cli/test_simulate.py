@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import main
+from jackettwin.decks import read_structure
 from jackettwin.records import read_record
-from jackettwin.structure import read_structure
 
 CASE = """
 structure: jacket15

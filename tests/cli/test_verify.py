@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from jackettwin.cli import main
-from jackettwin.cli import verify as verify_module
+from jackettwin.cli import main, verify as verify_module
 from jackettwin.verify import Row
 
 KEYS = {"id", "source", "quantity", "published", "computed", "relative_error", "tolerance", "ok"}

@@ -10,11 +10,11 @@ import pyarrow.parquet as pq
 import pytest
 from click.testing import CliRunner, Result
 
+from jackettwin.change.modal_table import read_modal_table
+from jackettwin.change.table_watch import watch_table
 from jackettwin.cli import main
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.structure import read_structure
-from jackettwin.twin.modal_table import read_modal_table
-from jackettwin.twin.watched import watch_table
 
 Columns = dict[str, np.ndarray]
 

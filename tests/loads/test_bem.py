@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.bem import operating_damping, operating_point, steady_operation
-from jackettwin.loads.files import read_rotor
-from jackettwin.loads.rotor import rotor_loads
+from jackettwin.loads.aerodynamics.bem import operating_damping, operating_point, steady_operation
+from jackettwin.loads.aerodynamics.rotor import rotor_loads
+from jackettwin.loads.aerodynamics.turbine_files import read_rotor
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import Coefficients, GrowthBand, Strip, StripTable
-from jackettwin.loads.morison import added_mass, morison_points, point_forces
-from jackettwin.loads.water import Water, still_water, water_mass
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable
+from jackettwin.loads.members.morison import added_mass, morison_points, point_forces
+from jackettwin.loads.members.water import Water, still_water, water_mass
 from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member
 

@@ -7,11 +7,11 @@ import pytest
 from scipy.special import jvp, yvp
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.diffraction import scattered
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.wave_series import resultant_columns, wave_series
-from jackettwin.loads.waves import airy_wave, irregular_sea
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.morison import morison_points
+from jackettwin.loads.sea.diffraction import scattered
+from jackettwin.loads.sea.wave_series import resultant_columns, wave_series
+from jackettwin.loads.sea.waves import airy_wave, irregular_sea
 from jackettwin.simulate import read_scenario
 from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member, Reaction

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
-from jackettwin.loads.current import Current
-from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
-from jackettwin.loads.regular_waves import RegularWave
-from jackettwin.loads.waves import airy_wave, irregular_sea
+from jackettwin.loads.members.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
+from jackettwin.loads.members.ends import EndCoefficients, end_forces, member_ends
+from jackettwin.loads.sea.current import Current
+from jackettwin.loads.sea.regular_waves import RegularWave
+from jackettwin.loads.sea.waves import airy_wave, irregular_sea
 from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member, Reaction
 

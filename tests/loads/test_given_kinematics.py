@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.given_kinematics import PRESSURE, REQUIRED, TravellingKinematics, read_kinematics
-from jackettwin.loads.waves import airy_wave
+from jackettwin.loads.sea.given_kinematics import PRESSURE, REQUIRED, TravellingKinematics, read_kinematics
+from jackettwin.loads.sea.waves import airy_wave
 
 DEPTH, T, RHO = 40.0, 10.0, 1025.0
 WAVE = airy_wave(height=4.0, period=T, depth=DEPTH, direction=0.4)

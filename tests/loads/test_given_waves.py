@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.given_waves import Elevation, given_sea, read_elevation
-from jackettwin.loads.waves import irregular_sea
+from jackettwin.loads.sea.given_waves import Elevation, given_sea, read_elevation
+from jackettwin.loads.sea.waves import irregular_sea
 
 DEPTH, T = 40.0, 400.0
 

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.ends import EndCoefficients, end_forces, member_ends
-from jackettwin.loads.morison import above_bed, morison_points, point_forces, wetness
-from jackettwin.loads.wave_series import resultant_columns
-from jackettwin.loads.waves import airy_wave
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.ends import EndCoefficients, end_forces, member_ends
+from jackettwin.loads.members.morison import above_bed, morison_points, point_forces, wetness
+from jackettwin.loads.sea.wave_series import resultant_columns
+from jackettwin.loads.sea.waves import airy_wave
 from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member
 

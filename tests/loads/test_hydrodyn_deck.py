@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import GrowthBand, Strip, StripTable
-from jackettwin.loads.ends import EndCoefficients
-from jackettwin.loads.hydrodyn_deck import HydroDynMembers, read_hydrodyn
+from jackettwin.loads.members.coefficients import GrowthBand, Strip, StripTable
+from jackettwin.loads.members.ends import EndCoefficients
+from jackettwin.loads.members.hydrodyn_deck import HydroDynMembers, read_hydrodyn
 from jackettwin.structure import Section, Structure
 from jackettwin.structure.model import STEEL, Member
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from tests.support.wave_loads import wave_loads
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
-from jackettwin.loads.current import Current
-from jackettwin.loads.morison import (
+from jackettwin.loads.members.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
+from jackettwin.loads.members.morison import (
     added_mass,
     drag_damping,
     morison_points,
@@ -15,8 +15,9 @@ from jackettwin.loads.morison import (
     point_forces,
     wetness,
 )
-from jackettwin.loads.waves import airy_wave
-from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.loads.sea.current import Current
+from jackettwin.loads.sea.waves import airy_wave
+from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member
 
 D, DEPTH, RHO = 1.2, 40.0, SEA_WATER_KG_M3

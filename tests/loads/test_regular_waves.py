@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.regular_waves import THEORIES, regular_wave
-from jackettwin.loads.waves import airy_wave
+from jackettwin.loads.sea.regular_waves import THEORIES, regular_wave
+from jackettwin.loads.sea.waves import airy_wave
 
 raschii = pytest.importorskip("raschii")
 G = 9.80665

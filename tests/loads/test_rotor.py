@@ -8,12 +8,8 @@ import pytest
 from tests.support.rotor_closed_form import added_damping_ratio, lift_slope, parked_closed_form
 
 from jackettwin.errors import InputError
-from jackettwin.loads.files import read_rotor
-from jackettwin.loads.rotor import (
-    in_global_axes,
-    linearise,
-    rotor_loads,
-)
+from jackettwin.loads.aerodynamics.rotor import in_global_axes, linearise, rotor_loads
+from jackettwin.loads.aerodynamics.turbine_files import read_rotor
 
 ROWS = json.loads(
     (Path(__file__).parents[1] / "data/rotor/parked_aero_damping.json").read_text(encoding="utf-8")

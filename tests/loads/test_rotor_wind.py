@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from jackettwin.loads import read_rotor
+from jackettwin.loads.aerodynamics.rotor import compiled_rotor, elements, linearise, rotation, rotor_loads
+from jackettwin.loads.aerodynamics.rotor_wind import RINGS, SPOKES, rotor_wind
+from jackettwin.loads.aerodynamics.standing_blades import grid_nodes
+from jackettwin.loads.aerodynamics.wind import Wind
 from jackettwin.loads.kernels import _arctan2
-from jackettwin.loads.rotor import compiled_rotor, elements, linearise, rotation, rotor_loads
-from jackettwin.loads.rotor_wind import RINGS, SPOKES, rotor_wind
-from jackettwin.loads.standing_blades import grid_nodes
-from jackettwin.loads.wind import Wind
 
 ROTOR, _ = read_rotor("iea15")
 HUB = 149.6

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads import sea_series as module
-from jackettwin.loads.sea_series import sea_series
-from jackettwin.loads.waves import irregular_sea
+from jackettwin.loads.sea import sea_series as module
+from jackettwin.loads.sea.sea_series import sea_series
+from jackettwin.loads.sea.waves import irregular_sea
 
 POINTS = np.array([[0.0, 0.0, -1.0], [12.0, -5.0, -6.0], [-20.0, 3.0, 2.0], [5.0, 5.0, -60.0]])
 PERIOD, N = 300.0, 1200

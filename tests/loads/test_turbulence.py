@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from tests.support.wind_spectrum import kaimal
 
-from jackettwin.loads.turbulence import turbulence
-from jackettwin.loads.wind import Wind, coherence
+from jackettwin.loads.aerodynamics.turbulence import turbulence
+from jackettwin.loads.aerodynamics.wind import Wind, coherence
 
 WIND = Wind(12.0, 150.0, "B")
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import GROWTH_KG_M3, SEA_WATER_KG_M3, Coefficients, GrowthBand
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.water import Water, outside_pressure, still_water, water_mass
-from jackettwin.response.modal import undamped_modes
+from jackettwin.loads.members.coefficients import GROWTH_KG_M3, SEA_WATER_KG_M3, Coefficients, GrowthBand
+from jackettwin.loads.members.morison import morison_points
+from jackettwin.loads.members.water import Water, outside_pressure, still_water, water_mass
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import clamped
 from jackettwin.structure import Section, Structure, assemble

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from tests.support.wave_loads import wave_loads
 
-from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients
-from jackettwin.loads.current import Current
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.wave_series import resultant_columns, wave_series
-from jackettwin.loads.waves import airy_wave, irregular_sea
-from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.decks import read_structure
+from jackettwin.loads.members.coefficients import SEA_WATER_KG_M3, Coefficients
+from jackettwin.loads.members.morison import morison_points
+from jackettwin.loads.sea.current import Current
+from jackettwin.loads.sea.wave_series import resultant_columns, wave_series
+from jackettwin.loads.sea.waves import airy_wave, irregular_sea
+from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member
 
 D, DEPTH, T = 1.5, 50.0, 10.0

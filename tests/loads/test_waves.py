@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.current import Current
-from jackettwin.loads.waves import AirySea, airy_wave, irregular_sea, jonswap, peak_factor, wave_number
+from jackettwin.loads.sea.current import Current
+from jackettwin.loads.sea.waves import AirySea, airy_wave, irregular_sea, jonswap, peak_factor, wave_number
 
 G = 9.80665
 

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from tests.support.wind_spectrum import kaimal
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.morison import morison_points, nodal_loads
-from jackettwin.loads.rotor import AIR_KG_M3
-from jackettwin.loads.wind import Wind, tower_drag, tower_drag_damping
-from jackettwin.structure import assemble, read_structure
+from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3
+from jackettwin.loads.aerodynamics.wind import Wind, tower_drag, tower_drag_damping
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.morison import morison_points, nodal_loads
+from jackettwin.structure import assemble
 
 WIND = Wind(12.0, 150.0, "B")
 

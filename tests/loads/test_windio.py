@@ -11,8 +11,8 @@ import yaml
 
 from jackettwin.errors import InputError
 from jackettwin.files import read_yaml
-from jackettwin.loads.blades import Polar, blend_polars
-from jackettwin.loads.files import read_rotor
+from jackettwin.loads.aerodynamics.blades import Polar, blend_polars
+from jackettwin.loads.aerodynamics.turbine_files import read_rotor
 
 SHIPPED = Path(str(resources.files("jackettwin") / "data" / "rotors" / "iea15.yaml"))
 DELETED = object()
@@ -115,7 +115,7 @@ def test_what_is_wrong_is_named(
         del at[last]
     else:
         at[last] = value
-    monkeypatch.setattr("jackettwin.loads.files.read_yaml", lambda path, what: data)
+    monkeypatch.setattr("jackettwin.loads.aerodynamics.turbine_files.read_yaml", lambda path, what: data)
     with pytest.raises(InputError, match=f"rotor.yaml: .*{message}"):
         read_rotor("rotor.yaml")
 

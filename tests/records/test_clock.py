@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.records.clock import between_ticks, regularise
+from jackettwin.records.clocks.grid import between_ticks, regularise
 
 
 def test_perfect_stamps_change_nothing(rng: np.random.Generator) -> None:

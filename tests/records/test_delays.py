@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from jackettwin.records.channel_delays import Network, against_main, per_channel, ties
-from jackettwin.records.delays import (
+from jackettwin.records.clocks.channel_delays import Network, against_main, per_channel, ties
+from jackettwin.records.clocks.delays import (
     aligned,
     band_lines,
     doubled,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from jackettwin.records import faults
+from jackettwin.records.quality import faults
 
 
 def test_runs_cover_both_ends() -> None:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from jackettwin.records import assess, repair
-from jackettwin.records.channel_delays import Network
-from jackettwin.records.gain_changes import sign_turns
+from jackettwin.records.clocks.channel_delays import Network
+from jackettwin.records.quality.gain_changes import sign_turns
 
 
 @pytest.mark.parametrize("rows", [[1], [0, 1], [0, 1, 4, 5]])

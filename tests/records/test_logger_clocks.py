@@ -15,7 +15,7 @@ from common.planted import random_system
 
 from jackettwin.identification.synthetic import simulate
 from jackettwin.records import Record, assess, repair
-from jackettwin.records.repair import common_time
+from jackettwin.records.quality.repair import common_time
 
 UPPER = [0, 1, 4, 5]
 LOWER = (2, 3, 6, 7)

@@ -8,7 +8,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
-from jackettwin.records.merge import merge, shared_channels
+from jackettwin.records.processing.merge import merge, shared_channels
 
 START = datetime(2025, 1, 1, tzinfo=UTC)
 

@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record, decimate, detrend
-from jackettwin.records.prepare import bandpass, highpass
+from jackettwin.records.processing.prepare import bandpass, highpass
 
 START = datetime(2025, 1, 1, tzinfo=UTC)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.records.tones import less_phase
+from jackettwin.records.processing.tones import less_phase
 
 
 def test_a_drifting_tone_goes_and_the_rest_stays(rng: np.random.Generator) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
-from jackettwin.records.yaw import to_global_axes, to_rotor_axes
+from jackettwin.records.processing.yaw import to_global_axes, to_rotor_axes
 
 
 def turned(record: Record, yaw: np.ndarray) -> Record:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from jackettwin.records.zero_steps import without_step, zero_step
+from jackettwin.records.quality.zero_steps import without_step, zero_step
 
 
 @pytest.mark.parametrize("size", [-1.0, 3.0, 10.0])

@@ -8,17 +8,20 @@ import plotly.graph_objects as go
 import pytest
 from figure_units import assert_units_of
 
+from jackettwin.decks import read_structure
 from jackettwin.identification import Identification, IdentificationSettings, ModalEstimate, identify
 from jackettwin.identification.comparison import compare_methods
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, assess
-from jackettwin.response.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.sensors import Sensor
-from jackettwin.structure import Rayleigh, assemble, read_structure
-from jackettwin.twin import Examination, TwinResult
+from jackettwin.soil import family
+from jackettwin.structure import Rayleigh, assemble
+from jackettwin.study import TwinResult
+from jackettwin.study.result import DampingExcess, MeasuredMode
+from jackettwin.twin import Examination
 from jackettwin.twin.observation import Observation, Recognised
-from jackettwin.twin.result import DampingExcess, MeasuredMode
-from jackettwin.updating import Residuals, Target, family, numbered_modes, single, support_model, update
+from jackettwin.updating import Residuals, Target, numbered_modes, single, support_model, update
 
 PLACES = (("top", 144.0), ("mid", 77.0))
 

@@ -13,9 +13,9 @@ import pytest
 
 from jackettwin.report import Plot, build_report
 from jackettwin.report.build import report_sections
-from jackettwin.report.numbers import frequency, percent
-from jackettwin.report.tables_records import records_table
-from jackettwin.twin import TwinResult
+from jackettwin.report.tables.numbers import frequency, percent
+from jackettwin.report.tables.records import records_table
+from jackettwin.study import TwinResult
 
 
 class _Page(HTMLParser):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from jackettwin.report.drawings_shapes import shape_drawings
-from jackettwin.twin import TwinResult
+from jackettwin.report.figures.drawings_shapes import shape_drawings
+from jackettwin.study import TwinResult
 
 DOT = "<circle"
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gallery import explore
-from jackettwin.twin import TwinResult
-from jackettwin.updating import Parameter
+from jackettwin.soil import Parameter
+from jackettwin.study import TwinResult
 
 
 def test_root_locus_is_refined_where_poles_move(targets_only: TwinResult) -> None:

@@ -11,9 +11,9 @@ from gallery.structure_3d import structure_3d
 from jackettwin.records import Record
 from jackettwin.report import Plot
 from jackettwin.report.build import report_sections
-from jackettwin.report.figures_record import envelope, time_series
-from jackettwin.report.style import direction_colour, law_look, mode_look
-from jackettwin.twin import TwinResult
+from jackettwin.report.figures.record import envelope, time_series
+from jackettwin.report.figures.style import direction_colour, law_look, mode_look
+from jackettwin.study import TwinResult
 
 
 @pytest.fixture(scope="module")

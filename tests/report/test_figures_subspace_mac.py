@@ -5,7 +5,7 @@ import pytest
 
 from jackettwin.identification import fuse
 from jackettwin.identification.many_records.convergence import convergence
-from jackettwin.report import figures_subspace_mac as figures
+from jackettwin.report.figures import subspace_mac as figures
 
 
 def names(found):

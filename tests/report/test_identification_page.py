@@ -14,12 +14,12 @@ from numpy.testing import assert_allclose
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.records import Channel
-from jackettwin.report.figures_components import shape_components
-from jackettwin.report.figures_measured import SensorLayout, measured_shapes_3d
-from jackettwin.report.identification_page import _shapes, build_identification_page, mode_names
-from jackettwin.report.numbers import UNKNOWN
-from jackettwin.report.page import Plot
-from jackettwin.report.tables_records import method_table
+from jackettwin.report.figures.components import shape_components
+from jackettwin.report.figures.measured_shapes import SensorLayout, measured_shapes_3d
+from jackettwin.report.pages.identification import _shapes, build_identification_page, mode_names
+from jackettwin.report.pages.page import Plot
+from jackettwin.report.tables.numbers import UNKNOWN
+from jackettwin.report.tables.records import method_table
 from jackettwin.twin import Examination
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

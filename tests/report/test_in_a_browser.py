@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from jackettwin.report import build_report
-from jackettwin.twin import TwinResult
+from jackettwin.study import TwinResult
 
 CHROMIUM = next((p for p in ("chromium", "chromium-browser", "google-chrome") if shutil.which(p)), "")
 MEASURE = """<script>setTimeout(() => { const r = e => e.getBoundingClientRect();

@@ -13,10 +13,10 @@ from jackettwin.identification import fuse
 from jackettwin.identification.estimate import ModalEstimate
 from jackettwin.identification.many_records.fusion import FusedMode
 from jackettwin.identification.selection.candidates import with_covariance
-from jackettwin.report.figures_tracks import MOST_POINTS, tracks
-from jackettwin.report.many_page import build_many_page
+from jackettwin.report.figures.tracks import MOST_POINTS, tracks
+from jackettwin.report.pages.many_records import build_many_page
+from jackettwin.study.many_records.summary import Together
 from jackettwin.twin.observe_files import Failed
-from jackettwin.twin.together import Together
 
 
 def seen_often(n: int) -> FusedMode:

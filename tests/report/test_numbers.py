@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from jackettwin.report import numbers
+from jackettwin.report.tables import numbers
 
 
 def test_frequency_and_percent_carry_their_deviation() -> None:

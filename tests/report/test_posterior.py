@@ -7,10 +7,12 @@ import plotly.graph_objects as go
 import pytest
 
 from jackettwin.answers import answer
-from jackettwin.report import Plot, tables_answers
-from jackettwin.report.section_appendix import posterior
-from jackettwin.twin import TwinResult
-from jackettwin.updating import Residuals, Target, family, single, support_model, update
+from jackettwin.report import Plot
+from jackettwin.report.sections.appendix import posterior
+from jackettwin.report.tables import answers as tables_answers
+from jackettwin.soil import family
+from jackettwin.study import TwinResult
+from jackettwin.updating import Residuals, Target, single, support_model, update
 
 
 @pytest.fixture(scope="module")

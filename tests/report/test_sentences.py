@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, FitAnswer, GroundAnswer, LawAnswer, ModeAnswer, NextStep
-from jackettwin.report.sentences import percent_words, sentences, span_words
-from jackettwin.report.tables_answers import ground_table
+from jackettwin.report.tables.answers import ground_table
+from jackettwin.report.tables.sentences import percent_words, sentences, span_words
 
 MODE = ModeAnswer(
     "fore_aft_1", Span(0.2, 0.199, 0.201), Span(0.012, 0.01, 0.014), True, True, Span(0.201, 0.195, 0.204),

@@ -7,18 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.loads.coefficients import Coefficients, GrowthBand
-from jackettwin.report.view import ColouredQuantity, View, thickness_quantities, view_document, write_view
-from jackettwin.report.view_dimensions import dimensions
-from jackettwin.report.view_motions import damped_motion, record_motion, undamped_motion, wave_motion
-from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.passage import wave_passage
-from jackettwin.response.playback import Playback
+from jackettwin.decks import read_structure
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand
+from jackettwin.report.view.dimensions import dimensions
+from jackettwin.report.view.motions import damped_motion, record_motion, undamped_motion, wave_motion
+from jackettwin.report.view.page import (
+    ColouredQuantity,
+    View,
+    thickness_quantities,
+    view_document,
+    write_view,
+)
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.motion.passage import wave_passage
+from jackettwin.response.motion.playback import Playback
 from jackettwin.response.sensors import Sensor
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import on_translations
-from jackettwin.soil.viscoelastic import kelvin_voigt
-from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt
+from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member, Reaction, RigidLink
 from jackettwin.structure.two_node import two_node_element
 

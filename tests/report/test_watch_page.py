@@ -2,7 +2,7 @@
 
 import pytest
 
-from jackettwin.report.watch_page import _size
+from jackettwin.report.pages.watch import _size
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
+from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.soil.support import Spring, Support, on_translations
-from jackettwin.soil.viscoelastic import Law
-from jackettwin.structure import Assembly, Section, Structure, assemble, read_structure
+from jackettwin.structure import Assembly, Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Member, PointMass, Reaction
 
 DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.support.law_rows import law_rows
 
-from jackettwin.response import certified
-from jackettwin.response.certified import all_modes, real_poles
-from jackettwin.response.condensed import Condensed, condense
-from jackettwin.response.modal import damped_modes
+from jackettwin.response.condensation import certificate as certified
+from jackettwin.response.condensation.certificate import all_modes, real_poles
+from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Spring, Support, on_translations
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

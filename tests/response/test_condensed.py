@@ -6,12 +6,12 @@ import scipy.sparse.linalg as spla
 from tests.support.law_rows import law_rows
 
 from jackettwin.errors import InputError
-from jackettwin.response.certified import all_modes
-from jackettwin.response.condensed import Condensed, condense
-from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.condensation.certificate import all_modes
+from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
+from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Spring, Support, on_translations, pinned
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)
@@ -55,7 +55,7 @@ def test_shapes_are_those_of_the_full_model(jacket15) -> None:
 
 def test_f_is_the_schur_complement_of_the_full_one(jacket15) -> None:
     """Static condensation is the case s = 0; a general s holds every term of the series."""
-    from jackettwin.response.condensed_kernels import fill
+    from jackettwin.response.condensation.kernels import fill
 
     system = build_system(jacket15, on_translations(jacket15.structure, LAWS["maxwell-3"]), rayleigh=RAYLEIGH)
     condensed = condense(system, below_hz=0.95)

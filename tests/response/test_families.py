@@ -5,12 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import UndampedModes, damped_modes
-from jackettwin.response.numbered import NumberedModes, Status
-from jackettwin.response.refined import refined
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import SupportModel, family, numbered_modes, support_model
+from jackettwin.decks import read_structure
+from jackettwin.response.condensation.mode_numbers import NumberedModes, Status
+from jackettwin.response.condensation.refinement import refined
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.modal import UndampedModes, damped_modes
+from jackettwin.soil import family
+from jackettwin.structure import Assembly, Rayleigh, assemble
+from jackettwin.updating import SupportModel, numbered_modes, support_model
 
 JACKET = """
 name: symmetric

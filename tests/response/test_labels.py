@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import damped_modes, undamped_modes
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt
 from jackettwin.soil.support import clamped, on_translations, pinned
-from jackettwin.soil.viscoelastic import kelvin_voigt
 from jackettwin.structure import Material, Section, Structure, assemble
 from jackettwin.structure.model import Member, Reaction
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from gallery.locus import damping_ratio, frequency_hz, root_locus
-from jackettwin.response.condensed import condense
+from jackettwin.response.condensation.condensed import condense
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt
 from jackettwin.soil.support import on_translations
-from jackettwin.soil.viscoelastic import Prony, kelvin_voigt
 
 
 @pytest.mark.parametrize(("k", "free_hz"), [(2.5e9, 0.1814), (1.1e8, 0.1507)])

@@ -5,13 +5,14 @@ import pytest
 import scipy.linalg as la
 from tests.response.conftest import monopile_structure
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.mode_tracking import track_modes
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.modes.tracking import track_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, zener
 from jackettwin.soil.support import Support, on_translations, pinned
-from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, zener
-from jackettwin.structure import Rayleigh, assemble, read_structure
+from jackettwin.structure import Rayleigh, assemble
 from jackettwin.structure.model import PointMass
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.mode_tracking import mass_mac, track_modes
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.modes.tracking import mass_mac, track_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt, zener
 from jackettwin.soil.support import on_translations, pinned
-from jackettwin.soil.viscoelastic import kelvin_voigt, zener
 from jackettwin.structure import Rayleigh
 
 OMEGA = np.array([1.0, 1.01, 3.0, 5.0])

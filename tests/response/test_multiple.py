@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.response.labels import mode_kinds
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.multiple import aligned
+from jackettwin.response.modes.labels import mode_kinds
+from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.modes.multiple import aligned
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import clamped
 from jackettwin.structure import Material, Section, Structure, assemble

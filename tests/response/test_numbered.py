@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from tests.support.law_rows import law_rows
 
-from jackettwin.response.condensed import Condensed, condense
-from jackettwin.response.numbered import NumberedModes, Points, Status, numbered_poles
+from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, Status, numbered_poles
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Spring, on_translations
-from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

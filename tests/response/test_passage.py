@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from tests.support.wave_loads import wave_loads
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.loads import airy_wave, morison_points
-from jackettwin.response.passage import wave_passage
+from jackettwin.response.motion.passage import wave_passage
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations
-from jackettwin.soil.viscoelastic import kelvin_voigt
-from jackettwin.structure import assemble, read_structure
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt
+from jackettwin.structure import assemble
 
 
 @pytest.fixture(scope="module")

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.playback import playback, record_sensors
+from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.motion.playback import playback, record_sensors
 from jackettwin.response.sensors import observation_matrix
 from jackettwin.response.system import build_system
 from jackettwin.soil import pinned
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 
 RATE = 20.0
 CHANNELS = tuple(

@@ -8,13 +8,14 @@ import pytest
 from scipy.sparse.linalg import LinearOperator
 from tests.response.conftest import monopile_structure, on_law
 
-from jackettwin.response import poles
-from jackettwin.response.modal import DampedModes, damped_modes, undamped_modes
+from jackettwin.decks import read_structure
+from jackettwin.response.modes import poles
+from jackettwin.response.modes.modal import DampedModes, damped_modes, undamped_modes
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Pencil, System, build_system
+from jackettwin.soil.laws.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, prony_fit, zener
 from jackettwin.soil.support import Spring, Support, on_translations
-from jackettwin.soil.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, prony_fit, zener
-from jackettwin.structure import Rayleigh, assemble, read_structure
+from jackettwin.structure import Rayleigh, assemble
 from jackettwin.structure.model import PointMass
 
 BELOW_HZ = 3.0
@@ -209,7 +210,7 @@ def test_many_equal_oscillators_are_all_found() -> None:
     """Multiplicity far beyond two: forty equal masses on equal Zener feet, side by side."""
     import scipy.sparse as sp
 
-    from jackettwin.response.poles import poles_below
+    from jackettwin.response.modes.poles import poles_below
     from jackettwin.response.system import Group
 
     n, law = 80, zener(1.48e6, 5e4, 3.1096e5)

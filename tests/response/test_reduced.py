@@ -5,15 +5,16 @@ import pytest
 import scipy.linalg as la
 import scipy.sparse.linalg as spla
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import damped_modes, undamped_modes
-from jackettwin.response.reduced import FREQUENCY_ERROR, reduced
+from jackettwin.response.modes.modal import damped_modes, undamped_modes
+from jackettwin.response.reduction import FREQUENCY_ERROR, reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, pinned
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.viscoelastic import Law, kelvin_voigt, maxwell_3, zener
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
+from jackettwin.soil.laws.viscoelastic import Law, kelvin_voigt, maxwell_3, zener
+from jackettwin.structure import Assembly, Rayleigh, assemble
 
 LAWS = {
     "kelvin-voigt": kelvin_voigt(2.5e9, 7.6e8),

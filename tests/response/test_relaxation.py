@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.support.law_rows import law_rows
 
-from jackettwin.response.condensed import Condensed, condense
-from jackettwin.response.modal import damped_modes
-from jackettwin.response.numbered import Points
-from jackettwin.response.relaxation import nearest_relaxation
+from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.condensation.mode_numbers import Points
+from jackettwin.response.condensation.relaxation import nearest_relaxation
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import on_translations
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.structure import Assembly, Rayleigh
 
 RAYLEIGH = Rayleigh.minimum(0.01, 0.1832)

@@ -6,10 +6,10 @@ from scipy.integrate import solve_ivp
 
 from gallery.figures_theory import free_vibration
 from jackettwin.errors import InputError
+from jackettwin.response.motion.time import free_decay
 from jackettwin.response.sdof import poles, sdof
 from jackettwin.response.state import state_matrix
-from jackettwin.response.time import free_decay
-from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, zener
+from jackettwin.soil.laws.viscoelastic import Springpot, kelvin_voigt, zener
 
 M, K0, C = 1.12e6, 1.48e6, 5.00e4
 K1 = 3.1096e5

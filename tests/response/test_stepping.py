@@ -10,16 +10,16 @@ from scipy.signal import cont2discrete
 from tests.support.energy import energy
 
 from jackettwin.errors import InputError
-from jackettwin.response.sdof import sdof
-from jackettwin.response.system import Pencil
-from jackettwin.response.time import (
+from jackettwin.response.motion.time import (
     first_order_hold,
     march,
     march_with_feedback,
     periodic_start,
     state_space,
 )
-from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, zener
+from jackettwin.response.sdof import sdof
+from jackettwin.response.system import Pencil
+from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, zener
 from jackettwin.structure import Rayleigh
 
 MODELS = {

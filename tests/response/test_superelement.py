@@ -7,21 +7,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.superelement import (
+from jackettwin.response.superelement.error import damping_ratio, default_band_hz, reduced_modes
+from jackettwin.response.superelement.files import read_superelement, write_superelement
+from jackettwin.response.superelement.reduction import (
     INTERFACE,
     RUNGE_KUTTA,
     fixed_interface_frequencies,
     slowed,
     superelement,
 )
-from jackettwin.response.superelement_error import damping_ratio, default_band_hz, reduced_modes
-from jackettwin.response.superelement_files import read_superelement, write_superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, own_support
+from jackettwin.soil.laws.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Support, clamped
-from jackettwin.soil.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener
-from jackettwin.structure import Rayleigh, Section, Structure, assemble, check, read_structure
+from jackettwin.structure import Rayleigh, Section, Structure, assemble, check
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import STEEL, Member, Reaction
 

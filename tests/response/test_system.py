@@ -5,10 +5,10 @@ import pytest
 from tests.response.conftest import monopile_structure
 
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Prony, Springpot, kelvin_voigt, zener
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, pinned
-from jackettwin.soil.viscoelastic import Prony, Springpot, kelvin_voigt, zener
 from jackettwin.structure import Rayleigh, assemble
 
 

@@ -6,16 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.water import Water, mass_per_level, water_mass
-from jackettwin.response.modal import UndampedModes, undamped_modes
+from jackettwin.loads.members.coefficients import SEA_WATER_KG_M3, Coefficients, GrowthBand
+from jackettwin.loads.members.morison import morison_points
+from jackettwin.loads.members.water import Water, mass_per_level, water_mass
+from jackettwin.response.modes.modal import UndampedModes, undamped_modes
+from jackettwin.response.motion.tide import tide_slopes
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.response.system import build_system
-from jackettwin.response.tide import tide_slopes
 from jackettwin.soil.support import clamped
-from jackettwin.structure import Assembly, assemble, read_structure
+from jackettwin.structure import Assembly, assemble
 
 COEFFICIENTS = Coefficients(growth=(GrowthBand(2.0, -40.0, 0.1),))
 N = 6

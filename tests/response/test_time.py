@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from tests.support.time_histories import step_response
 
+from jackettwin.response.motion.time import free_decay
 from jackettwin.response.sdof import poles, sdof
-from jackettwin.response.time import free_decay
-from jackettwin.soil.viscoelastic import Prony, kelvin_voigt, maxwell, maxwell_3, zener
+from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, maxwell_3, zener
 
 LAWS = {
     "zener": zener(1.48e6, 5e4, 3.1096e5),

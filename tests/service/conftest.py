@@ -18,11 +18,13 @@ from fastapi.testclient import TestClient
 from scipy.signal import lfilter
 from tests.support.observations import estimate, observation
 
-from jackettwin.service import ServiceSettings, auth, engine, verdict
-from jackettwin.service.app import create_app
-from jackettwin.service.catalogue import add_text_version
+from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
-from jackettwin.service.dispatch import Dispatcher
+from jackettwin.service.web import auth
+from jackettwin.service.web.app import create_app
+from jackettwin.service.web.catalogue import add_text_version
+from jackettwin.service.work import engine, verdict
+from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.store import open_database, people, read_waveform, work, writing
 from jackettwin.twin import OBSERVATION
 

@@ -173,7 +173,7 @@ def test_no_name_leads_out_of_the_store(client: TestClient, service: Service, na
 def test_an_upload_over_the_limit_is_refused_and_leaves_nothing(tmp_path, monkeypatch) -> None:
     from tests.service.conftest import make_service
 
-    from jackettwin.service.app import create_app
+    from jackettwin.service.web.app import create_app
 
     for small in make_service(tmp_path, None, monkeypatch, upload_limit_bytes=1000):
         with TestClient(create_app(small), base_url="http://127.0.0.1:8470") as client:

@@ -11,9 +11,10 @@ from tests.service.conftest import NOON, TWIN, description, hour, record_file, t
 
 from jackettwin.cli.asset import asset_command
 from jackettwin.errors import InputError
-from jackettwin.service import add_conditions, add_twin, catalogue, take_here
+from jackettwin.service import add_conditions, add_twin, take_here
 from jackettwin.service.context import Service
 from jackettwin.service.server import take_from_inbox
+from jackettwin.service.web import catalogue
 from jackettwin.store import reading, tables, work, writing
 from jackettwin.store.assets import found_version
 

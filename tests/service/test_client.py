@@ -11,8 +11,8 @@ from tests.service.conftest import TWIN, description, hour, record_file, turn
 
 from jackettwin.client import Client
 from jackettwin.errors import InputError
-from jackettwin.service.app import API, create_app
 from jackettwin.service.context import Service
+from jackettwin.service.web.app import API, create_app
 
 
 @pytest.fixture

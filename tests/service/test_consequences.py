@@ -8,15 +8,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from sqlalchemy import select
 from sqlalchemy.exc import OperationalError
 from tests.service.conftest import description, hour, make_service, record_file, turn
 
-from jackettwin.service import consequences, dispatch, uploads
 from jackettwin.service.context import Service
-from jackettwin.service.dispatch import Dispatcher
+from jackettwin.service.web import uploads
+from jackettwin.service.work import consequences, dispatch
+from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.store import assets, reading, results, tables, work, writing
 
 RECORDS = 6
@@ -115,7 +115,7 @@ def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(service: S
         job = work.lease(connection, "slow", 1, service.now())[0]
         task = consequences.task_of(connection, service, job)
         work.bury(connection, "slow")
-    from jackettwin.service.tasks import observe_stored
+    from jackettwin.service.work.tasks import observe_stored
 
     slow = type(service)(service.settings, service.database, service.compute, "slow")
     turn(service)

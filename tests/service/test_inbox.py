@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from tests.service.conftest import TWIN, Done, description, record_file
 
-from jackettwin.service.begun import NoWorker
-from jackettwin.service.catalogue import add_text_version
 from jackettwin.service.context import Service
 from jackettwin.service.intake import folder
 from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
+from jackettwin.service.web.catalogue import add_text_version
+from jackettwin.service.work.task_status import NoWorker
 from jackettwin.store import reading, writing
 from jackettwin.store.records import find_record
 

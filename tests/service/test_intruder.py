@@ -11,21 +11,19 @@ from typing import Any
 import cbor2
 import pytest
 from fastapi.testclient import TestClient
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from tests.service.conftest import PASSWORD, description, make_service, record_file, turn, upload
 from tests.service.test_security import token
 from tests.store.conftest import fresh
 
 from jackettwin.errors import InputError
-from jackettwin.service import app as web
-from jackettwin.service import auth
-from jackettwin.service.app import create_app
-from jackettwin.service.confined import only_files_in
 from jackettwin.service.context import Service
+from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.intake.mqtt import read_packets
-from jackettwin.service.rendered import Rendered, compressed
-from jackettwin.service.routes import health
+from jackettwin.service.web import app as web, auth
+from jackettwin.service.web.answer_cache import Rendered, compressed
+from jackettwin.service.web.app import create_app
+from jackettwin.service.web.routes import health
 from jackettwin.store import people, writing
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
@@ -184,7 +182,7 @@ def test_no_message_of_a_stranger_holds_up_those_behind_it(topic: str, body: dic
 
 def test_answers_kept_count_what_was_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     """A reader's long questions fill no memory."""
-    monkeypatch.setattr("jackettwin.service.rendered._MOST_BYTES", 100_000)
+    monkeypatch.setattr("jackettwin.service.web.answer_cache._MOST_BYTES", 100_000)
     kept = Rendered()
     for k in range(50):
         kept.keep(f"/{k}?{'x' * 20_000}", compressed(1, b"body"))
@@ -254,7 +252,7 @@ def test_events_end_so_that_who_listens_is_asked_again(
 
 
 def test_a_fault_of_ours_is_a_problem_document_without_its_insides(service: Service, monkeypatch) -> None:
-    monkeypatch.setattr("jackettwin.service.catalogue.overview", lambda _: {}["secret"])
+    monkeypatch.setattr("jackettwin.service.web.catalogue.overview", lambda _: {}["secret"])
     app = create_app(service)
     with TestClient(app, base_url="http://127.0.0.1:8470", raise_server_exceptions=False) as client:
         answer = client.get("/api/v1/assets")

@@ -15,12 +15,12 @@ from sqlalchemy import event
 from tests.service.conftest import NOON, TWIN, make_service, turn, upload
 
 from jackettwin.service import adopt_version, rebuild
-from jackettwin.service.app import create_app
-from jackettwin.service.chores import Housekeeping, prune
 from jackettwin.service.context import Service
-from jackettwin.service.rendered import Rendered, compressed, has_tag
-from jackettwin.service.routes import assets, modes, records
-from jackettwin.service.routes.common import Told
+from jackettwin.service.web.answer_cache import Rendered, compressed, has_tag
+from jackettwin.service.web.app import create_app
+from jackettwin.service.web.routes import assets, modes, records
+from jackettwin.service.web.routes.common import Told
+from jackettwin.service.work.housekeeping import Housekeeping, prune
 from jackettwin.store import journal, results, writing
 from jackettwin.store.tables import events
 
@@ -186,7 +186,7 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
 
 
 def test_answers_kept_take_no_more_than_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jackettwin.service.rendered._MOST_BYTES", 5000)
+    monkeypatch.setattr("jackettwin.service.web.answer_cache._MOST_BYTES", 5000)
     kept = Rendered()
     for k in range(10):
         kept.keep(f"/{k}", compressed(1, b"body"))

@@ -6,8 +6,8 @@ from datetime import timedelta
 from fastapi.testclient import TestClient
 from tests.service.conftest import NOON, turn, upload
 
-from jackettwin.service.chores import Housekeeping, prune
 from jackettwin.service.context import Service
+from jackettwin.service.work.housekeeping import Housekeeping, prune
 
 
 def waveforms(service: Service) -> int:

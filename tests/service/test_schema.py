@@ -14,8 +14,8 @@ from schemathesis.checks import (
 )
 from tests.service.conftest import turn, upload
 
-from jackettwin.service import auth, schemas
 from jackettwin.service.context import Service
+from jackettwin.service.web import auth, schemas
 from jackettwin.store import people, writing
 
 CHECKS = (

@@ -16,11 +16,12 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import NOON, PASSWORD, Done, make_service, upload
 
 from jackettwin.errors import InputError
-from jackettwin.service import ServiceSettings, auth, pages
-from jackettwin.service.app import API, ROUTERS, create_app
+from jackettwin.service import ServiceSettings
 from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
-from jackettwin.service.tasks import File, read_file
+from jackettwin.service.web import auth, pages
+from jackettwin.service.web.app import API, ROUTERS, create_app
+from jackettwin.service.work.tasks import File, read_file
 from jackettwin.store import people, results, writing
 
 OPEN = {

@@ -12,9 +12,9 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, serve
-from jackettwin.service.compute import Compute
 from jackettwin.service.context import Service
 from jackettwin.service.intake.mqtt import MqttIntake
+from jackettwin.service.work.compute import Compute
 
 
 @pytest.fixture(autouse=True)

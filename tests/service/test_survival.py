@@ -16,9 +16,10 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import description, hour, make_service, record_file, upload
 from tests.service.servers import Broker, Database, Server, opened, publish
 
-from jackettwin.service import add_twin, engine, take_here
-from jackettwin.service.app import create_app
-from jackettwin.service.tasks import File, read_file
+from jackettwin.service import add_twin, take_here
+from jackettwin.service.web.app import create_app
+from jackettwin.service.work import engine
+from jackettwin.service.work.tasks import File, read_file
 from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
 

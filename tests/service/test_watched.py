@@ -10,8 +10,8 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import TWIN, turn, upload
 from tests.support.observations import seen
 
-from jackettwin.service import engine, verdict
 from jackettwin.service.context import Service
+from jackettwin.service.work import engine, verdict
 from jackettwin.twin import TwinState, advance_all
 
 ALARM = {
@@ -40,7 +40,7 @@ def test_days_that_change_raise_an_alarm_and_days_that_do_not_none(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Which cause it is, is judged elsewhere, at the price of a thousand eigenvalue problems."""
-    monkeypatch.setattr(import_module("jackettwin.twin.judge"), "_causes", lambda *_: None)
+    monkeypatch.setattr(import_module("jackettwin.change.judge"), "_causes", lambda *_: None)
     kept, findings = watched(folder, days(95, -0.008), None)
     assert [f["code"] for f in findings] == ["watch_begins", "structure_changed"]
     assert findings[1]["day"] > "2025-03-16"

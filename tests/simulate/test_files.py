@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import GrowthBand, Strip, StripTable
+from jackettwin.loads.members.coefficients import GrowthBand, Strip, StripTable
 from jackettwin.simulate import read_scenario, shipped_scenarios
 
 WAVES = {"type": "airy", "height_m": 6.0, "period_s": 10.0}

@@ -5,7 +5,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.motion import simulate_motion
+from jackettwin.simulate.motion.motion import simulate_motion
 
 PILES = {"length_m": 40.0, "outer_diameter_m": 2.0, "thickness_m": 0.05, "element_m": 2.0}
 CLAY = {

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from jackettwin.loads.waves import wave_number
-from jackettwin.response.static import nodal_load, self_weight, static_displacement
+from jackettwin.checks.member_check import member_uses
+from jackettwin.decks import read_structure
+from jackettwin.loads.sea.waves import wave_number
+from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
 from jackettwin.simulate import loads_document, read_scenario
 from jackettwin.simulate.members import scenario_uses
 from jackettwin.soil import clamped, pinned
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 from jackettwin.structure.forces import element_weight
-from jackettwin.structure.member_check import member_uses
 
 SEA = {"type": "airy", "height_m": 8.0, "period_s": 9.0, "direction_deg": 20.0}
 

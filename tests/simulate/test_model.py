@@ -7,9 +7,9 @@ import pytest
 from tests.support.rotor_closed_form import added_damping_ratio
 
 from jackettwin.errors import InputError
-from jackettwin.response.time import free_decay
+from jackettwin.response.motion.time import free_decay
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.model import (
+from jackettwin.simulate.motion.model import (
     BAND_HZ,
     aerodynamics,
     asset_model,
@@ -17,7 +17,7 @@ from jackettwin.simulate.model import (
     true_modes,
     with_aerodynamics,
 )
-from jackettwin.simulate.wind import tower_damping, tower_points
+from jackettwin.simulate.motion.wind import tower_damping, tower_points
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ import pytest
 import yaml
 from scipy.optimize import linear_sum_assignment
 
-from jackettwin.response.modal import damped_modes
-from jackettwin.response.own_damping import own_damping
-from jackettwin.response.reduced import FREQUENCY_ERROR
+from jackettwin.response.modes.modal import damped_modes
+from jackettwin.response.modes.own_damping import own_damping
+from jackettwin.response.reduction import FREQUENCY_ERROR
 from jackettwin.response.system import build_system
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.model import BAND_HZ, build_model, true_modes
+from jackettwin.simulate.motion.model import BAND_HZ, build_model, true_modes
 
 ROOT = Path(__file__).parents[2]
 SMALL = {

@@ -9,9 +9,9 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.loads import read_rotor
-from jackettwin.loads.wind import TOWER_DRAG
+from jackettwin.loads.aerodynamics.wind import TOWER_DRAG
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.rotor_limits import lowest_tip, rotor_notes
+from jackettwin.simulate.scenario.rotor_limits import lowest_tip, rotor_notes
 
 WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
 BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"

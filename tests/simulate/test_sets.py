@@ -8,8 +8,8 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.records import read_record
 from jackettwin.simulate.batch import pending_cases, record_path, run_case, run_set
-from jackettwin.simulate.files import scenario_from
-from jackettwin.simulate.sets import read_set, shipped_sets
+from jackettwin.simulate.scenario.files import scenario_from
+from jackettwin.simulate.scenario.sets import read_set, shipped_sets
 
 BASE = """
 structure: jacket15

@@ -8,16 +8,16 @@ from tests.support.energy import energy
 
 from jackettwin.errors import InputError
 from jackettwin.records import read_record, write_record
-from jackettwin.response.time import Hold, first_order_hold, march_with_feedback, state_space
+from jackettwin.response.motion.time import Hold, first_order_hold, march_with_feedback, state_space
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.driving import loads_on
-from jackettwin.simulate.model import aerodynamics
-from jackettwin.simulate.motion import simulate_motion
+from jackettwin.simulate.motion.driving import loads_on
+from jackettwin.simulate.motion.model import aerodynamics
+from jackettwin.simulate.motion.motion import simulate_motion
+from jackettwin.simulate.motion.rotor_stepping import march_with_rotor
+from jackettwin.simulate.motion.wind import rotor_loads_in, wind_field
 from jackettwin.simulate.record import conditions
 from jackettwin.simulate.resultant import resultants
-from jackettwin.simulate.rotor_march import march_with_rotor
 from jackettwin.simulate.sensing import flawed, readings
-from jackettwin.simulate.wind import rotor_loads_in, wind_field
 
 WIND = {"speed_m_s": 14.0, "seed": 1}
 SEA = {"type": "jonswap", "hs_m": 3.0, "tp_s": 9.0, "seed": 2}

@@ -6,23 +6,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads.given_kinematics import PRESSURE, REQUIRED
-from jackettwin.loads.morison import point_forces
-from jackettwin.loads.waves import airy_wave
+from jackettwin.loads.members.morison import point_forces
+from jackettwin.loads.sea.given_kinematics import PRESSURE, REQUIRED
+from jackettwin.loads.sea.waves import airy_wave
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.model import build_model
-from jackettwin.simulate.motion import simulate_motion
-from jackettwin.simulate.resultant import resultants
-from jackettwin.simulate.water import (
+from jackettwin.simulate.motion.model import build_model
+from jackettwin.simulate.motion.motion import simulate_motion
+from jackettwin.simulate.motion.water import (
     relative_drag,
     relative_drag_beyond,
     water_loads,
     water_points,
     wave_field,
 )
-from jackettwin.simulate.water_files import WaterSchema, depth_of
-from jackettwin.structure import assemble, read_structure
+from jackettwin.simulate.resultant import resultants
+from jackettwin.simulate.scenario.water_files import WaterSchema, depth_of
+from jackettwin.structure import assemble
 
 FEET = {"support": "pinned", "damping": {"rayleigh": {"ratio": 0.001, "frequency_hz": 0.2}}}
 

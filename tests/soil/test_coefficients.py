@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from tests.support.law_rows import law_rows
 
-from jackettwin.response.condensed_kernels import _law
-from jackettwin.soil.coefficients import law_slope, law_stiffness, static_rows
-from jackettwin.soil.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
+from jackettwin.response.condensation.kernels import _law
+from jackettwin.soil.laws.coefficients import law_slope, law_stiffness, static_rows
+from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener
 
 LAWS: list[Law] = [
     kelvin_voigt(2e9, 3e8),

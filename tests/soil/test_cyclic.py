@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from jackettwin.soil.curves import Tanh
-from jackettwin.soil.cyclic import CyclicPile, advance, cyclic_pile, drive, loop
-from jackettwin.soil.hysteresis import Sliders
-from jackettwin.soil.impedance import head_impedance
-from jackettwin.soil.pile_curves import PileCurves, linearised, pile_curves
-from jackettwin.soil.piles import Pile, stations
-from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.pushover import push
+from jackettwin.soil.ground.curves import Tanh
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.piles.cyclic import CyclicPile, advance, cyclic_pile, drive, loop
+from jackettwin.soil.piles.hysteresis import Sliders
+from jackettwin.soil.piles.impedance import head_impedance
+from jackettwin.soil.piles.piles import Pile, stations
+from jackettwin.soil.piles.pushover import push
+from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves
 from jackettwin.structure import Section
 
 PILE = Pile(30.0, Section(2.0, 0.05), spacing_m=2.0)

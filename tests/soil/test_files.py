@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.soil import Support, pinned, read_support
-from jackettwin.soil.viscoelastic import Prony, Springpot, kelvin_voigt, maxwell_3, zener
-from jackettwin.structure import read_structure
+from jackettwin.soil.laws.viscoelastic import Prony, Springpot, kelvin_voigt, maxwell_3, zener
 
 STRUCTURE = read_structure("jacket15")
 

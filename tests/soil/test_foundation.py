@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import read_support
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.viscoelastic import loss_factor
-from jackettwin.structure import assemble, read_structure
+from jackettwin.soil.laws.viscoelastic import loss_factor
+from jackettwin.structure import assemble
 
 PILE = "pile: {length_m: 60, outer_diameter_m: 2.8, thickness_m: 0.06}\n"
 SAND = "soil: {layers: [{thickness_m: 60, effective_weight_n_m3: 1e4, sand: {friction_angle_deg: 35}}]}\n"

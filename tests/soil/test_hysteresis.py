@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jackettwin.soil.curves import TabulatedCurve, Tanh
-from jackettwin.soil.hysteresis import move, sliders
+from jackettwin.soil.ground.curves import TabulatedCurve, Tanh
+from jackettwin.soil.piles.hysteresis import move, sliders
 
 CURVE = Tanh(capacity=1e6, initial_stiffness=1e8)
 ONE = np.ones(1)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil.layering import equivalent_depths
-from jackettwin.soil.pile_curves import CurveOptions, linearised, pile_curves
-from jackettwin.soil.piles import Pile
-from jackettwin.soil.profile import Clay, Layer, Point, Sand, SoilProfile
-from jackettwin.soil.py_curves import sand_coefficients
-from jackettwin.soil.scour import Scour
+from jackettwin.soil.ground.layering import equivalent_depths
+from jackettwin.soil.ground.profile import Clay, Layer, Point, Sand, SoilProfile
+from jackettwin.soil.ground.py_curves import sand_coefficients
+from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.piles.piles import Pile
+from jackettwin.soil.piles.reaction_curves import CurveOptions, linearised, pile_curves
 from jackettwin.structure import Section
 
 PILE = Pile(40.0, Section(2.0, 0.05))

@@ -6,18 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response.modal import damped_modes
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.impedance import head_impedance, lumped_head
-from jackettwin.soil.pile_curves import linearised, pile_curves
-from jackettwin.soil.piles import Pile, dashpots, linear_springs, stations
-from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.pushover import push
-from jackettwin.soil.scour import Scour
-from jackettwin.soil.viscoelastic import Springpot
-from jackettwin.structure import Section, assemble, read_structure
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.laws.viscoelastic import Springpot
+from jackettwin.soil.piles.impedance import head_impedance, lumped_head
+from jackettwin.soil.piles.piles import Pile, dashpots, linear_springs, stations
+from jackettwin.soil.piles.pushover import push
+from jackettwin.soil.piles.reaction_curves import linearised, pile_curves
+from jackettwin.structure import Section, assemble
 from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.sections import tube_properties
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil import py_curves, tz_curves
-from jackettwin.soil.curves import CubeRoot, TabulatedCurve, Tanh, secant_stiffness, tangent_stiffness
-from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile, ground_at
-from jackettwin.soil.scour import Scour
+from jackettwin.soil.ground import py_curves, tz_curves
+from jackettwin.soil.ground.curves import CubeRoot, TabulatedCurve, Tanh, secant_stiffness, tangent_stiffness
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile, ground_at
+from jackettwin.soil.ground.scour import Scour
 
 CASES = {
     case["id"]: case

@@ -6,14 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import damped_modes
+from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.impedance import head_impedance, lumped_head
-from jackettwin.soil.piles import Pile, linear_springs
-from jackettwin.soil.radiation import Radiation, axial_radiation, lateral_radiation
-from jackettwin.structure import Section, assemble, read_structure
+from jackettwin.soil.piles.impedance import head_impedance, lumped_head
+from jackettwin.soil.piles.piles import Pile, linear_springs
+from jackettwin.soil.piles.radiation import Radiation, axial_radiation, lateral_radiation
+from jackettwin.structure import Section, assemble
 
 SOIL = {"density_kg_m3": 1900.0, "shear_wave_m_s": 200.0, "D": 2.0, "omega": 6.0}
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 from tests.response.conftest import DECK
 
+from jackettwin.decks import read_structure
 from jackettwin.soil import clamped, on_translations, own_support, pinned
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt
 from jackettwin.soil.support import standing
-from jackettwin.soil.viscoelastic import kelvin_voigt
-from jackettwin.structure import read_structure
 from jackettwin.structure.model import Reaction
 
 FEET = ("foot_1", "foot_2", "foot_3", "foot_4")

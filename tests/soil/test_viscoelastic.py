@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.soil.viscoelastic import (
+from jackettwin.soil.laws.viscoelastic import (
     Prony,
     Springpot,
     kelvin_voigt,

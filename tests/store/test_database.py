@@ -16,8 +16,7 @@ from tests.service.servers import opened
 from tests.store.conftest import fresh
 
 from jackettwin.errors import InputError
-from jackettwin.store import database as module
-from jackettwin.store import open_database, reading, streams, tables, writing
+from jackettwin.store import database as module, open_database, reading, streams, tables, writing
 
 BEFORE = "0001"
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.structure import Structure, assemble, read_structure
+from jackettwin.structure import Structure, assemble
 from jackettwin.updating import numbered_modes
 
 TUBE = "{outer_diameter_m: 0.8, thickness_m: 0.02}"

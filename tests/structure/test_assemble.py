@@ -7,11 +7,12 @@ import pytest
 from tests.response.conftest import monopile_structure
 
 from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import Spring, Support, clamped, pinned
-from jackettwin.structure import Assembly, Section, Structure, assemble, read_structure
+from jackettwin.structure import Assembly, Section, Structure, assemble
 from jackettwin.structure.model import STEEL, Material, Member, PointMass, Reaction, RigidLink
 
 TUBE = Section(1.0, 0.05)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from jackettwin.decks.blade_files import read_flexible_rotor
 from jackettwin.errors import InputError
-from jackettwin.structure.blade_files import read_flexible_rotor
 from jackettwin.structure.blades import BladeStructure, blade_modes
 
 N, L, MASS, FLAP, EDGE = 40, 60.0, 300.0, 2e9, 5e9

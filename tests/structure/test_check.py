@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from tests.response.conftest import DECK, monopile_structure
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.structure import Section, assemble, check, read_structure
+from jackettwin.structure import Section, assemble, check
 from jackettwin.structure.check import rigid_body_motion
 from jackettwin.structure.model import STEEL, Material, PointMass
 

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.structure import assemble, check, read_structure
+from jackettwin.structure import assemble, check
 from jackettwin.structure.cut import at_interface
 
 DECK = Path(__file__).parents[1] / "data" / "subdyn" / "IEA-15-240-RWT-Jacket_SubDyn.dat"

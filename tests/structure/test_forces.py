@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg as spla
 
-from jackettwin.structure import Section, Structure, assemble, read_structure
+from jackettwin.decks import read_structure
+from jackettwin.structure import Section, Structure, assemble
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 from jackettwin.structure.model import STEEL, Member, Reaction
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import pinned
 from jackettwin.structure import Section, Structure, assemble, check, jacket

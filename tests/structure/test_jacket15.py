@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from jackettwin.response.modal import undamped_modes
+from jackettwin.decks import read_structure
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil import pinned
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.own_damping import own_damping
-from jackettwin.response.static import self_weight
+from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.modes.own_damping import own_damping
+from jackettwin.response.motion.static import self_weight
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import Support, clamped
 from jackettwin.structure import Rayleigh, Section, Structure, assemble, check

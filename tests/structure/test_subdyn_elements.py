@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from jackettwin.axes import GRAVITY_M_S2
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.superelement import Superelement, fixed_interface_frequencies, superelement
+from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.superelement.reduction import Superelement, fixed_interface_frequencies, superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import own_support
-from jackettwin.structure import Structure, assemble, read_structure
+from jackettwin.structure import Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.model import PointMass, Reaction

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.soil.viscoelastic import Law
+from jackettwin.soil.laws.viscoelastic import Law
 
 
 def law_rows(laws: Sequence[Law]) -> FloatArray:

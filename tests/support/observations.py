@@ -13,8 +13,8 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.records import Channel
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation
+from jackettwin.twin.codec import digest
 from jackettwin.twin.observation import Recognised
-from jackettwin.twin.stored import digest
 
 NONE, NO, WHOLE = np.empty(0), np.empty(0, dtype=bool), np.empty(0, dtype=np.int64)
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.blades import Blade
-from jackettwin.loads.rotor import AIR_KG_M3, Rotor
+from jackettwin.loads.aerodynamics.blades import Blade
+from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Rotor
 
 
 def lift_slope(blade: Blade, alpha: FloatArray) -> FloatArray:

@@ -3,8 +3,8 @@
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.response.motion.time import first_order_hold, march, state_space
 from jackettwin.response.system import Pencil
-from jackettwin.response.time import first_order_hold, march, state_space
 
 
 def step_response(pencil: Pencil, force: FloatArray, *, step_s: float, n_steps: int) -> FloatArray:

@@ -3,9 +3,9 @@
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.current import Current
-from jackettwin.loads.morison import MorisonPoints, nodal_loads, point_forces, wetness
-from jackettwin.loads.waves import Waves
+from jackettwin.loads.members.morison import MorisonPoints, nodal_loads, point_forces, wetness
+from jackettwin.loads.sea.current import Current
+from jackettwin.loads.sea.waves import Waves
 
 
 def wave_loads(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.wind import Wind
+from jackettwin.loads.aerodynamics.wind import Wind
 
 
 def kaimal(wind: Wind, frequency_hz: FloatArray, component: int = 0) -> FloatArray:

@@ -13,9 +13,9 @@ from jackettwin.identification.estimate import ModalEstimate
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
-from jackettwin.twin.doubts import unlike_model
 from jackettwin.twin.examine import examine
-from jackettwin.updating.pairing import Held
+from jackettwin.twin.record_checks import unlike_model
+from jackettwin.updating.data.pairing import Held
 
 PLAIN = IdentificationSettings(refine=False)
 SYSTEM = ModalSystem(

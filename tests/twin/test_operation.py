@@ -7,12 +7,12 @@ import pytest
 from tests.support.observations import estimate, observation
 
 from jackettwin.errors import InputError
+from jackettwin.study.fit_data import updating
 from jackettwin.twin import read_twin
 from jackettwin.twin.advance import advance_all
-from jackettwin.twin.fitted import updating
+from jackettwin.twin.exact_sums import average
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.state import ALL, TwinState
-from jackettwin.twin.sums import average
 
 RULE = OperationRule(
     {

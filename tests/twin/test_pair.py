@@ -32,8 +32,8 @@ from jackettwin.twin import (
     read_twin,
     twin_model,
 )
+from jackettwin.twin.exact_sums import ModeSums, ModeTotal, average, of_day, of_estimate
 from jackettwin.twin.state import ALL
-from jackettwin.twin.sums import ModeSums, ModeTotal, average, of_day, of_estimate
 
 NOON = datetime(2025, 1, 1, 12, tzinfo=UTC)
 MODES = {1: 0.18, 2: 0.183, 3: 0.55, 4: 0.74, 5: 0.80, 6: 1.2}

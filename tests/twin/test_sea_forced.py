@@ -10,15 +10,16 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from observations import estimate
 
+from jackettwin.decks import read_structure
 from jackettwin.identification import ModalEstimate
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.response.system import build_system
 from jackettwin.soil.support import standing
-from jackettwin.structure import assemble, read_structure
+from jackettwin.structure import assemble
 from jackettwin.structure.assemble import Assembly
 from jackettwin.twin.sea_forced import sea_share
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.softer_feet import Feet
+from jackettwin.updating.data.mode_candidates import Feet
 
 AT_M = (140.0, 80.0, 25.0)
 SENSORS = tuple(

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.study.fit_data import target_modes
+from jackettwin.study.narrative import cautions
 from jackettwin.twin import read_twin
-from jackettwin.twin.fitted import target_modes
-from jackettwin.twin.narrative import cautions
 from jackettwin.twin.targets_table import read_targets_table
 
 

@@ -8,17 +8,18 @@ import pytest
 from observations import observation
 
 from jackettwin.errors import InputError
-from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.conditions import SeaState
-from jackettwin.loads.water import Water
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.water import Water
+from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.soil import family
+from jackettwin.study.fit_data import residuals, target_modes
+from jackettwin.study.problem import UpdateEvidence, law_problem
+from jackettwin.study.rotor import RotorDamping
 from jackettwin.twin import TwinState, advance_all, read_twin
-from jackettwin.twin.assembled import assembled
-from jackettwin.twin.fitted import residuals, target_modes
-from jackettwin.twin.problem import UpdateEvidence, law_problem
-from jackettwin.twin.rotor import RotorDamping
+from jackettwin.twin.assembly import assembled
 from jackettwin.twin.state import ALL
 from jackettwin.twin.water import WaterConfig, in_the_records_sea, water_effects
-from jackettwin.updating import family, support_model
+from jackettwin.updating import support_model
 from jackettwin.updating.budget import damping_budget
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 

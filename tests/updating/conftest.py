@@ -5,8 +5,10 @@ from functools import partial
 
 import pytest
 
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
-from jackettwin.updating import Residuals, SupportModel, Target, family, support_model
+from jackettwin.decks import read_structure
+from jackettwin.soil import family
+from jackettwin.structure import Assembly, Rayleigh, assemble
+from jackettwin.updating import Residuals, SupportModel, Target, support_model
 
 
 @pytest.fixture(scope="session")

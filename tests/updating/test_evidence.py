@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from jackettwin.updating.evidence import bridged_evidence
+from jackettwin.updating.posterior.evidence import bridged_evidence
 from jackettwin.updating.prior import BoxPrior
 
 FloatArray = np.ndarray

@@ -5,14 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Problem, Residuals, Target, family, single, support_model
-from jackettwin.updating.identifiability import USABLE, Verdict, identifiability
-from jackettwin.updating.laplace import laplace_draws
-from jackettwin.updating.posterior import sample_posterior
-from jackettwin.updating.predictive import predict_quantities, support_quantities
+from jackettwin.updating import Problem, Residuals, Target, single, support_model
+from jackettwin.updating.posterior.identifiability import USABLE, Verdict, identifiability
+from jackettwin.updating.posterior.laplace import laplace_draws
+from jackettwin.updating.posterior.predictive import predict_quantities, support_quantities
+from jackettwin.updating.posterior.sampling import sample_posterior
 from jackettwin.updating.prior import BoxPrior
-from jackettwin.updating.profile import profile
+from jackettwin.updating.search.profile import profile
 
 TRUTH = np.array([2.5e9, 1e8, 2.5e9, 1e8])  # k, c horizontal; k, c vertical
 MODES = (1, 2, 4)

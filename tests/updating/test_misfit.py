@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, single
-from jackettwin.updating.misfit import misfit
-from jackettwin.updating.solutions import search
+from jackettwin.updating.data.misfit import misfit
+from jackettwin.updating.search.solutions import search
 
 TRUTH = np.array([2.5e9, 7.6e8])
 F_STD, ZETA_STD = 0.005, 0.1

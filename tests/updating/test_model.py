@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
+from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import SupportModel, family, support_model
+from jackettwin.updating import SupportModel, support_model
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
 
 POINTS = {

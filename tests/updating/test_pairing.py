@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.pairing import held_against, pair, pairing_score
+from jackettwin.updating.data.pairing import held_against, pair, pairing_score
 
 FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
 SHAPES = np.array(

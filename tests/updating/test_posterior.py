@@ -9,21 +9,21 @@ import pytest
 from scipy.special import logsumexp
 
 from jackettwin.errors import InputError, NumericalError
+from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating import (
     Problem,
     Residuals,
     SupportModel,
     Target,
-    family,
     law_probability,
     single,
     support_model,
 )
-from jackettwin.updating.convergence import convergence
-from jackettwin.updating.laplace import log_covariance
-from jackettwin.updating.nested import sample_nested
-from jackettwin.updating.posterior import Posterior, _evaluate, _moved, gathered, sample_posterior
+from jackettwin.updating.posterior.convergence import convergence
+from jackettwin.updating.posterior.laplace import log_covariance
+from jackettwin.updating.posterior.nested import sample_nested
+from jackettwin.updating.posterior.sampling import Posterior, _evaluate, _moved, gathered, sample_posterior
 from jackettwin.updating.prior import BoxPrior
 
 TRUTH = np.array([3e9, 0.15])

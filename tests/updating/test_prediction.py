@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from jackettwin.soil import DEFAULT_LAWS, family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import DEFAULT_LAWS, Residuals, Target, family, single, support_model
-from jackettwin.updating.solutions import search
+from jackettwin.updating import Residuals, Target, single, support_model
+from jackettwin.updating.search.solutions import search
 
 STEEL = Rayleigh.minimum(0.0055, 0.1832)
 

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from jackettwin.errors import InputError
-from jackettwin.updating import Parameter
+from jackettwin.soil import Parameter
 from jackettwin.updating.prior import BoxPrior
 
 FLAT = Parameter("flat", 1e2, 1e5, "-")

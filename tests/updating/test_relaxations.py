@@ -7,13 +7,14 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.response.sensors import Sensor
+from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Problem, Residuals, SupportModel, Target, family, joint, support_model
-from jackettwin.updating.descent import constrained
+from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint, support_model
+from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.predictive import predict_quantities
+from jackettwin.updating.posterior.predictive import predict_quantities
 from jackettwin.updating.problem import NEVER
-from jackettwin.updating.relaxations import RelaxationTarget
+from jackettwin.updating.search.descent import constrained
 
 TRUTH, MODES = np.array([2.62e9, 1e9, 3e9]), (1, 2, 4)
 WIDE = {"k0": (1e8, 1e11), "c": (1e7, 1e12), "k1": (1e8, 1e11)}

@@ -9,10 +9,10 @@ from scipy.stats import chi2, kstest, multivariate_t, t
 from jackettwin.errors import InputError
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.updating import Residuals, SupportModel, Target, joint
+from jackettwin.updating.data.shapes import ShapeTarget
+from jackettwin.updating.posterior.scatter import FREEDOM, Legs, ScatteredPrior, leg_scatter
 from jackettwin.updating.prior import BoxPrior
-from jackettwin.updating.scatter import FREEDOM, Legs, ScatteredPrior, leg_scatter
-from jackettwin.updating.shapes import ShapeTarget
-from jackettwin.updating.solutions import search
+from jackettwin.updating.search.solutions import search
 
 MODES, S0 = (1, 2, 3, 4, 5), 0.3
 

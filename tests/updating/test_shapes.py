@@ -9,7 +9,7 @@ import pytest
 from jackettwin.identification import mac
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint
-from jackettwin.updating.shapes import ShapeTarget
+from jackettwin.updating.data.shapes import ShapeTarget
 
 TRUTH, MODES = np.array([6e8, 0.1]), (1, 2, 4)
 SENSORS = tuple(

@@ -9,18 +9,19 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.response.conftest import monopile_structure
 
+from jackettwin.decks import read_structure
 from jackettwin.identification import ModalEstimate
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.modal import undamped_modes
-from jackettwin.response.mode_tracking import mass_mac
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.modal import undamped_modes
+from jackettwin.response.modes.tracking import mass_mac
 from jackettwin.response.sensors import Sensor, observation_matrix
 from jackettwin.response.system import build_system
+from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import on_translations
-from jackettwin.soil.viscoelastic import Prony
-from jackettwin.structure import Assembly, assemble, read_structure
+from jackettwin.structure import Assembly, assemble
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.pairing import pair, pairing_score
-from jackettwin.updating.softer_feet import LOWEST_SHARE, Feet, softer_feet
+from jackettwin.updating.data.mode_candidates import LOWEST_SHARE, Feet, softer_feet
+from jackettwin.updating.data.pairing import pair, pairing_score
 
 SYMMETRIC = """
 sea_level_z_m: 50.0

@@ -8,11 +8,12 @@ import pytest
 from gallery.landscape import cost_surface, sensitivity_curve
 from jackettwin.errors import InputError
 from jackettwin.progress import Told
+from jackettwin.soil import family
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating import Residuals, SupportModel, Target, family, single, support_model
-from jackettwin.updating.descent import descend
-from jackettwin.updating.solution_clusters import gather
-from jackettwin.updating.solutions import search
+from jackettwin.updating import Residuals, SupportModel, Target, single, support_model
+from jackettwin.updating.search.clusters import gather
+from jackettwin.updating.search.descent import descend
+from jackettwin.updating.search.solutions import search
 
 F_BAR, ZETA_BAR = 0.0040, 0.0067  # the thesis's own errors, tables 8.1 and 8.2
 
@@ -149,7 +150,7 @@ def test_a_search_that_ends_nowhere_says_what_is_in_reach(
     def lost(*args, **options):
         return replace(descend(*args, **options), settled=False)
 
-    monkeypatch.setattr("jackettwin.updating.solutions.descend", lost)
+    monkeypatch.setattr("jackettwin.updating.search.solutions.descend", lost)
     with pytest.raises(InputError, match=r"supports' reach \(got \{1: 0\.1.*undamped mode 1 .*to 0\.18\d Hz"):
         search(single(models["kelvin-voigt"], frequencies_alone), starts=1)
 

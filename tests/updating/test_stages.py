@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from jackettwin.structure import assemble, check, read_structure
+from jackettwin.decks import read_structure
+from jackettwin.structure import assemble, check
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.stages import stages
+from jackettwin.updating.steel.stages import stages
 
 
 def test_jacket15_part_by_part() -> None:

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.modal import undamped_modes
+from jackettwin.response.modes.modal import undamped_modes
 from jackettwin.response.system import build_system
+from jackettwin.soil import family
 from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import Spring, Support, pinned
-from jackettwin.soil.viscoelastic import Prony
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.structure.model import STEEL, Member, PointMass, Reaction, Section, Structure
-from jackettwin.updating import Residuals, Target, family, joint, support_model
+from jackettwin.updating import Residuals, Target, joint, support_model
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.tie_groups import TIES, priors_of, tie_groups
 

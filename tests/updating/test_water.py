@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.loads.conditions import SeaState
-from jackettwin.loads.drag_damping import sea_drag_damping
-from jackettwin.loads.morison import morison_points
-from jackettwin.loads.water import Water, water_mass
+from jackettwin.loads.members.drag_damping import sea_drag_damping
+from jackettwin.loads.members.morison import morison_points
+from jackettwin.loads.members.water import Water, water_mass
+from jackettwin.loads.sea.conditions import SeaState
 from jackettwin.structure import Assembly
 from jackettwin.updating import SupportModel
 from jackettwin.updating.budget import SOURCES, damping_budget

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.stats import f as fisher
-from scipy.stats import norm
+from scipy.stats import f as fisher, norm
 
 from jackettwin.watching.directions import SIZE_WEIGHTS, SIZES, Pattern, directions_of, log_bayes_factors
 from jackettwin.watching.next_look import expected_information

@@ -1,11 +1,5 @@
 """What a run means: is the model right, what is the ground, whose is the damping, what to do next."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from jackettwin.doors import door
-
-if TYPE_CHECKING:
-    from jackettwin.answers.answer import answer as answer
-    from jackettwin.answers.result import Answers as Answers, Span as Span
-
-door(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

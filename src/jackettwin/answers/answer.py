@@ -19,13 +19,14 @@ from jackettwin.answers.result import (
 )
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90, interval_90
-from jackettwin.soil.families import FAMILIES
-from jackettwin.twin import TwinResult
-from jackettwin.twin.result import MeasuredMode
-from jackettwin.updating import Parameter, Update, law_probability
+from jackettwin.soil import Parameter
+from jackettwin.soil.laws.families import FAMILIES
+from jackettwin.study import TwinResult
+from jackettwin.study.result import MeasuredMode
+from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES
-from jackettwin.updating.identifiability import USABLE
 from jackettwin.updating.law_choice import approximate_probability, recommended
+from jackettwin.updating.posterior.identifiability import USABLE
 
 PRECISION = 0.2
 """A damping ratio known to ± so much (90 %) tells a design with half a per cent more from one without."""

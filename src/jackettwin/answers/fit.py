@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from jackettwin.answers.result import FitAnswer, ModeAnswer
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.study.result import MeasuredMode
 from jackettwin.updating import Residuals, Target, Update
-from jackettwin.updating.misfit import misfit
+from jackettwin.updating.data.misfit import misfit
 
 _LARGEST = 1.0
 """Relative error up to which one that covers the misfit is sought: beyond it the model says nothing."""

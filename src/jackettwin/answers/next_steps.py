@@ -15,10 +15,10 @@ import numpy as np
 from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.study.result import MeasuredMode
 from jackettwin.updating import Problem, Residuals, Target, Update
-from jackettwin.updating.identifiability import USABLE, information
 from jackettwin.updating.nuisance_parameters import DASHPOTS
+from jackettwin.updating.posterior.identifiability import USABLE, information
 from jackettwin.updating.problem import State
 
 _POINTS = 6

@@ -7,7 +7,7 @@ from typing import Any
 from jackettwin.answers import Answers
 from jackettwin.cli.console import output
 from jackettwin.files.codec import encode
-from jackettwin.report.sentences import sentences
+from jackettwin.report.tables.sentences import sentences
 
 
 def print_answers(answers: Answers) -> None:

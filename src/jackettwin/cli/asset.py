@@ -46,7 +46,7 @@ def add(name: str, twin: Path, comment: str, as_json: bool, store: Path, databas
 def list_(archived: bool, as_json: bool, store: Path, database: str | None) -> None:
     """List the turbines with their status, records and findings."""
     engine = opened(store, database)
-    from jackettwin.service.catalogue import overview
+    from jackettwin.service.web.catalogue import overview
     from jackettwin.store import reading
 
     with reading(engine) as connection:
@@ -67,7 +67,7 @@ def list_(archived: bool, as_json: bool, store: Path, database: str | None) -> N
 def show(name: str, as_json: bool, store: Path, database: str | None) -> None:
     """Show one turbine and the versions of its twin."""
     engine = opened(store, database)
-    from jackettwin.service.catalogue import one, versions_out
+    from jackettwin.service.web.catalogue import one, versions_out
     from jackettwin.store import reading
     from jackettwin.store.assets import found_version
 

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import jackettwin
-from jackettwin.twin.kept import NOT_KEPT, Keep, KeptInFolder
+from jackettwin.twin.cache import NOT_KEPT, Keep, KeptInFolder
 
 MOST_BYTES = 500_000_000
 """Size of the cache: some thousand records."""

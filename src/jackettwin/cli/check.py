@@ -9,24 +9,24 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
+from jackettwin.checks.iso19902 import EDITIONS
+from jackettwin.checks.iso19902_joints import KINDS
+from jackettwin.checks.joint_check import BraceUse
+from jackettwin.checks.member_check import ALL_CHECKS, DesignBasis, FrameUse, MemberUse, frame_use
 from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print_json
 from jackettwin.cli.modes import support_option
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.loads import morison_points
-from jackettwin.loads.coefficients import Coefficients
-from jackettwin.loads.water import Water, outside_pressure
-from jackettwin.loads.water import still_water as still_water_loads
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.water import Water, outside_pressure, still_water as still_water_loads
 from jackettwin.response import build_system
-from jackettwin.response.static import nodal_load, self_weight, static_displacement
+from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
 from jackettwin.simulate import read_scenario
 from jackettwin.simulate.members import scenario_uses, water_notes
-from jackettwin.structure import Assembly, assemble, read_structure
+from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.check import few
 from jackettwin.structure.forces import element_weight
-from jackettwin.structure.iso19902 import EDITIONS
-from jackettwin.structure.iso19902_joints import KINDS
-from jackettwin.structure.joint_check import BraceUse
-from jackettwin.structure.member_check import ALL_CHECKS, DesignBasis, FrameUse, MemberUse, frame_use
 
 _SHOWN = 15
 """Members in the terminal."""

@@ -8,12 +8,13 @@ import click
 
 from jackettwin.cli.console import messages, output, print_json
 from jackettwin.cli.modes import support_option
+from jackettwin.decks import read_structure
+from jackettwin.decks.subdyn_writer import write_subdyn
 from jackettwin.errors import InputError
-from jackettwin.response.superelement import dissipates
+from jackettwin.response.superelement.reduction import dissipates
 from jackettwin.soil import Support, with_static_reactions
-from jackettwin.structure import Structure, assemble, read_structure
+from jackettwin.structure import Structure, assemble
 from jackettwin.structure.cut import at_interface
-from jackettwin.structure.subdyn_deck import write_subdyn
 
 
 @click.command("export")

@@ -11,13 +11,13 @@ from rich.table import Table
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.files import atomic_folder, check_room, write_json
-from jackettwin.report.follow_page import build_follow_page
-from jackettwin.soil.families import family
+from jackettwin.report.pages.follow import build_follow_page
+from jackettwin.soil.laws.families import family
+from jackettwin.study.follow import Each, follow
+from jackettwin.study.follow_document import follow_document, read_followed
+from jackettwin.study.follow_result import Followed
+from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
 from jackettwin.twin import read_twin, twin_model
-from jackettwin.twin.follow import Each, follow_twin
-from jackettwin.twin.follow_document import follow_document, read_followed
-from jackettwin.twin.followed import Followed
-from jackettwin.twin.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time
 
 
 @click.command("follow")
@@ -64,7 +64,7 @@ def follow_command(
         check_room(out)
     prior = None if prior_file is None else read_followed(prior_file)
     with progress(2 * len(config.records), config.name) as step:
-        followed = follow_twin(
+        followed = follow(
             config,
             law=law,
             each=each,

@@ -20,16 +20,17 @@ from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
-from jackettwin.report.identification_page import build_identification_page
-from jackettwin.report.many_page import build_many_page
-from jackettwin.twin import TwinModel, examine_file, observation_document
-from jackettwin.twin.export import WRITERS, export_modes, group_name
-from jackettwin.twin.kept import KeptInFolder
-from jackettwin.twin.long_records import LONG, PIECE_S, without_long
-from jackettwin.twin.many import observe_many
-from jackettwin.twin.many_document import many_document
+from jackettwin.report.pages.identification import build_identification_page
+from jackettwin.report.pages.many_records import build_many_page
+from jackettwin.study import observation_document
+from jackettwin.study.many_records.document import many_document
+from jackettwin.study.many_records.export import WRITERS, export_modes, group_name
+from jackettwin.study.many_records.identify import observe_many
+from jackettwin.study.many_records.long_records import LONG, PIECE_S, without_long
+from jackettwin.study.many_records.summary import fuse_batch
+from jackettwin.twin import TwinModel, examine_file
+from jackettwin.twin.cache import KeptInFolder
 from jackettwin.twin.observe_files import record_files
-from jackettwin.twin.together import fuse_batch
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""

@@ -12,15 +12,16 @@ from rich.markup import escape
 from rich.table import Table
 
 from jackettwin.cli.console import fixed, numbers_of, output, print_json
+from jackettwin.decks import read_structure
+from jackettwin.decks.blade_files import read_flexible_rotor
 from jackettwin.errors import located
 from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.mode_tracking import track_modes
-from jackettwin.response.own_damping import own_damping
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.own_damping import own_damping
+from jackettwin.response.modes.tracking import track_modes
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
-from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check, read_structure
-from jackettwin.structure.blade_files import read_flexible_rotor
+from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check
 from jackettwin.structure.rotor_modes import with_rotor, without_rotor
 from jackettwin.updating import numbered_modes
 

@@ -10,8 +10,8 @@ from rich.table import Table
 
 from jackettwin.cli.console import output, print_json
 from jackettwin.errors import located
-from jackettwin.twin.refinement import read_refinement, refinement_document
-from jackettwin.updating.refinement import refine
+from jackettwin.study.refinement import read_refinement, refinement_document
+from jackettwin.updating.steel.refinement import refine
 
 
 @click.command("refine")

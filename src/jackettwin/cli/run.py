@@ -17,10 +17,11 @@ from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report import build_report
 from jackettwin.simulate.batch import pending_cases, record_path, run_set
-from jackettwin.simulate.sets import read_set
-from jackettwin.twin import count_steps, read_twin, run_document, run_twin
-from jackettwin.twin.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
-from jackettwin.twin.truth import true_parameters
+from jackettwin.simulate.scenario.sets import read_set
+from jackettwin.study import count_steps, run_document, run_twin
+from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
+from jackettwin.study.truth import true_parameters
+from jackettwin.twin import read_twin
 
 SIMULATED_TWIN = "simulated"
 

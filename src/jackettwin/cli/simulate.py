@@ -11,7 +11,7 @@ from jackettwin.cli.console import output, print_json, working
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
-from jackettwin.simulate.rotor_limits import rotor_notes
+from jackettwin.simulate.scenario.rotor_limits import rotor_notes
 from jackettwin.structure import assemble, check
 from jackettwin.updating.budget import beyond_literature
 

@@ -8,7 +8,7 @@ import click
 
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.simulate.batch import pending_cases, run_set
-from jackettwin.simulate.sets import read_set
+from jackettwin.simulate.scenario.sets import read_set
 
 
 @click.command("simulate-set")

@@ -11,11 +11,11 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.cli.console import FiniteFloat, PageFile, messages, output, plain, print_json, working
-from jackettwin.soil.curves import Curve
 from jackettwin.soil.foundation import Foundation, read_foundation
-from jackettwin.soil.impedance import head_impedance
-from jackettwin.soil.pile_capacity import FAILED_AT, Pushover, axial_capacity, pushover
-from jackettwin.soil.pile_curves import PileCurves
+from jackettwin.soil.ground.curves import Curve
+from jackettwin.soil.piles.capacity import FAILED_AT, Pushover, axial_capacity, pushover
+from jackettwin.soil.piles.impedance import head_impedance
+from jackettwin.soil.piles.reaction_curves import PileCurves
 
 _POINTS = 31
 """Of a curve in the tables."""
@@ -55,7 +55,7 @@ def soil_command(
             pushed = pushover(ground.pile, ground.curves, arm_m=arm_m, steps=steps)
         document = _document(Path(foundation).stem, ground, pushed, frequency_hz, arm_m)
         # drawing takes a second to load: not before it is needed
-        from jackettwin.report.soil_page import write_soil_page
+        from jackettwin.report.pages.soil import write_soil_page
 
         path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
     document["page"] = str(path)
@@ -159,7 +159,7 @@ def _print(document: dict[str, Any]) -> None:
             f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
             f"{capacity['lateral_displacement_limit_m']:.2f} m"
         )
-        from jackettwin.report.soil_page import PUSHED, pushed_rows
+        from jackettwin.report.pages.soil import PUSHED, pushed_rows
 
         table = Table(*map(plain, PUSHED), title="pushover", title_justify="left")
         for row in pushed_rows(pushed):

@@ -7,10 +7,9 @@ from typing import Any
 import click
 from rich.table import Table
 
-from jackettwin.cli.console import number as show
-from jackettwin.cli.console import output, print_json
-from jackettwin.structure import read_structure
-from jackettwin.updating.stages import Stage, stages
+from jackettwin.cli.console import number as show, output, print_json
+from jackettwin.decks import read_structure
+from jackettwin.updating.steel.stages import Stage, stages
 from jackettwin.verify.jacket import T5_2, T5_2_ROSAP, T5_4, T5_4_ROSAP
 
 Reference = dict[str, tuple[float, ...]]

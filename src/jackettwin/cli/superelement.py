@@ -12,10 +12,25 @@ from rich.table import Table
 from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
+from jackettwin.decks import read_structure
+from jackettwin.decks.subdyn_damping import DeckDamping, read_deck_damping
 from jackettwin.errors import InputError
 from jackettwin.response import build_system
-from jackettwin.response.extptfm_layouts import DEFAULT, LAYOUTS, Layout
-from jackettwin.response.superelement import (
+from jackettwin.response.superelement.error import (
+    ReducedModes,
+    damping_ratio,
+    default_band_hz,
+    hertz,
+    reduced_modes,
+)
+from jackettwin.response.superelement.extptfm_layouts import DEFAULT, LAYOUTS, Layout
+from jackettwin.response.superelement.files import (
+    is_superelement,
+    read_superelement,
+    require_format,
+    write_superelement,
+)
+from jackettwin.response.superelement.reduction import (
     INTERFACE,
     RUNGE_KUTTA,
     Superelement,
@@ -24,23 +39,9 @@ from jackettwin.response.superelement import (
     superelement,
     with_deck_damping,
 )
-from jackettwin.response.superelement_error import (
-    ReducedModes,
-    damping_ratio,
-    default_band_hz,
-    hertz,
-    reduced_modes,
-)
-from jackettwin.response.superelement_files import (
-    is_superelement,
-    read_superelement,
-    require_format,
-    write_superelement,
-)
-from jackettwin.structure import Assembly, Structure, assemble, read_structure
+from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector
-from jackettwin.structure.subdyn_damping import DeckDamping, read_deck_damping
 
 
 @click.command("superelement")

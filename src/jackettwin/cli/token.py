@@ -30,7 +30,7 @@ def token_command() -> None:
 def add_token(user: str, label: str, days: int, as_json: bool, store: Path, database: str | None) -> None:
     """Make a token with the role of USER; it is shown this once."""
     engine = opened(store, database)
-    from jackettwin.service.auth import new_grant
+    from jackettwin.service.web.auth import new_grant
     from jackettwin.store import writing
     from jackettwin.store.people import known_user, note_down
 

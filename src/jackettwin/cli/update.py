@@ -8,11 +8,12 @@ from rich.table import Table
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.soil.families import family
-from jackettwin.twin import DampingExcess, TwinResult, count_steps, read_twin, run_twin, update_document
-from jackettwin.twin.result import MeasuredMode
+from jackettwin.soil.laws.families import family
+from jackettwin.study import DampingExcess, TwinResult, count_steps, run_twin, update_document
+from jackettwin.study.result import MeasuredMode
+from jackettwin.twin import read_twin
 from jackettwin.updating import Update
-from jackettwin.updating.scatter import leg_scatter
+from jackettwin.updating.posterior.scatter import leg_scatter
 
 DEFAULT_TWIN = "openfast_pile"
 

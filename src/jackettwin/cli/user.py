@@ -35,10 +35,9 @@ def add_user(
             remedy="give it on standard input, with --password-stdin",
         )
     engine = opened(store, database, make=True)
-    from jackettwin.service.auth import hashed
+    from jackettwin.service.web.auth import hashed
     from jackettwin.store import writing
-    from jackettwin.store.people import User, note_down
-    from jackettwin.store.people import add_user as keep
+    from jackettwin.store.people import User, add_user as keep, note_down
 
     password = (
         sys.stdin.readline().rstrip("\n")

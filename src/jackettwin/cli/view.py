@@ -10,29 +10,30 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
+from jackettwin.checks.member_check import member_uses
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import PageFile, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
+from jackettwin.decks import read_structure
+from jackettwin.decks.sacs import is_sacs, sacs_remarks
 from jackettwin.errors import InputError, located
-from jackettwin.loads.coefficients import Coefficients, GrowthBand
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand
 from jackettwin.records import read_record
-from jackettwin.report.view import ColouredQuantity, View, thickness_quantities, write_view
-from jackettwin.report.view_motions import (
+from jackettwin.report.view.motions import (
     DrawnMotion,
     damped_motion,
     record_motion,
     undamped_motion,
     wave_motion,
 )
+from jackettwin.report.view.page import ColouredQuantity, View, thickness_quantities, write_view
 from jackettwin.response import Sensor, System, UndampedModes, build_system, damped_modes, undamped_modes
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.passage import wave_passage
-from jackettwin.response.playback import playback, record_sensors
-from jackettwin.response.static import nodal_load, self_weight, static_displacement
-from jackettwin.structure import Assembly, assemble, check, read_structure
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.motion.passage import wave_passage
+from jackettwin.response.motion.playback import playback, record_sensors
+from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
+from jackettwin.structure import Assembly, assemble, check
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
-from jackettwin.structure.member_check import member_uses
-from jackettwin.structure.sacs import is_sacs, sacs_remarks
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports: nothing to look at."""

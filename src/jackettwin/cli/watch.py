@@ -8,15 +8,15 @@ from pathlib import Path
 import click
 from rich.table import Table
 
+from jackettwin.change.modal_table import ModalTable, read_modal_table
+from jackettwin.change.table_watch import watch_table
+from jackettwin.change.watch_document import next_sentence, statement, watched_document
 from jackettwin.cli.console import FiniteFloat, output, print_json, progress
+from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.records.readers.description import parse_time
-from jackettwin.report.watch_page import build_watch_page
-from jackettwin.structure import read_structure
-from jackettwin.twin.modal_table import ModalTable, read_modal_table
-from jackettwin.twin.watched import watch_table
-from jackettwin.twin.watched_document import next_sentence, statement, watched_document
+from jackettwin.report.pages.watch import build_watch_page
 
 _SHOWN = 4
 """Causes printed at most."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.records.rotor_orders import rotor_speed
-from jackettwin.records.yaw import knows_yaw, yaw_of
+from jackettwin.records.processing.rotor_orders import rotor_speed
+from jackettwin.records.processing.yaw import knows_yaw, yaw_of
 
 if TYPE_CHECKING:
     from jackettwin.records.record import Record

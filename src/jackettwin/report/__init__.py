@@ -1,16 +1,5 @@
 """The report: figures, tables, one self-contained page."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from jackettwin.doors import door
-
-if TYPE_CHECKING:
-    from jackettwin.report.build import build_report as build_report
-    from jackettwin.report.page import (
-        Plot as Plot,
-        PageSection as PageSection,
-        PageTable as PageTable,
-        Text as Text,
-    )
-
-door(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

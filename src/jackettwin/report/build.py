@@ -8,17 +8,17 @@ from pathlib import Path
 
 from jackettwin.answers import Answers, answer
 from jackettwin.identification import Identification
-from jackettwin.report import section_appendix as appendix
-from jackettwin.report import section_first as first
-from jackettwin.report import tables_answers as tables
-from jackettwin.report.numbers import fixed
-from jackettwin.report.page import Block, PageSection, PageTable, Text, write_figures, write_page
-from jackettwin.report.section_records import further_records, the_records
-from jackettwin.report.section_structure import the_structure
-from jackettwin.report.sentences import Said, sentences
-from jackettwin.report.tables_updating import true_parameters_table, truth_table
-from jackettwin.twin import Observation, TwinResult
-from jackettwin.twin.truth import true_modes, true_parameters
+from jackettwin.report.pages.page import Block, PageSection, PageTable, Text, write_figures, write_page
+from jackettwin.report.sections import appendix as appendix, first as first
+from jackettwin.report.sections.records import further_records, the_records
+from jackettwin.report.sections.structure import the_structure
+from jackettwin.report.tables import answers as tables
+from jackettwin.report.tables.numbers import fixed
+from jackettwin.report.tables.sentences import Said, sentences
+from jackettwin.report.tables.updating import true_parameters_table, truth_table
+from jackettwin.study import TwinResult
+from jackettwin.study.truth import true_modes, true_parameters
+from jackettwin.twin import Observation
 from jackettwin.version import __version__
 
 Rows = tuple[tuple[str, str], ...]

@@ -1,18 +1,5 @@
 """What the structure does: modes, poles, motion in time."""
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from jackettwin.doors import door
-
-if TYPE_CHECKING:
-    from jackettwin.response.modal import (
-        DampedModes as DampedModes,
-        UndampedModes as UndampedModes,
-        damped_modes as damped_modes,
-        undamped_modes as undamped_modes,
-    )
-    from jackettwin.response.sensors import Sensor as Sensor, observation_matrix as observation_matrix
-    from jackettwin.response.system import System as System, build_system as build_system
-    from jackettwin.response.time import free_decay as free_decay
-
-door(__name__)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from jackettwin.soil import Spring, Support
-    from jackettwin.soil.viscoelastic import Law
+    from jackettwin.soil.laws.viscoelastic import Law
     from jackettwin.structure import Assembly
 
 Matrix = Any

@@ -12,12 +12,12 @@ from functools import cached_property
 
 from sqlalchemy import Engine
 
-from jackettwin.service.auth import Guesses
-from jackettwin.service.compute import Compute
-from jackettwin.service.feed import Feed
-from jackettwin.service.remembered import Remembered
-from jackettwin.service.rendered import Rendered
 from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.web.answer_cache import Rendered
+from jackettwin.service.web.auth import Guesses
+from jackettwin.service.web.day_cache import Remembered
+from jackettwin.service.web.feed import Feed
+from jackettwin.service.work.compute import Compute
 from jackettwin.store import open_database
 
 

@@ -15,9 +15,9 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 from jackettwin.records import read_record
-from jackettwin.service.desk import add_twin
 from jackettwin.service.intake.files import accept
-from jackettwin.service.tasks import stored
+from jackettwin.service.store_commands import add_twin
+from jackettwin.service.work.tasks import stored
 from jackettwin.store import assets, reading, writing
 from jackettwin.twin import read_twin
 

@@ -19,15 +19,15 @@ import uvicorn
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.errors import InputError
-from jackettwin.service.app import create_app
-from jackettwin.service.begun import NoWorker, one_heap
-from jackettwin.service.chores import Housekeeping
 from jackettwin.service.context import Service, open_service
-from jackettwin.service.dispatch import Dispatcher
 from jackettwin.service.intake.files import Accepted, parse_here, take_file
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.intake.mqtt import MqttIntake
 from jackettwin.service.settings import ServiceSettings, refuse_exposed
+from jackettwin.service.web.app import create_app
+from jackettwin.service.work.dispatch import Dispatcher
+from jackettwin.service.work.housekeeping import Housekeeping
+from jackettwin.service.work.task_status import NoWorker, one_heap
 from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)

@@ -14,9 +14,9 @@ from jackettwin.files import write_json
 from jackettwin.processes import worker_pool
 from jackettwin.records import write_record
 from jackettwin.records.readers.description import read_description
-from jackettwin.simulate.files import scenario_from
 from jackettwin.simulate.record import simulate
-from jackettwin.simulate.sets import Case, ScenarioSet
+from jackettwin.simulate.scenario.files import scenario_from
+from jackettwin.simulate.scenario.sets import Case, ScenarioSet
 from jackettwin.version import __version__
 
 

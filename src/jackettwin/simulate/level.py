@@ -20,8 +20,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
 from jackettwin.response import Sensor
-from jackettwin.simulate.motion import Motion
-from jackettwin.simulate.scenario import GRID_M, Instrument, Scenario
+from jackettwin.simulate.motion.motion import Motion
+from jackettwin.simulate.scenario.scenario import GRID_M, Instrument, Scenario
 from jackettwin.simulate.sensing import readings
 
 FIRST, BETWEEN = "first pair", "between first and second pair"

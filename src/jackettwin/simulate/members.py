@@ -9,17 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.morison import loads_along
-from jackettwin.loads.water import outside_pressure, still_water
-from jackettwin.loads.waves import wave_number
+from jackettwin.checks.member_check import DesignBasis, FrameUse, frame_use
+from jackettwin.loads.members.morison import loads_along
+from jackettwin.loads.members.water import outside_pressure, still_water
+from jackettwin.loads.sea.waves import wave_number
 from jackettwin.response import build_system
-from jackettwin.response.static import self_weight, static_displacement
-from jackettwin.simulate.motion import Motion, simulate_motion
-from jackettwin.simulate.scenario import Scenario
-from jackettwin.simulate.water import water_loads, water_points
+from jackettwin.response.motion.static import self_weight, static_displacement
+from jackettwin.simulate.motion.motion import Motion, simulate_motion
+from jackettwin.simulate.motion.water import water_loads, water_points
+from jackettwin.simulate.scenario.scenario import Scenario
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.forces import element_weight
-from jackettwin.structure.member_check import DesignBasis, FrameUse, frame_use
 
 _BLOCK = 2000
 """Instants at a time: records are long, and every element has twelve loads."""

@@ -14,9 +14,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.quantities import quantity as quantity_of
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.level import beyond_comparison, levels
-from jackettwin.simulate.motion import Motion, simulate_motion
-from jackettwin.simulate.naming import in_words_of
-from jackettwin.simulate.scenario import Instrument, Scenario
+from jackettwin.simulate.motion.motion import Motion, simulate_motion
+from jackettwin.simulate.scenario.naming import in_words_of
+from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
 

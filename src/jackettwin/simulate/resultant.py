@@ -10,15 +10,15 @@ from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.loads import morison_points
-from jackettwin.loads.water import Water, water_weights
-from jackettwin.loads.wave_series import resultant_columns
-from jackettwin.simulate.model import aerodynamics
-from jackettwin.simulate.naming import in_words_of
-from jackettwin.simulate.rotor_limits import rotor_notes
-from jackettwin.simulate.scenario import Air, Scenario
-from jackettwin.simulate.sea_limits import sea_warnings
-from jackettwin.simulate.water import water_ends, water_loads, water_points, wave_field
-from jackettwin.simulate.wind import rotor_loads_in, tower_loads, tower_points, wind_field
+from jackettwin.loads.members.water import Water, water_weights
+from jackettwin.loads.sea.wave_series import resultant_columns
+from jackettwin.simulate.motion.model import aerodynamics
+from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
+from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field
+from jackettwin.simulate.scenario.naming import in_words_of
+from jackettwin.simulate.scenario.rotor_limits import rotor_notes
+from jackettwin.simulate.scenario.scenario import Air, Scenario
+from jackettwin.simulate.scenario.sea_limits import sea_warnings
 from jackettwin.structure import Assembly, assemble
 
 _FINE_M = 0.5

@@ -8,9 +8,9 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.response import observation_matrix
-from jackettwin.response.time import StateSpace, first_order_hold
-from jackettwin.simulate.motion import Motion
-from jackettwin.simulate.scenario import Instrument, Scenario
+from jackettwin.response.motion.time import StateSpace, first_order_hold
+from jackettwin.simulate.motion.motion import Motion
+from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 
 
 def readings(motion: Motion, scenario: Scenario) -> FloatArray:

@@ -11,11 +11,11 @@ from pydantic import Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, read_yaml, validate
-from jackettwin.soil.families import FAMILIES, Family
 from jackettwin.soil.foundation import build_foundation, read_foundation, shipped_foundations
-from jackettwin.soil.law_files import ElasticLaw, LawSchema
+from jackettwin.soil.laws.families import FAMILIES, Family
+from jackettwin.soil.laws.files import ElasticLaw, LawSchema
+from jackettwin.soil.laws.viscoelastic import Law, Prony, require_positive
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
-from jackettwin.soil.viscoelastic import Law, Prony, require_positive
 from jackettwin.structure import Structure
 
 

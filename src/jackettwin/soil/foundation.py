@@ -14,16 +14,16 @@ from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.limits import Frequency
 from jackettwin.files.plausible import refuse_tiny
-from jackettwin.soil.cyclic import CyclicPile, cyclic_pile
-from jackettwin.soil.impedance import PileHead, lumped_head, on_pile_heads
-from jackettwin.soil.law_files import LawSchema
-from jackettwin.soil.pile_curves import CurveOptions, PileCurves, linearised, pile_curves
-from jackettwin.soil.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
-from jackettwin.soil.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.radiation import Radiation
-from jackettwin.soil.scour import Scour
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
+from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.laws.files import LawSchema
+from jackettwin.soil.laws.viscoelastic import Law
+from jackettwin.soil.piles.cyclic import CyclicPile, cyclic_pile
+from jackettwin.soil.piles.impedance import PileHead, lumped_head, on_pile_heads
+from jackettwin.soil.piles.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
+from jackettwin.soil.piles.radiation import Radiation
+from jackettwin.soil.piles.reaction_curves import CurveOptions, PileCurves, linearised, pile_curves
 from jackettwin.soil.support import ELASTIC, Support
-from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure import Material, Section, Structure
 
 SLENDER = 10.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.soil.viscoelastic import Law, Prony
+from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Structure
 from jackettwin.structure.model import Reaction
 

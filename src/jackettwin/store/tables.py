@@ -1,6 +1,6 @@
 """The tables of the living twin, one definition for SQLite and PostgreSQL.
 
-What the engine produced is kept as the documents of :mod:`jackettwin.twin.stored`; columns beside them exist
+What the engine produced is kept as the documents of :mod:`jackettwin.twin.codec`; columns beside them exist
 only to be searched. Every time is UTC.
 """
 

@@ -17,6 +17,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import RealPole
+from jackettwin.twin.exact_sums import of_estimate, whole
 from jackettwin.twin.observation import Observation
 from jackettwin.twin.pair_angles import pair_angles
 from jackettwin.twin.state import (
@@ -31,7 +32,6 @@ from jackettwin.twin.state import (
     clearer,
     join,
 )
-from jackettwin.twin.sums import of_estimate, whole
 
 WIND_BIN_M_S = 2.0
 """Width of a wind speed bin, around whole multiples (IEC 61400-1)."""

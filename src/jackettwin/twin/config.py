@@ -16,12 +16,13 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response import Sensor
+from jackettwin.soil import DEFAULT_LAWS
 from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig
-from jackettwin.updating import DEFAULT_LAWS, Target
-from jackettwin.updating.solutions import MOST_EVALUATIONS
+from jackettwin.updating import Target
+from jackettwin.updating.search.solutions import MOST_EVALUATIONS
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]

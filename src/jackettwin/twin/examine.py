@@ -24,14 +24,14 @@ from jackettwin.identification.tones.rotor_speed import higher_orders
 from jackettwin.quantities import known_units
 from jackettwin.records import Record, assess, detrend, read_record, repair, to_rotor_axes
 from jackettwin.records.conditions import with_conditions
-from jackettwin.records.quality import Quality
+from jackettwin.records.processing.rotor_orders import RotorOrder, rotor_speed, stated_orders, without_orders
+from jackettwin.records.processing.yaw import is_horizontal, knows_yaw, yaw_of
+from jackettwin.records.quality.assess import Quality
+from jackettwin.records.quality.repair import common_time
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.repair import common_time
-from jackettwin.records.rotor_orders import RotorOrder, rotor_speed, stated_orders, without_orders
-from jackettwin.records.yaw import is_horizontal, knows_yaw, yaw_of
 from jackettwin.response import Sensor
-from jackettwin.twin.doubts import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
-from jackettwin.twin.kept import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
+from jackettwin.twin.cache import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
+from jackettwin.twin.record_checks import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""

@@ -17,12 +17,12 @@ from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads import SeaState
 from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.response.labels import mode_kinds, mode_labels
-from jackettwin.response.mode_words import read_mode_label
-from jackettwin.simulate.water_files import WaterSchema, depth_of, water_members
+from jackettwin.response.modes.labels import mode_kinds, mode_labels
+from jackettwin.response.modes.names import read_mode_label
+from jackettwin.simulate.scenario.water_files import WaterSchema, depth_of, water_members
+from jackettwin.soil import DEFAULT_LAWS, Parameter, family
 from jackettwin.structure import Rayleigh, Structure
-from jackettwin.twin.assembled import assembled
-from jackettwin.twin.assigned import assigned_modes
+from jackettwin.twin.assembly import assembled
 from jackettwin.twin.config import (
     PAIRED_MODES,
     USUAL_MODES,
@@ -30,10 +30,11 @@ from jackettwin.twin.config import (
     TwinConfig,
     UpdateSettings,
 )
+from jackettwin.twin.mode_assignment import assigned_modes
 from jackettwin.twin.schema import RefinedStructure, SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
-from jackettwin.updating import DEFAULT_LAWS, Parameter, Target, family, numbered_modes
+from jackettwin.updating import Target, numbered_modes
 from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters
 from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
 

@@ -10,8 +10,8 @@ from typing import Any
 from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
-from jackettwin.twin.stored import StoredSchema
-from jackettwin.updating.pairing import Held
+from jackettwin.twin.codec import StoredSchema
+from jackettwin.updating.data.pairing import Held
 
 
 @dataclass(frozen=True)

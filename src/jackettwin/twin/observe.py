@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from jackettwin.findings import Finding
 from jackettwin.records import Record
 from jackettwin.records.identity import record_id
+from jackettwin.twin.cache import NOT_KEPT, Keep
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
-from jackettwin.twin.doubts import unlike_model
 from jackettwin.twin.examine import Examination, examine
-from jackettwin.twin.kept import NOT_KEPT, Keep
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import Observation, Recognised
 from jackettwin.twin.operation import UNKNOWN
+from jackettwin.twin.record_checks import unlike_model
 from jackettwin.twin.sea_forced import sea_share
 from jackettwin.twin.sensor_polarity import sensor_polarity
-from jackettwin.updating.pairing import Held, held_against, pair
-from jackettwin.updating.softer_feet import Feet
+from jackettwin.updating.data.mode_candidates import Feet
+from jackettwin.updating.data.pairing import Held, held_against, pair
 from jackettwin.version import __version__
 
 TRUTH = ("true_modes", "true_support")

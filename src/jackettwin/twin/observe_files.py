@@ -20,11 +20,11 @@ from jackettwin.records import Record, read_record
 from jackettwin.records.identity import record_id
 from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.twin.kept import NOT_KEPT, Keep, record_content
+from jackettwin.twin.cache import NOT_KEPT, Keep, record_content
+from jackettwin.twin.codec import digest
 from jackettwin.twin.model import TwinModel
 from jackettwin.twin.observation import OBSERVATION, Observation
 from jackettwin.twin.observe import observe
-from jackettwin.twin.stored import digest
 from jackettwin.version import __version__
 
 FEWEST_FOR_PROCESSES = 3

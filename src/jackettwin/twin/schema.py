@@ -10,6 +10,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BeforeValidator, Field
 
+from jackettwin.decks import read_structure
+from jackettwin.decks.structure_files import RnaSchema
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema
 from jackettwin.quantities import plain_unit, vibration_of
@@ -17,10 +19,9 @@ from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
 from jackettwin.response import Sensor
 from jackettwin.response.sensors import Seen
-from jackettwin.simulate.schema import RayleighSchema, StructureChoice
-from jackettwin.simulate.water_files import WaterSchema
-from jackettwin.structure import Structure, read_structure
-from jackettwin.structure.files import RnaSchema
+from jackettwin.simulate.scenario.schema import RayleighSchema, StructureChoice
+from jackettwin.simulate.scenario.water_files import WaterSchema
+from jackettwin.structure import Structure
 from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
 from jackettwin.twin.operation import UNKNOWN, OperationRule

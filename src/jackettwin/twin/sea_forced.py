@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import ModalEstimate
 from jackettwin.structure import Assembly
-from jackettwin.updating.softer_feet import Feet
+from jackettwin.updating.data.mode_candidates import Feet
 
 LOSS = 0.02
 """Loss factor η of every mode: it only keeps a force at a mode's own frequency finite."""

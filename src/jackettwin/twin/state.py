@@ -16,9 +16,9 @@ from typing import Any, NamedTuple, TypeVar
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.response import Sensor
+from jackettwin.twin.codec import StoredSchema, digest
+from jackettwin.twin.exact_sums import UNIT, ModeSums, ModeTotal, of_day, whole
 from jackettwin.twin.model import TwinModel
-from jackettwin.twin.stored import StoredSchema, digest
-from jackettwin.twin.sums import UNIT, ModeSums, ModeTotal, of_day, whole
 
 Sums = TypeVar("Sums", ModeSums, ModeTotal, "RateSums", "AngleSums")
 ALL = "all"

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.numbered import NumberedModes, Points
-from jackettwin.soil.coefficients import law_stiffness
+from jackettwin.response.condensation.mode_numbers import NumberedModes, Points
+from jackettwin.soil.laws.coefficients import law_stiffness
 from jackettwin.updating.model import SupportModel
 
 SOURCES = ("structure", "soil", "rotor", "water")

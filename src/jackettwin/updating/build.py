@@ -7,14 +7,14 @@ from dataclasses import replace
 from math import pi, sqrt
 
 from jackettwin.errors import InputError
-from jackettwin.response.condensed import strongest_beta
+from jackettwin.response.condensation.condensed import strongest_beta
 from jackettwin.soil import Support
-from jackettwin.soil.families import Family
-from jackettwin.soil.parameter import Parameter
+from jackettwin.soil.laws.families import Family
+from jackettwin.soil.laws.parameter import Parameter
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
+from jackettwin.updating.steel.band import condensed_for, numbered_modes
 from jackettwin.updating.tie_groups import priors_of, tie_groups
 
 Lognormal = tuple[float, float]

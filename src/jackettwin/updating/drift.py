@@ -17,10 +17,10 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.intervals import NORMAL_90, NORMAL_95
-from jackettwin.updating.descent import descend
 from jackettwin.updating.joint import GROWTH
-from jackettwin.updating.laplace import log_covariance
+from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.problem import Problem
+from jackettwin.updating.search.descent import descend
 
 
 @dataclass(frozen=True)

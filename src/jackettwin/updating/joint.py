@@ -10,14 +10,14 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.soil.parameter import Parameter
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.updating.data.relaxations import RelaxationTarget
+from jackettwin.updating.data.shapes import ShapeTarget
+from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
+from jackettwin.updating.posterior.scatter import Legs, ScatteredPrior
 from jackettwin.updating.prior import BoxPrior, Prior
 from jackettwin.updating.problem import Problem, State
-from jackettwin.updating.relaxations import RelaxationTarget
-from jackettwin.updating.scatter import Legs, ScatteredPrior
-from jackettwin.updating.shapes import ShapeTarget
-from jackettwin.updating.targets import Residuals
 from jackettwin.updating.tie_groups import SIDES
 
 GROWTH = "growth_per_day"
@@ -83,7 +83,7 @@ def joint(
         Where legs are split, ``k_vertical`` is shared by the legs' vertical springs.
     scatter : {parameter of the law: s₀}, optional
         Those of all tie groups have a common mean, about which they scatter by an unknown standard deviation
-        of ln θ, about s₀ (:mod:`jackettwin.updating.scatter`).
+        of ln θ, about s₀ (:mod:`jackettwin.updating.posterior.scatter`).
     errors : {datum: log_std}, optional
         Errors of the model that all states share, by datum (``f1``, ``ζ4``): each is a factor ``error_f1`` on
         the model's value, lognormal around one. More states do not average them out.

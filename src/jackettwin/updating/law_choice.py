@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import logsumexp
 
-from jackettwin.updating.laplace import log_covariance
+from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.update import Update
 
 PREFERRED = 0.1

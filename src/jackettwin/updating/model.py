@@ -12,15 +12,15 @@ import numpy.typing as npt
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
-from jackettwin.response.condensed import Condensed
-from jackettwin.response.mode_tracking import track_modes
-from jackettwin.response.numbered import NumberedModes, Points, numbered_poles
-from jackettwin.soil.families import Family
-from jackettwin.soil.parameter import Parameter
-from jackettwin.soil.viscoelastic import Law, Prony
+from jackettwin.response.condensation.condensed import Condensed
+from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, numbered_poles
+from jackettwin.response.modes.tracking import track_modes
+from jackettwin.soil.laws.families import Family
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
+from jackettwin.updating.steel.band import condensed_for, numbered_modes
 from jackettwin.updating.tie_groups import TieGroups
 
 

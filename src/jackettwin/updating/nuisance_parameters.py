@@ -12,9 +12,9 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix
 from jackettwin.soil import Spring
-from jackettwin.soil.coefficients import MASS, OMEGA0, C
-from jackettwin.soil.parameter import Parameter
-from jackettwin.soil.viscoelastic import Prony
+from jackettwin.soil.laws.coefficients import MASS, OMEGA0, C
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.structure import Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.response.numbered import NumberedModes
-from jackettwin.response.relaxation import Relaxation
-from jackettwin.soil.parameter import Parameter
+from jackettwin.response.condensation.mode_numbers import NumberedModes
+from jackettwin.response.condensation.relaxation import Relaxation
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.updating.data.relaxations import RelaxationTarget
+from jackettwin.updating.data.shapes import ShapeTarget
+from jackettwin.updating.data.targets import Residuals
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.prior import Prior
-from jackettwin.updating.relaxations import RelaxationTarget
-from jackettwin.updating.shapes import ShapeTarget
-from jackettwin.updating.targets import Residuals
 
 NEVER = -1e30
 """Log-likelihood where a target mode does not exist."""

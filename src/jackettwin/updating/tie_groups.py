@@ -10,8 +10,8 @@ import numpy as np
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil import Spring, Support, pinned
+from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.soil.support import standing
-from jackettwin.soil.viscoelastic import Law
 from jackettwin.structure import Structure
 
 Group = tuple[tuple[int, ...], tuple[str, ...]]

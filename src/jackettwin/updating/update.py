@@ -14,16 +14,16 @@ from jackettwin.errors import NumericalError
 from jackettwin.processes import on_one_blas_thread
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.budget import Budget, damping_budget
-from jackettwin.updating.identifiability import Verdict, identifiability
-from jackettwin.updating.laplace import laplace_draws, log_covariance
-from jackettwin.updating.misfit import misfit
+from jackettwin.updating.data.misfit import misfit
 from jackettwin.updating.model import ExactModes, SupportModel
-from jackettwin.updating.nested import sample_nested
-from jackettwin.updating.posterior import Posterior, sample_posterior
-from jackettwin.updating.predictive import Predictive, predict_quantities
+from jackettwin.updating.posterior.identifiability import Verdict, identifiability
+from jackettwin.updating.posterior.laplace import laplace_draws, log_covariance
+from jackettwin.updating.posterior.nested import sample_nested
+from jackettwin.updating.posterior.predictive import Predictive, predict_quantities
+from jackettwin.updating.posterior.sampling import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem
-from jackettwin.updating.profile import Profile, profile
-from jackettwin.updating.solutions import MOST_EVALUATIONS, Method, Search, Solution, search
+from jackettwin.updating.search.profile import Profile, profile
+from jackettwin.updating.search.solutions import MOST_EVALUATIONS, Method, Search, Solution, search
 
 Sampler = Literal["smc", "nested"]
 

@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.decks import read_structure
 from jackettwin.response import build_system, undamped_modes
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.structure import Assembly, Structure, assemble, read_structure
+from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.structure.masses import rigid_body_mass
 from jackettwin.structure.model import STEEL
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.steel import only_parts
+from jackettwin.updating.steel.update import only_parts
 from jackettwin.verify.rows import Row
 
 T3_3 = (0.142, 0.144, 0.504, 0.697, 0.761, 0.976, 1.068, 1.318, 1.657, 2.176)

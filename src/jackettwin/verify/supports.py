@@ -6,22 +6,22 @@ from collections.abc import Callable
 
 import numpy as np
 
+from jackettwin.decks import read_structure
 from jackettwin.response import build_system, undamped_modes
-from jackettwin.soil import on_translations
-from jackettwin.soil.viscoelastic import Prony, zener
-from jackettwin.structure import Assembly, Rayleigh, assemble, read_structure
+from jackettwin.soil import family, on_translations
+from jackettwin.soil.laws.viscoelastic import Prony, zener
+from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import (
     Residuals,
     SupportModel,
     Target,
     Update,
-    family,
     numbered_modes,
     single,
     support_model,
     update,
 )
-from jackettwin.updating.solutions import Solution
+from jackettwin.updating.search.solutions import Solution
 from jackettwin.verify.rows import Row
 
 MODES = (1, 2, 4)

@@ -7,7 +7,7 @@ from math import exp, pi
 import numpy as np
 
 from jackettwin.response.sdof import poles, sdof
-from jackettwin.soil.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
+from jackettwin.soil.laws.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
 from jackettwin.structure import Rayleigh
 from jackettwin.verify.rows import Row, rounded
 

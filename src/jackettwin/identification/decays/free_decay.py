@@ -27,7 +27,7 @@ from jackettwin.identification.preparation.whitening import accelerated, as_meas
 from jackettwin.identification.selection.candidates import with_covariance
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import decimate, detrend
-from jackettwin.records.filters import bridge
+from jackettwin.records.processing.filters import bridge
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

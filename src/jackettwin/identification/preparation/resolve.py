@@ -11,9 +11,9 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
-from jackettwin.records.duplicate_channels import duplicate_channels
+from jackettwin.records.quality.duplicates import duplicate_channels
+from jackettwin.records.quality.repair import without_stuck
 from jackettwin.records.record import SMALLEST
-from jackettwin.records.repair import without_stuck
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import Spectrum

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection
 
-from jackettwin.service.begun import LOST_WORKER, NO_ROOM, NoWorker
-from jackettwin.service.bundles import adopted_twin
-from jackettwin.service.tasks import File, Parsed, read_file
+from jackettwin.service.intake.bundles import adopted_twin
+from jackettwin.service.work.task_status import LOST_WORKER, NO_ROOM, NoWorker
+from jackettwin.service.work.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 
 if TYPE_CHECKING:

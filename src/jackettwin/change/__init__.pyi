@@ -1,0 +1,1 @@
+from .judge import JUDGED as JUDGED, Days as Days, Judged as Judged, finding_of as finding_of, judge as judge

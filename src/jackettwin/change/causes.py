@@ -1,0 +1,462 @@
+"""The causes of a change as directions, from a structure that stands on ground of uncertain stiffness.
+
+The feet's stiffness is fitted to the frequencies of the baseline; what the fit leaves open, and what the
+model misses, makes the draws of every direction.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import pi
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.errors import InputError
+from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads.members.water import Water, mass_per_level
+from jackettwin.response import UndampedModes, build_system, undamped_modes
+from jackettwin.response.modes.labels import LOCAL, mode_kinds, mode_labels
+from jackettwin.response.modes.tracking import track_modes
+from jackettwin.response.motion.tide import tide_slopes
+from jackettwin.soil import Spring, Support
+from jackettwin.structure import Assembly, Structure, assemble
+from jackettwin.twin.pair_angles import principal_direction
+from jackettwin.watching import (
+    Cause,
+    Pattern,
+    Slope,
+    sensor_noise,
+    sizes_about,
+)
+from jackettwin.watching.causes import MISFIT
+
+MODES = 8
+"""Modes of the model that are computed."""
+_DRAWS = 6
+_TYPICAL_STIFFNESS = 2.5e9
+"""Of a foot [N/m], before anything is known: give or take a factor e."""
+_FEET_APART = 0.15
+"""Standard deviation of ln stiffness from foot to foot: no site is the same at all of them, and in a nearly
+round structure that turns the axes of a pair."""
+_MODEL_ERROR = 0.01
+"""Relative standard deviation by which a model misses frequencies, before its own are compared: worth as much
+as one mode."""
+_MISSES = 5.0
+"""A model that misses frequencies by a share misses the directions of causes by so many times as much:
+docs/verification/directions.md."""
+_LOSS = (0.08, 0.4)
+"""Loss factor of the ground: median and spread in ln."""
+_ALIKE = 0.995
+"""Cosine between directions of one family from which they are one cause."""
+_ONE_SIZE = 0.1
+"""Spread of ln size below which a cause is there or not."""
+_SHOWS = 3e-4
+"""A change of all ln f below this, at its usual size, is not worth a bet: it takes years to be found."""
+_SOLVED = (3, 5)
+"""So many times an event over, as one, its change is solved anew: sizes reach up to five. Between, cubics
+miss the change of a brace or of the splash zone, whose walls are half gone by then, by some per cent."""
+_KEPT = 0.7
+"""A mode's shape has to stay by this share, in kinetic energy, among those of the whole structure."""
+_SEA_LEVEL = re.compile(r"^(sea|water)_?level(_m)?$|^tide(_m)?$", re.IGNORECASE)
+"""Names of a sea level in metres."""
+_LEAST_PER_M, _UNKNOWN_PER_M = 1e-4, 0.01
+"""Of d ln f per metre: what else than added water may make it, and of a mode that the model has not."""
+_MISREAD = 0.05
+"""Median size of a yaw that is read wrong, sin² of the angle: 13°."""
+_OF_KIND = {"frequency": 0, "damping": MODES, "angle": 2 * MODES}
+"""Where quantities of a kind begin among those of a model."""
+_TRACE = 1e-5
+"""A change of all logarithms below this leaves no trace."""
+
+
+@dataclass(frozen=True)
+class ModelCauses:
+    """Causes and what each does to all modes of a model.
+
+    Attributes
+    ----------
+    labels : of the model's modes
+    frequency_hz : (n_modes,) of the fitted model
+    causes : their draws are over ln f of all modes, then ln ζ of all modes, then the directions [rad] in
+        which the lower modes of bending pairs move
+    traceless : names of what leaves no trace in frequencies and damping
+    level_per_m : (n_modes,) d ln f per metre of sea level
+    seen_best : of each mode, the accelerometer that would see most of it
+    mixed : labels of modes that a cause may turn into members' own: which is which afterwards, nobody knows
+    """
+
+    labels: tuple[str, ...]
+    frequency_hz: FloatArray
+    causes: tuple[Cause, ...]
+    traceless: tuple[str, ...]
+    mixed: tuple[str, ...] = ()
+    level_per_m: FloatArray = field(default_factory=lambda: np.zeros(MODES))
+    seen_best: tuple[str, ...] = ("",) * MODES
+
+    def slopes(self, labels: Sequence[str], conditions: Sequence[str]) -> tuple[Slope, ...]:
+        """Return what the model knows of conditions by their names: the sea level, by its added water.
+
+        How much water a structure carries along is known to a factor of two: coefficients, growth, flooding.
+        """
+        at = [self.labels.index(n) if n in self.labels else -1 for n in labels]
+        per_m = np.array([self.level_per_m[i] if i >= 0 else 0.0 for i in at])
+        unsure = np.where(np.array(at) >= 0, np.abs(per_m) + _LEAST_PER_M, _UNKNOWN_PER_M)
+        return tuple(Slope(name, per_m, unsure) for name in conditions if _SEA_LEVEL.search(name))
+
+    def tells(self, label: str) -> bool:
+        """Return whether a mode of this label tells of causes."""
+        return label in self.labels and label not in self.mixed
+
+    def patterns(self, labels: Sequence[str]) -> tuple[Pattern, ...]:
+        """Return what the causes do to frequencies, of those that would show, over modes by label."""
+        found = []
+        for cause in self.causes:
+            once = cause.draws.mean(axis=0)
+            change = np.array([once[self.labels.index(n)] if self.tells(n) else 0.0 for n in labels])
+            if np.abs(change).max() * np.median(np.abs(cause.sizes)) > _SHOWS:
+                found.append(Pattern(cause.name, change, cause.prior))
+        return tuple(found)
+
+
+def model_causes(
+    structure: Structure,
+    labels: Sequence[str],
+    frequency_hz: FloatArray,
+    damping_ratio: FloatArray,
+    *,
+    gravity: bool = True,
+    seed: int = 0,
+) -> ModelCauses:
+    """Return what may have happened to a structure whose modes are known by label.
+
+    Parameters
+    ----------
+    labels, frequency_hz, damping_ratio : (n,) of the baseline; NaN where ζ is not known
+
+    Raises
+    ------
+    InputError
+        If no label is that of a mode of the model.
+    """
+    typical = Standing(structure, *(np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS) for _ in "hv"))
+    assembly = assemble(structure, gravity=gravity)
+    named = Modes.of(typical, assembly)
+    places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
+    if max(places, default=-1) < 0:
+        raise InputError(
+            "no mode of the model has such a label", field="label", value=", ".join(labels),
+            allowed=", ".join(named.labels), remedy="label modes as `jackettwin modes` does",
+        )  # fmt: skip
+    rng = np.random.default_rng((77, seed))
+    stands, best, error = standings(typical, named, places, frequency_hz, assembly, rng)
+    fit = Modes.of(best, assembly, like=named).modes
+    fitted = fit.frequency_hz
+    water = mass_per_level(assembly, Coefficients(), Water())
+    level = tide_slopes(fitted, fit.shapes, assembly.mass, water).relative
+    zeta = np.full(MODES, 0.01)
+    for place, value in zip(places, damping_ratio, strict=True):
+        if place >= 0 and np.isfinite(value):
+            zeta[place] = value
+    loss = _LOSS[0] * np.exp(_LOSS[1] * rng.standard_normal(_DRAWS))
+    bases = [Modes.of(standing, assembly, like=named) for standing in stands]
+    found: list[tuple[str, Cause]] = []
+    traceless = ["sensor: gain", "sensor: sign", "sensor: position"]
+    kept = np.ones(MODES)
+    for event in happenings(typical):
+        after = assemble(event.apply(typical).structure, gravity=gravity)  # whatever the feet
+        changed = [Modes.of(event.apply(s), after, like=b) for s, b in zip(stands, bases, strict=True)]
+        draws = np.array([
+            effect(event, base, then, eta, zeta)
+            for base, then, eta in zip(bases, changed, loss, strict=True)
+        ])  # fmt: skip
+        kept = np.minimum(kept, np.min([one.kept for one in changed], axis=0))
+        if np.abs(draws[:, : 2 * MODES] * event.median).max() < _TRACE:
+            traceless.append(event.name)
+        else:
+            sizes, weights = sizes_about(event.median, event.spread, both_ways=event.both_ways)
+            bend = _bend(event, stands[0], gravity, bases[0], loss[0], zeta, draws[0])
+            cause = Cause(
+                event.name, draws, sizes, weights, event.unit, bent_at=bend[0], bend=bend[1],
+                misfit=min(_MISSES * error, MISFIT),
+            )  # fmt: skip
+            found.append((event.family, cause))
+    causes = (*_families(found), _clock(), *_yaw(fitted, named.labels, zeta))
+    mixed = tuple(n for n, share in zip(named.labels, kept, strict=True) if share < _KEPT)
+    best_seen = _seen_best(assembly, fit.shapes)
+    return ModelCauses(named.labels, fitted, causes, tuple(traceless), mixed, level, best_seen)
+
+
+def _seen_best(assembly: Assembly, shapes: FloatArray) -> tuple[str, ...]:
+    """Return for each mode where above the sea and along which horizontal axis it shows most, others less."""
+    stands = assembly.structure
+    named = [name for name in assembly.mesh.node_names if name in stands.nodes]
+    names = [name for name in named if stands.nodes[name][2] >= stands.sea_level_z_m] or named
+    places = [assembly.mesh.node_names.index(name) for name in names]
+    moved = np.abs((assembly.expand @ shapes).reshape(len(assembly.mesh.node_names), 6, -1)[places, :2])
+    own = moved**3 / np.maximum(np.sum(moved**2, axis=2, keepdims=True), 1e-300)
+    out = []
+    for shape in own.transpose(2, 0, 1):
+        node, axis = np.unravel_index(np.argmax(shape), shape.shape)
+        out.append(f"an accelerometer at {names[node]} along {'xy'[axis]}")
+    return tuple(out)
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of a standing structure, in the order of another's.
+
+    ``soil_share`` is the share of the strain energy in the ground, ``kept`` that of the kinetic energy in the
+    other's modes of the whole structure; ``direction`` is the horizontal one of most motion [rad], from x
+    towards y. Modes with members of their own begin with ``local``.
+    """
+
+    labels: tuple[str, ...]
+    modes: UndampedModes
+    mass: Any
+    soil_share: FloatArray
+    kept: FloatArray
+    direction: FloatArray
+
+    @classmethod
+    def of(cls, standing: Standing, assembly: Assembly, like: Modes | None = None) -> Modes:
+        """Return the modes of an assembled structure on its feet, named by kind, or in another's order."""
+        feet = zip(standing.structure.reaction_nodes, standing.horizontal, standing.vertical, strict=True)
+        springs = tuple(Spring(node, np.diag([h, h, v, 0.0, 0.0, 0.0])) for node, h, v in feet)
+        system = build_system(assembly, Support(springs))
+        if like is None:
+            modes, kept = undamped_modes(system, MODES), np.ones(MODES)
+            labels = mode_labels(mode_kinds(assembly, modes.shapes, modes.frequency_hz))
+        else:
+            modes, labels = _followed(like, undamped_modes(system, MODES + 6)), like.labels
+            kept = _kept(like, modes.shapes)
+        moved = (assembly.expand @ modes.shapes).reshape(len(assembly.mesh.coordinates), 6, -1)
+        energy = np.zeros(len(modes.omega))
+        for spring in springs:
+            u = moved[assembly.mesh.node_names.index(spring.node)]
+            energy += np.einsum("im,ij,jm->m", u, spring.matrix, u)
+        ways = np.array([principal_direction(moved[:, :2, q])[0] for q in range(len(modes.omega))])
+        return cls(labels, modes, assembly.mass, energy / modes.omega**2, kept, ways)
+
+
+def _followed(like: Modes, modes: UndampedModes) -> UndampedModes:
+    """Return modes in the order of another's, by shape."""
+    order = track_modes(like.mass, like.modes.omega, like.modes.shapes, modes.shapes)
+    order = np.where(order < 0, np.arange(MODES), order)
+    return UndampedModes(modes.omega[order], modes.shapes[:, order])
+
+
+def _kept(like: Modes, shapes: FloatArray) -> FloatArray:
+    """Return the share of each shape's kinetic energy in another's modes of the whole structure, (n,)."""
+    whole = like.modes.shapes[:, [not name.startswith(LOCAL) for name in like.labels]]
+    moving = like.mass @ shapes
+    return np.asarray(np.sum((whole.T @ moving) ** 2, axis=0) / np.einsum("im,im->m", shapes, moving))
+
+
+def effect(event: Happening, base: Modes, after: Modes, eta: float, zeta: FloatArray) -> FloatArray:
+    """Return the change of ln f, ln ζ and directions [rad] by one unit of an event, (3·MODES,).
+
+    The ground's part of ζ is ½η times its share of the strain energy.
+    """
+    ln_f = np.log(after.modes.omega / base.modes.omega)
+    more = 0.5 * eta * (after.soil_share - base.soil_share) + event.damps * np.maximum(-ln_f, 0.0)
+    return np.concatenate([ln_f, more / zeta, turned(base, after)]) / event.per
+
+
+def pairs_of(labels: Sequence[str]) -> list[tuple[int, int]]:
+    """Return the bending pairs among some modes: places of the fore-aft and of the side-side one."""
+    pairs = ((f"fore_aft_{n}", f"side_side_{n}") for n in range(1, MODES))
+    return [(labels.index(a), labels.index(b)) for a, b in pairs if a in labels and b in labels]
+
+
+def turned(base: Modes, after: Modes) -> FloatArray:
+    """Return by how much the lower mode of each bending pair has turned [rad], from x towards y.
+
+    At both modes of the pair, (MODES,); a direction is as good as its opposite.
+    """
+    out = np.zeros(MODES)
+    for i, j in pairs_of(base.labels):
+        before, now = (m.direction[i if m.modes.omega[i] < m.modes.omega[j] else j] for m in (base, after))
+        out[[i, j]] = 0.5 * np.angle(np.exp(2j * (now - before)))
+    return out
+
+
+def repeated(event: Happening, times: int) -> Happening:
+    """Return an event that happens so many times over, as one; its effect is per event still."""
+
+    def apply(standing: Standing) -> Standing:
+        for _ in range(times):
+            standing = event.apply(standing)
+        return standing
+
+    return replace(event, apply=apply, per=times * event.per)
+
+
+def _bend(
+    event: Happening,
+    standing: Standing,
+    gravity: bool,
+    base: Modes,
+    eta: float,
+    zeta: FloatArray,
+    once: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return sizes, and how the change by a unit differs there from that of the event, if it has sizes.
+
+    Solved at ``_SOLVED`` times the event; towards zero it goes on as between the event and the next of these.
+    """
+    if event.spread < _ONE_SIZE:
+        return np.zeros(0), np.zeros((0, once.size))
+    bends = [np.zeros(once.size)]
+    for times in _SOLVED:
+        often = repeated(event, times)
+        stands = often.apply(standing)
+        after = Modes.of(stands, assemble(stands.structure, gravity=gravity), like=base)
+        bends.append(effect(often, base, after, eta, zeta) - once)
+    none = bends[1] / (1 - _SOLVED[0])
+    return event.per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
+
+
+def standings(
+    typical: Standing,
+    named: Modes,
+    places: Sequence[int],
+    frequency_hz: FloatArray,
+    assembly: Assembly,
+    rng: np.random.Generator,
+) -> tuple[list[Standing], Standing, float]:
+    """Return draws of the feet's stiffness that agree with the measured frequencies, and the likeliest.
+
+    The third is by how much the model misses frequencies: what the fit leaves over tells, with one mode's
+    worth of what is usual.
+
+    Parameters
+    ----------
+    places, frequency_hz : of measured modes among the named ones, −1 for none of them
+    """
+    known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
+
+    def at(x: FloatArray) -> Standing:
+        return replace(
+            typical, horizontal=typical.horizontal * np.exp(x[0]), vertical=typical.vertical * np.exp(x[1])
+        )
+
+    def residual(x: FloatArray) -> FloatArray:
+        omega = Modes.of(at(x), assembly, like=named).modes.omega
+        off = [np.log(omega[place] / (2.0 * pi * f)) / _MODEL_ERROR for place, f in known]
+        return np.array([*off, *x])
+
+    fit = least_squares(residual, np.zeros(2), diff_step=[1e-3, 1e-3], max_nfev=12, bounds=(-3.0, 3.0))
+    slope, left = np.asarray(fit.jac), fit.fun[: len(known)]
+    error = np.sqrt((left @ left + 1.0) / (max(len(known) - 2, 0) + 1))  # in units of the usual
+    slope[: len(known)] /= error
+    covariance = np.linalg.inv(slope.T @ slope)
+    points = rng.multivariate_normal(fit.x, covariance, _DRAWS).clip(-3.5, 3.5)
+    drawn = [at(x) for x in points]
+    apart = np.exp(_FEET_APART * rng.standard_normal((_DRAWS, 2, typical.horizontal.size)))
+    drawn = [
+        replace(s, horizontal=s.horizontal * h, vertical=s.vertical * v)
+        for s, (h, v) in zip(drawn, apart, strict=True)
+    ]
+    return drawn, at(fit.x), float(error) * _MODEL_ERROR
+
+
+def _families(found: list[tuple[str, Cause]]) -> tuple[Cause, ...]:
+    """Return the causes, those of one family and direction as one; a family has one prior weight."""
+    out: list[Cause] = []
+    for family in dict.fromkeys(name for name, _ in found):
+        members = [cause for name, cause in found if name == family]
+        groups: list[list[Cause]] = []
+        for cause in members:
+            near = next((g for g in groups if _cosine(g[0], cause) > _ALIKE), None)
+            if near is None:
+                groups.append([cause])
+            else:
+                near.append(cause)
+        for group in groups:
+            first, more = group[0], len(group) - 1
+            name = first.name if not more else f"{first.name} (or {more} alike)"
+            out.append(replace(first, name=name, prior=len(group) / len(members)))
+    return tuple(out)
+
+
+def _cosine(one: Cause, other: Cause) -> float:
+    a, b = (c.draws.mean(axis=0) for c in (one, other))
+    scale = np.repeat([1.0, 0.02, 0.0], MODES)  # ζ is known fifty times less well
+    a, b = a * scale, b * scale
+    nearness = float(a @ b / np.sqrt((a @ a) * (b @ b)))
+    length = float(np.sqrt((a @ a) / (b @ b)))
+    return nearness if max(length, 1.0 / length) < 1.0 + MISFIT else 0.0
+
+
+def _clock() -> Cause:
+    """Return a clock that runs wrong: all frequencies alike, no damping."""
+    sizes, weights = sizes_about(1e-3, 1.2, both_ways=True)
+    direction = np.repeat([1.0, 0.0, 0.0], MODES)[None]
+    return Cause("sensor: clock", direction, sizes, weights, "-", prior=0.5)
+
+
+def _yaw(frequency_hz: FloatArray, labels: Sequence[str], zeta: FloatArray) -> tuple[Cause, ...]:
+    """Return a yaw that is read wrong: it mixes frequencies and damping of bending pairs, and turns them.
+
+    Which way it turns them is not known: there are two draws.
+    """
+    direction = np.zeros(3 * MODES)
+    for i, j in pairs_of(labels)[:2]:
+        direction[i] = np.log(frequency_hz[j] / frequency_hz[i])
+        direction[j] = -direction[i]
+        direction[MODES + i] = (zeta[j] - zeta[i]) / zeta[i]
+        direction[MODES + j] = (zeta[i] - zeta[j]) / zeta[j]
+        direction[[2 * MODES + i, 2 * MODES + j]] = np.arcsin(np.sqrt(_MISREAD)) / _MISREAD
+    if not direction.any():
+        return ()
+    sizes, weights = sizes_about(_MISREAD, 1.0)
+    draws = direction * np.repeat([[1.0, 1.0, 1.0], [1.0, 1.0, -1.0]], MODES, axis=1)
+    return (Cause("sensor: yaw misread", draws, sizes, weights, "sin² of the angle", prior=0.5),)
+
+
+@dataclass(frozen=True)
+class SeenCauses:
+    """Causes over the quantities that are watched.
+
+    Attributes
+    ----------
+    causes : over the known quantities; the last is a failing sensor
+    known : (m,) which watched quantities belong to modes of the model
+    columns : of the known ones, their index among the model's quantities
+    model : all that the causes do
+    """
+
+    causes: tuple[Cause, ...]
+    known: BoolArray
+    columns: tuple[int, ...]
+    model: ModelCauses
+
+
+def seen_causes(
+    model: ModelCauses, quantities: Sequence[tuple[str, int]], labels: Sequence[str]
+) -> SeenCauses:
+    """Return the causes over watched quantities.
+
+    Parameters
+    ----------
+    quantities : (m,) kind and mode of each watched quantity
+    labels : of the modes
+    """
+    known = np.array([model.tells(labels[mode]) for _, mode in quantities], dtype=np.bool_)
+    columns = [
+        model.labels.index(labels[mode]) + _OF_KIND[kind]
+        for (kind, mode), good in zip(quantities, known, strict=True)
+        if good
+    ]
+    kept = [pair for pair, good in zip(quantities, known, strict=True) if good]
+    causes = tuple(
+        replace(c, draws=c.draws[:, columns], bend=c.bend[:, columns] if c.bend.size else c.bend)
+        for c in model.causes
+    )
+    return SeenCauses((*causes, sensor_noise(kept)), known, tuple(columns), model)

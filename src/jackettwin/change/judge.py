@@ -1,0 +1,285 @@
+"""The third of the pair: the days of a state, watched.
+
+What is said of a day depends on the days up to it and nothing else: whatever order records came in, however
+the work was split, the same state gives the same judgement, bit for bit. What is kept between two calls only
+saves time: a day that a late record has changed since is judged anew, from the end of the baseline on. What
+days hold is asked for only where it is needed: after a quiet day, of that day alone, however many there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime, timedelta
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from jackettwin.change.causes import ModelCauses, seen_causes
+from jackettwin.change.table_watch import begun, explained_alarm, structure_causes
+from jackettwin.change.watch_document import alarm_document
+from jackettwin.errors import InputError
+from jackettwin.findings import Finding
+from jackettwin.twin.codec import StoredSchema, digest
+from jackettwin.twin.config import WatchSettings
+from jackettwin.twin.exact_sums import UNIT, ModeSums
+from jackettwin.twin.model import TwinModel
+from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
+from jackettwin.watching import History, Watch, step
+from jackettwin.watching.watch import FEWEST_DAYS
+
+EPOCH = date(1970, 1, 1)
+_USUAL = WatchSettings()
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is kept of a watch from one day to the next.
+
+    Attributes
+    ----------
+    baseline_days, arl_years, relearn : the promise it was made with
+    baseline, judged : fingerprints of the days of the baseline, and of those after it up to ``through``
+    through : the last day that was judged; empty before the first one
+    learnt, watch : at the end of the baseline, and after ``through``
+    alarms : as documents, in the order of time
+    columns : of the baseline
+    """
+
+    baseline_days: float
+    arl_years: float
+    baseline: str = ""
+    judged: str = ""
+    through: str = UNDATED
+    learnt: Watch | None = None
+    watch: Watch | None = None
+    alarms: tuple[Mapping[str, Any], ...] = ()
+    relearn: str = UNDATED
+    columns: Columns | None = None
+
+    @property
+    def promise(self) -> tuple[float, float, str]:
+        """What must not differ if it is to go on."""
+        return self.baseline_days, self.arl_years, self.relearn
+
+
+JUDGED = StoredSchema("twin_judged", Judged)
+"""How judgements are kept."""
+
+
+@dataclass(frozen=True)
+class Days:
+    """The days of a state.
+
+    Attributes
+    ----------
+    identities : {date: identity of its content}
+        Sorted.
+    load : callable
+        Returns the content of a day.
+    """
+
+    identities: Mapping[str, str]
+    load: Callable[[str], Day]
+
+    @classmethod
+    def of(cls, state: TwinState) -> Days:
+        """Return the days of a state that is here as a whole."""
+        return cls({date: digest(day) for date, day in state.days.items()}, state.days.__getitem__)
+
+
+def judge(
+    model: TwinModel,
+    every: Days,
+    kept: Judged | None = None,
+    settings: WatchSettings = _USUAL,
+) -> tuple[Judged, tuple[Finding, ...]]:
+    """Return what the days of a state say of a change, and what is worth saying that was not said before.
+
+    The last day is left out until a later one has begun: it may not be whole.
+
+    Parameters
+    ----------
+    kept : what an earlier call returned; any of the same promise, it need not be of the same days
+    settings : the promise; days before ``settings.relearn`` are left out
+    """
+    first = settings.relearn.isoformat() if settings.relearn else UNDATED
+    fresh = Judged(settings.baseline_days, settings.arl_years, relearn=first)
+    kept = kept or fresh
+    dates = [d for d in every.identities if d != UNDATED and d >= first][:-1]
+    if not dates:
+        return fresh if kept.promise != fresh.promise else kept, ()
+    end = (date.fromisoformat(dates[0]) + timedelta(days=settings.baseline_days)).isoformat()
+    before, after = [d for d in dates if d < end], [d for d in dates if d >= end]
+    if not after or len(before) < FEWEST_DAYS:
+        days = float(_number(dates[-1]) - _number(dates[0]) + 1)
+        return fresh, (Finding("watch_learning", None, {"days": days, "needed": settings.baseline_days}),)
+    known = _known(kept, fresh, every, before, after)
+    findings = []
+    columns = known.columns or Columns.of(model, every, before)
+    baseline = cache(lambda: history_of(columns, every, before))  # a year of days, needed rarely
+    causes = cache(lambda: _causes(model, baseline()))  # seconds, needed rarely
+    if known.learnt is None:
+        watch = begun(baseline(), settings.arl_years, causes())
+        known = replace(
+            known, baseline=_fingerprint(every, before), learnt=watch, watch=watch, columns=columns
+        )
+        findings.append(Finding("watch_begins", None, {"from": end, "arl_years": settings.arl_years}))
+    for day in (d for d in after if d > known.through):
+        known = _day(known, baseline, history_of(columns, every, [day]), day, causes)
+    known = replace(known, judged=_fingerprint(every, after))
+    told = {alarm["time_utc"] for alarm in kept.alarms}
+    return known, (*findings, *(finding_of(a) for a in known.alarms if a["time_utc"] not in told))
+
+
+def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], after: Sequence[str]) -> Judged:
+    """Return what still holds of what is kept."""
+    if kept.promise != fresh.promise:
+        return fresh
+    if kept.learnt is None or kept.baseline != _fingerprint(every, before):
+        return fresh
+    if kept.judged != _fingerprint(every, [d for d in after if d <= kept.through]):
+        return replace(kept, judged="", through=UNDATED, watch=kept.learnt, alarms=())
+    return kept
+
+
+def _causes(model: TwinModel, baseline: History) -> ModelCauses | None:
+    """Return what may happen to the structure; None if there is none, or its modes were not seen."""
+    if model.assembly is None:
+        return None
+    try:
+        return structure_causes(model.structure.structure, True, baseline)
+    except InputError:
+        return None
+
+
+def _day(
+    known: Judged,
+    baseline: Callable[[], History],
+    day: History,
+    name: str,
+    causes: Callable[[], ModelCauses | None],
+) -> Judged:
+    """Return what is known after one more day."""
+    if known.watch is None or not day.days.size:
+        return replace(known, through=name)
+    watch, look = step(known.watch, day)
+    alarms = known.alarms
+    if look.change is not None:
+        of = causes()
+        seen = None if of is None else seen_causes(of, watch.quantities, watch.labels)
+        found = explained_alarm(look.change, watch, baseline(), seen)
+        alarms = (*alarms, alarm_document(watch, _time, found))
+    return replace(known, watch=watch, through=name, alarms=alarms)
+
+
+def finding_of(alarm: Mapping[str, Any]) -> Finding:
+    """Return what is said of an alarm."""
+    best = alarm["causes"][0]
+    low, high = alarm["size_interval_90"]
+    began_low, began_high = (text[:10] for text in alarm["began_interval_90"])
+    params = {
+        "time_utc": alarm["time_utc"], "began": alarm["began_utc"][:10], "began_low": began_low,
+        "began_high": began_high, "size": alarm["size"], "low": low, "high": high, "cause": best["cause"],
+        "probability": best["probability"],
+    }  # fmt: skip
+    sensor = best["cause"].startswith("sensor") or alarm["kind"] == "scatter"
+    turned = "structure_turned" if alarm.get("unit") == "deg" else "structure_changed"
+    return Finding("sensor_changed" if sensor else turned, ", ".join(alarm["quantities"]), params)
+
+
+def _fingerprint(every: Days, dates: Sequence[str]) -> str:
+    """Return the identity of some days."""
+    return digest([(day, every.identities[day]) for day in dates])
+
+
+def _number(day: str) -> int:
+    return (date.fromisoformat(day) - EPOCH).days
+
+
+def _time(day: float) -> datetime:
+    return datetime(1970, 1, 1, tzinfo=UTC) + timedelta(days=day)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What the rows of a history are made of: as the baseline has it, so that days go on in the same way.
+
+    ``numbers`` are those of the modes that were seen, in the order of ``labels``.
+    """
+
+    numbers: tuple[int, ...]
+    labels: tuple[str, ...]
+    conditions: tuple[str, ...]
+    kinds: tuple[str, ...]
+
+    @classmethod
+    def of(cls, model: TwinModel, every: Days, dates: Sequence[str]) -> Columns:
+        """Return the modes, conditions and states of operation of some days."""
+        operations = [item for d in dates for item in every.load(d).operations.items()]
+        numbers = sorted({n for _, o in operations for n, sums in o.modes.items() if sums.known})
+        named = dict(enumerate(model.labels, start=1))
+        return cls(
+            tuple(numbers),
+            tuple(named.get(n, f"mode_{n}") for n in numbers),
+            ("wind_m_s", "wave_height_m", *sorted({name for _, o in operations for name in o.beside})),
+            tuple(sorted({_kind(name) for name, _ in operations})),
+        )
+
+
+def history_of(columns: Columns, every: Days, dates: Sequence[str]) -> History:
+    """Return days as rows of modes: one for each day and state of operation."""
+    rows = [
+        (_noon(_number(d), day), _kind(name), operation)
+        for d, day in ((d, every.load(d)) for d in dates)
+        for name, operation in day.operations.items()
+        if any(sums.known for sums in operation.modes.values())
+    ]
+    values = np.full((6, len(rows), len(columns.labels)), np.nan)
+    beside = np.full((len(rows), len(columns.conditions)), np.nan)
+    for i, (_, _, operation) in enumerate(rows):
+        for number, sums in operation.modes.items():
+            if sums.known and number in columns.numbers:
+                values[:4, i, columns.numbers.index(number)] = _means(sums)
+        for number, angle in operation.angles.items():
+            if angle.w and number in columns.numbers:
+                values[4:, i, columns.numbers.index(number)] = angle.mean
+        beside[i] = [_condition(operation, name) for name in columns.conditions]
+    new = len(columns.kinds)
+    states = [columns.kinds.index(kind) if kind in columns.kinds else new for _, kind, _ in rows]
+    return History(
+        np.array([at for at, *_ in rows]), columns.labels, values[0], values[1], values[2], values[3],
+        beside, columns.conditions,
+        np.array(states, dtype=np.intp), columns.kinds, values[4], values[5],
+    )  # fmt: skip
+
+
+def _noon(number: int, day: Day) -> float:
+    """Return the middle of a day's records [days]."""
+    middle = day.time_utc
+    return number + 0.5 if middle is None else (middle.timestamp() / 86400.0)
+
+
+def _kind(operation: str) -> str:
+    """Return a state of operation without its bin of wind speed, which is a condition."""
+    words = [word for word in operation.split(", ") if not word.endswith(" m/s")]
+    return ", ".join(words) or "unknown"
+
+
+def _means(s: ModeSums) -> tuple[float, float, float, float]:
+    """Return frequency, its standard deviation, damping ratio and its own, as the records state them."""
+    zeta = s.qz / s.q
+    typical = np.exp(s.log_ratio / UNIT / s.known)
+    f = float(np.exp(s.px / s.p))
+    return f, f * np.sqrt(zeta * UNIT / s.p), zeta, zeta * np.sqrt(typical * UNIT / (zeta * s.q))
+
+
+def _condition(operation: Operation, name: str) -> float:
+    known = operation.conditions
+    if name == "wind_m_s":
+        return np.nan if known.wind_m_s is None else known.wind_m_s
+    if name == "wave_height_m":
+        return np.nan if known.waves is None else known.waves[0]
+    n, total = operation.beside.get(name, (0, 0))
+    return total / UNIT / n if n else np.nan

@@ -1,0 +1,264 @@
+"""A table of modes watched: baseline, then day by day, what changed, and what it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.change.causes import ModelCauses, SeenCauses, model_causes, seen_causes
+from jackettwin.change.modal_table import ModalTable
+from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
+from jackettwin.errors import InputError
+from jackettwin.structure import Structure
+from jackettwin.watching import (
+    Cause,
+    Change,
+    Diagnosis,
+    History,
+    Look,
+    Watch,
+    diagnose,
+    general_causes,
+    start,
+    step,
+)
+from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
+from jackettwin.watching.explained import shares, slopes, unexplained_std
+from jackettwin.watching.history import deviations, typical
+from jackettwin.watching.watch import columns_to_watch
+
+_PATTERNS, _UNLIKELY = 3, 0.001
+"""Causes whose patterns are kept, and the probability below which none is."""
+_MISSING = 0.1
+"""Share of missing values of a condition from which it is said."""
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """A change and what it was.
+
+    Attributes
+    ----------
+    patterns : {cause: (m,)} what each likely cause would have done to all quantities, at the size it would
+        have; NaN where that is not known
+    """
+
+    change: Change
+    diagnosis: Diagnosis
+    next_measurements: tuple[Measurement, ...] = ()
+    patterns: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A table of modes, judged.
+
+    Attributes
+    ----------
+    baseline_days : (first, last) day of the baseline
+    watch : the state after the last day
+    looks : of each day with records after the baseline
+    explained : {(kind, mode): {condition: share of variance over the baseline}}
+    slopes : {(kind, mode): {condition: of the logarithm, by a unit of it}}
+    unexplained_std : {(kind, mode): of the logarithm}
+    limits : what could not be done, as sentences
+    """
+
+    table: ModalTable
+    baseline_days: tuple[float, float]
+    watch: Watch
+    looks: tuple[Look, ...]
+    alarms: tuple[Alarm, ...]
+    explained: Mapping[tuple[str, int], Mapping[str, float]]
+    unexplained_std: Mapping[tuple[str, int], float]
+    limits: tuple[str, ...]
+    slopes: Mapping[tuple[str, int], Mapping[str, float]]
+
+
+def watch_table(
+    table: ModalTable,
+    *,
+    baseline_days: float = 365.0,
+    arl_years: float = 10.0,
+    from_day: float = 0.0,
+    structure: Structure | None = None,
+    gravity: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Watched:
+    """Return what a table says: nothing of it is looked at before its day.
+
+    Parameters
+    ----------
+    baseline_days : from the first row on, or from ``from_day``
+    from_day : earlier rows are left out: after a repair or a confirmed change the baseline is learnt anew
+    structure, gravity : what stands there, and whether its weight softens it: causes are then its own. None
+        for what patterns over modes tell by themselves
+    progress : told what is being done
+
+    Raises
+    ------
+    InputError
+        If there is too little to learn from.
+    """
+    for name, value in (("--baseline-days", baseline_days), ("--arl-years", arl_years)):
+        if not value > 0.0:  # NaN, too
+            raise InputError("not above zero", field=name, value=value, allowed="> 0")
+    history = table.history.between(from_day, np.inf)
+    if not history.days.size:
+        raise InputError("no rows after the time to learn anew from", field="--relearn", value=from_day)
+    first = float(np.floor(history.days[0]))
+    end = first + baseline_days
+    baseline = history.between(first, end)
+    rest = history.between(end, np.inf)
+    limits = list(table.remarks)
+    if not rest.days.size:
+        limits.append(
+            f"all {history.days[-1] - first:.0f} days lie in the baseline of {baseline_days:g}: "
+            "nothing is watched yet"
+        )
+    columns_to_watch(baseline)  # refused before a model is asked for causes, which takes a while
+    if structure is not None:
+        progress("causes")
+    causes = None if structure is None else structure_causes(structure, gravity, baseline)
+    progress("baseline")
+    watch = begun(baseline, arl_years, causes)
+    limits += _limits(watch, baseline, rest)
+    explained, unexplained = _explained(watch, baseline)
+    seen = None if causes is None else seen_causes(causes, watch.quantities, watch.labels)
+    limits += [] if causes is None else _unseen(causes, watch.labels)
+    looks, alarms = [], []
+    for day in rest.by_day():
+        progress(f"{table.time(float(day.days[0])):%Y-%m}")
+        watch, look = step(watch, day)
+        looks.append(look)
+        if look.change is not None:
+            alarms.append(explained_alarm(look.change, watch, baseline, seen))
+    found = [one for block in watch.blocks for one in slopes(block, watch.design)]
+    per_unit: dict[tuple[str, int], dict[str, float]] = dict(zip(watch.quantities, found, strict=True))
+    return Watched(
+        table,
+        (first, end),
+        watch,
+        tuple(looks),
+        tuple(alarms),
+        explained,
+        unexplained,
+        tuple(limits),
+        per_unit,
+    )
+
+
+def explained_alarm(change: Change, watch: Watch, baseline: History, seen: SeenCauses | None) -> Alarm:
+    """Return a change with its causes: the structure's own, or patterns over modes."""
+    kinds = [kind for kind, _ in watch.quantities]
+    if seen is None:
+        general = general_causes(watch.quantities, watch.labels, typical(baseline.frequency))
+        diagnosis = diagnose(change, general, kinds)
+        return Alarm(
+            change, diagnosis, (), _patterns(diagnosis, general, np.ones(len(kinds), dtype=np.bool_))
+        )
+    own = [kind for kind, good in zip(kinds, seen.known, strict=True) if good]
+    diagnosis = diagnose(change.restricted(seen.known), seen.causes, own)
+    around = Circumstances.of(watch, baseline, seen.model.labels)
+    further = next_measurements(seen, diagnosis, around)
+    return Alarm(change, diagnosis, further, _patterns(diagnosis, seen.causes, seen.known))
+
+
+def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -> dict[str, FloatArray]:
+    """Return what the likely causes would have done to all quantities, of which some are known."""
+    by_name = {cause.name: cause for cause in causes}
+    found: dict[str, FloatArray] = {}
+    for verdict in diagnosis.verdicts[:_PATTERNS]:
+        if verdict.probability > _UNLIKELY and np.isfinite(verdict.size):
+            step = np.full(known.size, np.nan)
+            step[known] = by_name[verdict.cause].steps(np.array([verdict.size]))[0]
+            found[verdict.cause] = step
+    return found
+
+
+def structure_causes(structure: Structure, gravity: bool, baseline: History) -> ModelCauses:
+    """Return what may happen to a structure that had these modes."""
+    return model_causes(
+        structure, baseline.labels, typical(baseline.frequency), typical(baseline.damping), gravity=gravity
+    )
+
+
+def begun(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:
+    """Return the watch at the end of a baseline; a structure's causes are among what it looks for."""
+    if causes is None:
+        return start(baseline, arl_years=arl_years)
+    return start(
+        baseline,
+        arl_years=arl_years,
+        patterns=causes.patterns(baseline.labels),
+        slopes=causes.slopes(baseline.labels, baseline.condition_names),
+    )
+
+
+def _limits(watch: Watch, baseline: History, rest: History) -> list[str]:
+    said = []
+    kept = {mode for kind, mode in watch.quantities if kind == "frequency"}
+    left = [label for q, label in enumerate(watch.labels) if q not in kept]
+    if left:
+        said.append(f"too few values in the baseline to be watched, or always the same: {', '.join(left)}")
+    if len(kept) == 1:
+        said.append("one mode only: what it shares with others cannot be told from a change of its own")
+    used = {column.source for column in watch.design.columns}
+    constant = [name for k, name in enumerate(baseline.condition_names) if k not in used]
+    if constant:
+        said.append(f"constant over the baseline or nearly empty, left out: {', '.join(constant)}")
+    said += _gaps(watch, rest)
+    span = float(np.ptp(baseline.days))
+    if span < WHOLE_YEAR_DAYS:
+        said.append(
+            f"the baseline covers {span:.0f} days: what a season does and this time of the year did not show "
+            "counts as a change"
+        )
+    return said
+
+
+def _unseen(causes: ModelCauses, labels: Sequence[str]) -> list[str]:
+    """Return what of a structure's causes these modes do not show."""
+    said = [f"leaves no trace in these quantities: {', '.join(causes.traceless)}"]
+    strange = [label for label in labels if label not in causes.labels]
+    if strange:
+        said.append(f"no mode of the structure, left out of the causes: {', '.join(strange)}")
+    mixed = [label for label in labels if label in causes.mixed]
+    if mixed:
+        said.append(f"may mix with members' own modes, left out of the causes: {', '.join(mixed)}")
+    return said
+
+
+def _gaps(watch: Watch, rest: History) -> list[str]:
+    """Return what is not known of the rows that are watched."""
+    if not rest.days.size:
+        return []
+    share = {c.name: np.mean(~np.isfinite(rest.conditions[:, c.source])) for c in watch.design.columns
+             if c.source >= 0}  # fmt: skip
+    said = [
+        f"{name} is missing in {100.0 * x:.0f} % of the rows watched: there it counts as its mean"
+        for name, x in share.items()
+        if x > _MISSING
+    ]
+    unknown = ~np.isin(rest.states, watch.design.states)
+    if unknown.any():
+        names = ", ".join(rest.state_names[k] for k in np.unique(rest.states[unknown]))
+        said.append(f"too little of it in the baseline, not judged: {names} ({int(unknown.sum())} rows)")
+    return said
+
+
+def _explained(
+    watch: Watch, baseline: History
+) -> tuple[dict[tuple[str, int], dict[str, float]], dict[tuple[str, int], float]]:
+    rows, _ = regressors(watch.design, baseline, fresh(watch.design))
+    explained: dict[tuple[str, int], dict[str, float]] = {}
+    unexplained: dict[tuple[str, int], float] = {}
+    for block in watch.blocks:
+        values, _ = deviations(baseline, block.kind, block.kept, block.typical, block.std_power)
+        keys = [(block.kind, int(q)) for q in block.kept]
+        explained |= dict(zip(keys, shares(block, watch.design, rows, values), strict=True))
+        unexplained |= dict(zip(keys, map(float, unexplained_std(block)), strict=True))
+    return explained, unexplained

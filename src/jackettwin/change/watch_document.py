@@ -1,0 +1,165 @@
+"""What ``jackettwin watch`` prints as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from jackettwin.change.table_watch import Alarm, Watched
+from jackettwin.watching import CauseVerdict, Watch
+
+_Z90 = 1.645
+_NAMED, _LIKELY = 3, 0.001
+"""Causes that a sentence names where none is clear, and the probability below which none is listed."""
+
+
+def watched_document(watched: Watched) -> dict[str, Any]:
+    """Return a judged table as plain data; sizes are relative changes, times UTC."""
+    table = watched.table
+    first, end = watched.baseline_days
+    alarms = [alarm_document(watched.watch, table.time, alarm) for alarm in watched.alarms]
+    return {
+        "name": table.name,
+        "statement": statement(watched),
+        "alarms": alarms,
+        "quantities": {
+            quantity_name(watched.watch, key): {
+                "explained_by": dict(watched.explained[key]),
+                "per_unit": dict(watched.slopes[key]),
+                "unexplained_std": watched.unexplained_std[key],
+            }
+            for key in watched.watch.quantities
+        },
+        "windows": int(table.history.days.size),
+        "days_watched": len(watched.looks),
+        "arl_years": watched.watch.arl_years,
+        "baseline_utc": [table.time(first).isoformat(), table.time(end).isoformat()],
+        "threshold_ln": watched.watch.log_threshold,
+        "evidence": [
+            {"time_utc": table.time(look.day).isoformat(), "ln_evidence": look.log_r}
+            for look in watched.looks
+        ],
+        "limits": list(watched.limits),
+    }
+
+
+def alarm_document(watch: Watch, time: Callable[[float], datetime], alarm: Alarm) -> dict[str, Any]:
+    """Return an alarm as plain data; ``time`` gives the time of a day number."""
+    change = alarm.change
+    low, high = change.began_interval_90
+    names = [quantity_name(watch, key) for key in watch.quantities]
+    members = np.flatnonzero(change.members)
+    moved = {
+        name: _sized(change.size[i], change.size_std[i], _unit(change.kind, kind))
+        for i, (name, (kind, _)) in enumerate(zip(names, watch.quantities, strict=True))
+    }
+    lead = members[np.argmax(change.by_mode[members])]
+    return {
+        "time_utc": time(change.day).isoformat(),
+        "began_utc": time(change.began).isoformat(),
+        "began_interval_90": [time(low).isoformat(), time(high).isoformat()],
+        "kind": change.kind,
+        "quantities": [names[i] for i in members],
+        "size": moved[names[lead]]["size"],
+        "size_interval_90": moved[names[lead]]["interval_90"],
+        "unit": moved[names[lead]]["unit"],
+        "by_quantity": moved,
+        "causes": [_cause(v) for v in alarm.diagnosis.verdicts if v.probability > _LIKELY],
+        "inseparable": [list(group) for group in alarm.diagnosis.inseparable],
+        "next_measurements": [
+            {
+                "what": m.what,
+                "gain_nats": m.gain_nats,
+                "share_of_doubt": min(m.gain_nats / _doubt(alarm), 1.0),
+                "mode": m.mode or None,
+                "quantity": m.quantity or None,
+                "state": m.state or None,
+                "sensor": m.sensor or None,
+            }
+            for m in alarm.next_measurements
+        ],
+        "ln_evidence": change.log_r,
+    }
+
+
+def _doubt(alarm: Alarm) -> float:
+    """Return the entropy of which cause it was [nats]."""
+    p = np.array([v.probability for v in alarm.diagnosis.verdicts if v.probability > 0.0])
+    return max(float(-p @ np.log(p)), 1e-12)
+
+
+def next_sentence(alarm: dict[str, Any]) -> str:
+    """Return what an alarm's document says to measure next, or nothing."""
+    told = [f"{m['what']} ({100.0 * m['share_of_doubt']:.0f} %)" for m in alarm["next_measurements"]]
+    if not told:
+        return ""
+    return f"Would tell the causes apart, by the share of the doubt that it settles: {'; '.join(told)}."
+
+
+def _unit(change: str, kind: str) -> str:
+    """Return the unit of the change of a quantity: pairs turn by degrees, all else changes by a share."""
+    return "deg" if kind == "angle" and change != "scatter" else "-"
+
+
+def _sized(size: float, std: float, unit: str) -> dict[str, Any]:
+    ends = np.array([size - _Z90 * std, size, size + _Z90 * std])
+    low, mid, high = map(float, np.degrees(ends) if unit == "deg" else np.expm1(ends))
+    return {"size": mid, "interval_90": [low, high], "unit": unit}
+
+
+def _sized_words(document: dict[str, Any]) -> str:
+    """Return the size of an alarm with its interval, in words."""
+    low, high = document["size_interval_90"]
+    scale, unit = (1.0, "°") if document["unit"] == "deg" else (100.0, " %")
+    return f"{scale * document['size']:+.2f}{unit} ({scale * low:+.2f} to {scale * high:+.2f}{unit})"
+
+
+def _cause(verdict: CauseVerdict) -> dict[str, Any]:
+    return {
+        "cause": verdict.cause,
+        "probability": verdict.probability,
+        "size": verdict.size,
+        "interval_90": None if np.isnan(verdict.size) else list(verdict.interval_90),
+        "unit": verdict.unit,
+    }
+
+
+def quantity_name(watch: Watch, key: tuple[str, int]) -> str:
+    """Return what a watched quantity is called."""
+    kind, mode = key
+    return watch.labels[mode] + {"frequency": "", "damping": " damping", "angle": " direction"}[kind]
+
+
+def _likeliest(alarm: Alarm) -> str:
+    """Return the cause if one is likelier than not, else the first few."""
+    named = [f"{v.cause} ({100.0 * v.probability:.0f} %)" for v in alarm.diagnosis.verdicts[:_NAMED]]
+    clear = alarm.diagnosis.verdicts[0].is_clear
+    return f"most likely {named[0]}" if clear else f"cause not clear: {', '.join(named)}"
+
+
+def statement(watched: Watched) -> str:
+    """Return the outcome in a sentence."""
+    table = watched.table
+    if not watched.looks:
+        return "Nothing is watched yet: the table ends with its baseline."
+    if not watched.alarms:
+        last = table.time(watched.looks[-1].day)
+        return (
+            f"No change found in {len(watched.looks)} days with records up to {last:%Y-%m-%d}; a false alarm "
+            f"is expected once in {watched.watch.arl_years:g} years or more rarely."
+        )
+    parts = []
+    for alarm in watched.alarms:
+        change = alarm.change
+        doc = alarm_document(watched.watch, table.time, alarm)
+        what = "scatter of" if change.kind == "scatter" else "change of"
+        names = ", ".join(doc["quantities"])
+        began = [table.time(day) for day in (change.began, *change.began_interval_90)]
+        parts.append(
+            f"{table.time(change.day):%Y-%m-%d}: {what} {names} by {_sized_words(doc)}, began "
+            f"{began[0]:%Y-%m-%d} ({began[1]:%Y-%m-%d} to {began[2]:%Y-%m-%d}); {_likeliest(alarm)}."
+        )
+    return " ".join(parts)

@@ -1,0 +1,1 @@
+"""Code checks of members and joints to ISO 19902."""

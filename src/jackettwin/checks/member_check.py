@@ -1,0 +1,274 @@
+"""Every member of a structure against ISO 19902, from static or time-domain displacements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.checks.columns import columns
+from jackettwin.checks.iso19902 import (
+    CHECKS,
+    MOST_SLENDER_WALL,
+    Strength,
+    Stress,
+    Tube,
+    strength,
+    utilisation,
+)
+from jackettwin.checks.iso19902_pressure import PRESSURE_CHECKS, HoopStrength, hoop_strength, pressure_use
+from jackettwin.checks.joint_check import BraceUse, joint_plans, joint_uses, worst_joints
+from jackettwin.errors import InputError
+from jackettwin.structure.assemble import Assembly
+from jackettwin.structure.forces import SectionForces, section_forces, von_mises_stress
+
+ALL_CHECKS = CHECKS | PRESSURE_CHECKS
+"""Checks of a member and their clauses; those under pressure only where there is some."""
+_BLOCK = 512
+"""Instants checked at a time."""
+
+
+@dataclass(frozen=True)
+class DesignBasis:
+    """How members are checked.
+
+    Attributes
+    ----------
+    yield_strength_pa : float
+    edition : {"2007", "2020"}
+    C_m : float
+        Moment reduction factor; table 13.5-1 allows less than 1.
+    K : mapping of part or member name to effective length factor
+        On the length between joints that hold a member; unless given, 2 for a cantilever and 1 for everything
+        else (table 13.5-1 allows 0.7 to 0.8 for braces).
+    conservative_joints : bool
+        Take the weakest of K, Y and X for every brace instead of its load path.
+    """
+
+    yield_strength_pa: float = 355e6
+    edition: str = "2007"
+    C_m: float = 1.0
+    K: Mapping[str, float] = field(default_factory=dict)
+    conservative_joints: bool = False
+
+
+class Buckling(NamedTuple):
+    """Effective length factor, and length [m] of the column a member is part of."""
+
+    K: float
+    L: float
+
+
+@dataclass(frozen=True)
+class Worst:
+    """Where along a member, and under which forces, its governing check is worst.
+
+    Attributes
+    ----------
+    position : float
+        0 at the member's start, 1 at its end.
+    forces : (6,) array
+        N, Vy, Vz, T, My, Mz there [N, N·m].
+    end_forces : (2, 6) array
+        The same at the member's start and end at that instant.
+    """
+
+    position: float
+    forces: FloatArray
+    end_forces: FloatArray
+
+
+@dataclass(frozen=True)
+class MemberUse:
+    """The worst check of a member over both ends of its elements and all instants."""
+
+    member: str
+    part: str
+    utilisation: float
+    check: str
+    by_check: Mapping[str, float]
+    buckling: Buckling
+    worst: Worst
+    von_mises_pa: float
+    """Largest von Mises stress, whatever the governing check [Pa]."""
+    covered: bool
+    """Whether D/t ≤ 120, the scope of clause 13."""
+
+
+@dataclass(frozen=True)
+class FrameUse:
+    """The worst use of every member and of every brace's joint."""
+
+    members: tuple[MemberUse, ...] = ()
+    joints: tuple[BraceUse, ...] = ()
+
+    def worse(self, other: FrameUse) -> FrameUse:
+        """Return the worst use over both sets of cases."""
+        if not self.members:
+            return other
+        return FrameUse(worst_uses(self.members, other.members), worst_joints(self.joints, other.joints))
+
+
+def member_uses(
+    assembly: Assembly,
+    displacement: FloatArray,
+    basis: DesignBasis | None = None,
+    *,
+    along: FloatArray | None = None,
+    pressure: FloatArray | None = None,
+) -> tuple[MemberUse, ...]:
+    """Return the use of every member; arguments as in ``frame_use``."""
+    return frame_use(assembly, displacement, basis, along=along, pressure=pressure).members
+
+
+def frame_use(
+    assembly: Assembly,
+    displacement: FloatArray,
+    basis: DesignBasis | None = None,
+    *,
+    along: FloatArray | None = None,
+    pressure: FloatArray | None = None,
+) -> FrameUse:
+    """Return the use of every member and of every brace's joint.
+
+    Parameters
+    ----------
+    displacement : (..., assembly.n_dof) of one load case, many, or every instant of a record [m, rad]
+    along : (n_elements, 12) or one for every case, optional
+        Loads spread along the elements, as for ``section_forces``.
+    pressure : (n_elements, 2), optional
+        Of water outside over what is inside, at both ends of the elements [Pa].
+
+    Raises
+    ------
+    InputError
+        If the edition is unknown, or nothing is a tube.
+    """
+    basis = DesignBasis() if basis is None else basis
+    if not assembly.structure.members:
+        raise InputError(
+            "no member is a tube",
+            field="members",
+            allowed="circular tubes (MType 1c)",
+            remedy="check other sections by their own code",
+        )
+    held = _Held(assembly, basis, pressure)
+    plans = joint_plans(assembly, basis.yield_strength_pa)
+    cases = displacement.reshape(-1, assembly.n_dof)
+    spread = None if along is None else along.reshape(-1, *along.shape[-2:])
+    worst = FrameUse()
+    for first in range(0, len(cases), _BLOCK):  # records are long
+        here = slice(first, first + _BLOCK)
+        loads = spread if spread is None or len(spread) == 1 else spread[here]
+        forces = section_forces(assembly, cases[here], along=loads)
+        joints = joint_uses(assembly, plans, forces, conservative=basis.conservative_joints)
+        worst = worst.worse(FrameUse(held.uses(forces), joints))
+    return worst
+
+
+class _Held:
+    """What the checks of members hold through all instants: tubes, strengths, pressure."""
+
+    def __init__(self, assembly: Assembly, basis: DesignBasis, pressure: FloatArray | None) -> None:
+        self.assembly, self.basis = assembly, basis
+        self.lengths = buckling_lengths(assembly, basis)
+        self.tube = _tubes(assembly, basis, self.lengths)
+        self.strength: Strength = strength(self.tube)
+        self.pressure = pressure if pressure is not None and (pressure > 0.0).any() else None
+        spacing = np.array([L for _, L in self.lengths])[assembly.mesh.member][:, None]
+        self.hoop: HoopStrength = hoop_strength(self.tube, spacing)
+
+    def uses(self, forces: SectionForces) -> tuple[MemberUse, ...]:
+        """Return the use of every member under section forces (n_cases, n_elements, 2)."""
+        stress, basis = section_stress(self.assembly, forces), self.basis
+        U = [*utilisation(self.strength, stress, C_m=basis.C_m, edition=basis.edition)]
+        if self.pressure is not None:
+            under = pressure_use(
+                self.tube, self.strength, self.hoop, stress, self.pressure[None], C_m=basis.C_m
+            )
+            U += [np.broadcast_to(one, U[0].shape) for one in under]
+        slender = (self.tube.D / self.tube.t)[:, 0]
+        return _uses(self.assembly, np.stack(U), forces, self.lengths, slender)
+
+
+def worst_uses(first: tuple[MemberUse, ...], second: tuple[MemberUse, ...]) -> tuple[MemberUse, ...]:
+    """Return the use of every member over two sets of cases."""
+    found = []
+    for a, b in zip(first, second, strict=True):
+        worse = a if a.utilisation >= b.utilisation else b
+        by_check = {name: max(a.by_check[name], b.by_check[name]) for name in a.by_check}
+        stress = max(a.von_mises_pa, b.von_mises_pa)
+        found.append(replace(worse, by_check=by_check, von_mises_pa=stress))
+    return tuple(found)
+
+
+def _uses(
+    assembly: Assembly, U: FloatArray, forces: SectionForces, lengths: list[Buckling], slender: FloatArray
+) -> tuple[MemberUse, ...]:
+    """Return the use of every member from U, (n_checks, n_cases, n_elements, 2)."""
+    uses = []
+    stress = von_mises_stress(assembly, forces).reshape(-1, assembly.mesh.start.size, 2)
+    for index, member in enumerate(assembly.structure.members):
+        mine = np.flatnonzero(assembly.mesh.member == index)
+        own = U[:, :, mine]
+        check, case, element, end = np.unravel_index(int(own.argmax()), own.shape)
+        N = np.stack([component[case, mine] for component in forces], axis=-1)
+        worst = Worst(float(element + end) / mine.size, N[element, end], np.stack([N[0, 0], N[-1, 1]]))
+        uses.append(
+            MemberUse(
+                member.name,
+                member.part,
+                float(own.max()),
+                list(ALL_CHECKS)[check],
+                dict(zip(ALL_CHECKS, map(float, own.max(axis=(1, 2, 3))), strict=False)),
+                lengths[index],
+                worst,
+                float(stress[:, mine].max()),
+                bool((slender[mine] <= MOST_SLENDER_WALL).all()),
+            )
+        )
+    return tuple(uses)
+
+
+def buckling_lengths(assembly: Assembly, basis: DesignBasis) -> list[Buckling]:
+    """Return K and L of every member."""
+    runs = columns(assembly.structure)
+    found = []
+    for m in assembly.structure.members:
+        own = 2.0 if runs[m.name].is_cantilever else 1.0
+        K = basis.K.get(m.name, basis.K.get(m.part, own))
+        found.append(Buckling(K, runs[m.name].length_m))
+    return found
+
+
+def section_stress(assembly: Assembly, forces: SectionForces) -> Stress:
+    """Return nominal stresses at both ends of every element, each (..., n_elements, 2) [Pa]."""
+    p = assembly.mesh.properties
+    D, _ = _dimensions(assembly)
+    Z_e = (2.0 * p.I / D)[:, None]
+    return Stress(
+        forces.axial / p.A[:, None],
+        forces.bending_y / Z_e,
+        forces.bending_z / Z_e,
+        2.0 * forces.shear / p.A[:, None],
+        forces.torsion * (0.5 * D / p.J)[:, None],
+    )
+
+
+def _dimensions(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
+    """Return outer diameter and wall of every element from its area and second moment."""
+    p = assembly.mesh.properties
+    outer, inner = 8.0 * p.I / p.A + 2.0 * p.A / np.pi, 8.0 * p.I / p.A - 2.0 * p.A / np.pi
+    D = np.sqrt(outer)
+    return D, 0.5 * (D - np.sqrt(np.maximum(inner, 0.0)))
+
+
+def _tubes(assembly: Assembly, basis: DesignBasis, lengths: list[Buckling]) -> Tube:
+    """Return every element's tube, (n_elements, 1)."""
+    KL = np.array([K * L for K, L in lengths])[assembly.mesh.member]
+    D, t = _dimensions(assembly)
+    rows = (D, t, assembly.mesh.properties.E, np.full_like(D, basis.yield_strength_pa), KL)
+    return Tube(*(row[:, None] for row in rows))

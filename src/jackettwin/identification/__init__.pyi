@@ -1,0 +1,18 @@
+from .automatic import identify as identify
+from .estimate import (
+    Identification as Identification,
+    ModalEstimate as ModalEstimate,
+    RealPole as RealPole,
+    Rejected as Rejected,
+    Spectrum as Spectrum,
+    Stabilisation as Stabilisation,
+)
+from .frequency_domain.fdd import fdd as fdd
+from .mac import mac as mac
+from .many_records.fusion import (
+    FusedIdentification as FusedIdentification,
+    FusedMode as FusedMode,
+    fuse as fuse,
+)
+from .settings import IdentificationSettings as IdentificationSettings
+from .subspace.ssi_cov import ssi_cov as ssi_cov

@@ -1,0 +1,1 @@
+"""Wind, blades and rotor."""

@@ -1,0 +1,151 @@
+r"""Power production: steady blade element momentum theory, and its damping.
+
+Each ring's inflow angle φ solves sin φ/(1 − a) = (V/Ωr) cos φ/(1 + a′) (Ning 2014, Wind Energy 17:1327),
+with Prandtl's losses at tip and hub and Buhl's (2005) thrust at high induction. The ring is taken normal to
+the wind: tilt, cone and yaw enter the loads that follow, not the induction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError
+from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, Linearised, Rotor, linearise
+
+
+@dataclass(frozen=True)
+class Control:
+    """What the controller holds: optimal tip-speed ratio, limits of the speed, rated (aerodynamic) power."""
+
+    rated_power_w: float
+    tip_speed_ratio: float
+    lowest_speed_rad_s: float
+    highest_speed_rad_s: float
+    efficiency: float = 0.957
+    """Generator power over aerodynamic power (IEA 15 MW: 95.756 %)."""
+    wind_speeds_m_s: tuple[float, float] | None = None
+    """Cut-in and cut-out; None if not known."""
+
+
+class OperatingPoint(NamedTuple):
+    """A steady operating point.
+
+    ``induced`` (n, 2) are the axial and tangential induced velocities at the stations [m/s].
+    """
+
+    wind_speed: float
+    rotor_speed: float
+    pitch: float
+    thrust: float
+    torque: float
+    induced: FloatArray
+
+    @property
+    def power(self) -> float:
+        """Aerodynamic power [W]."""
+        return self.torque * self.rotor_speed
+
+
+def steady_operation(
+    rotor: Rotor, wind_speed: float, *, rotor_speed: float, pitch: float, density: float = AIR_KG_M3
+) -> OperatingPoint:
+    """Return thrust, torque and induction of a rotor square to the wind.
+
+    Raises
+    ------
+    InputError
+        If wind or rotor stand still.
+    """
+    if not (wind_speed > 0.0 and rotor_speed > 0.0):
+        raise InputError(
+            "power production needs wind and a turning rotor",
+            field="wind_speed, rotor_speed",
+            value=(wind_speed, rotor_speed),
+            allowed="> 0",
+        )
+    blade = rotor.blade
+    r = (rotor.hub_radius + blade.z) * np.cos(rotor.cone) + blade.prebend * np.sin(rotor.cone)
+    tangential = rotor_speed * r
+    low, high = np.full(r.size, 1e-6), np.full(r.size, 0.5 * np.pi)
+    for _ in range(50):
+        phi = 0.5 * (low + high)
+        a, da = _induction(rotor, r, phi, pitch)
+        residual = np.sin(phi) / (1.0 - a) - wind_speed / tangential * np.cos(phi) / (1.0 + da)
+        low, high = np.where(residual < 0.0, phi, low), np.where(residual < 0.0, high, phi)
+    a, da = _induction(rotor, r, phi, pitch)
+    axial, swirl = wind_speed * (1.0 - a), tangential * (1.0 + da)
+    cl, cd = blade.coefficients(phi - pitch - blade.twist)
+    scale = 0.5 * density * (axial**2 + swirl**2) * blade.chord * blade.weight * rotor.n_blades
+    thrust = scale @ (cl * np.cos(phi) + cd * np.sin(phi))
+    torque = (scale * r) @ (cl * np.sin(phi) - cd * np.cos(phi))
+    # swirl turns against the rotor: it adds to the tangential wind
+    induced = np.stack([wind_speed * a, tangential * da], axis=1)
+    return OperatingPoint(wind_speed, rotor_speed, pitch, float(thrust), float(torque), induced)
+
+
+def _induction(rotor: Rotor, r: FloatArray, phi: FloatArray, pitch: float) -> tuple[FloatArray, FloatArray]:
+    """Return (a, a′) that momentum theory gives to a ring at inflow angle φ; Ning eqs. (10)–(17)."""
+    blade, B = rotor.blade, rotor.n_blades
+    cl, cd = blade.coefficients(phi - pitch - blade.twist)
+    sin, cos = np.sin(phi), np.cos(phi)
+    cn, ct = cl * cos + cd * sin, cl * sin - cd * cos
+    sigma = B * blade.chord / (2.0 * np.pi * r)
+    tip = np.maximum(rotor.radius - r, 1e-3) / (r * sin)
+    hub = np.maximum(r - rotor.hub_radius, 1e-3) / (rotor.hub_radius * sin)
+    F = np.ones_like(r)
+    for distance in (tip, hub):
+        F = F * 2.0 / np.pi * np.arccos(np.exp(-0.5 * B * distance))
+    F = np.maximum(F, 1e-4)
+    k, dk = sigma * cn / (4.0 * F * sin**2), sigma * ct / (4.0 * F * sin * cos)
+    g1 = 2.0 * F * k - (10.0 / 9.0 - F)
+    g2 = np.maximum(2.0 * F * k - F * (4.0 / 3.0 - F), 1e-12)
+    g3 = 2.0 * F * k - (25.0 / 9.0 - 2.0 * F)
+    near = np.abs(g3) < 1e-6
+    high = np.where(near, 1.0 - 0.5 / np.sqrt(g2), (g1 - np.sqrt(g2)) / np.where(near, 1.0, g3))
+    a = np.where(k <= 2.0 / 3.0, k / (1.0 + np.maximum(k, -0.5)), high)
+    return np.minimum(a, 0.999), np.clip(dk / (1.0 - np.minimum(dk, 0.9)), -0.9, 10.0)
+
+
+def operating_point(
+    rotor: Rotor, control: Control, wind_speed: float, *, density: float = AIR_KG_M3
+) -> OperatingPoint:
+    """Return the point the controller holds: optimal speed and zero pitch, then rated power by pitching."""
+    speed = float(
+        np.clip(
+            control.tip_speed_ratio * wind_speed / rotor.radius,
+            control.lowest_speed_rad_s,
+            control.highest_speed_rad_s,
+        )
+    )
+
+    def at(pitch: float) -> OperatingPoint:
+        return steady_operation(rotor, wind_speed, rotor_speed=speed, pitch=pitch, density=density)
+
+    wanted = control.rated_power_w / control.efficiency
+    if at(0.0).power <= wanted:
+        return at(0.0)
+    return at(float(brentq(lambda pitch: at(pitch).power - wanted, 0.0, np.radians(45.0), xtol=1e-8)))
+
+
+def operating_damping(
+    rotor: Rotor, operation: OperatingPoint, *, yaw_error: float = 0.0, density: float = AIR_KG_M3
+) -> Linearised:
+    """Return the rotor linearised about an operating point with its wake frozen.
+
+    The wake answers within R/V, about ten seconds for a large rotor: slow against the tower's modes. Pitch
+    and speed are held.
+    """
+    return linearise(
+        rotor,
+        operation.wind_speed,
+        pitch=operation.pitch,
+        yaw_error=yaw_error,
+        rotor_speed=operation.rotor_speed,
+        induced=operation.induced,
+        density=density,
+    )

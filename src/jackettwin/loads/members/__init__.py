@@ -1,0 +1,1 @@
+"""Hydrodynamic loads on members."""

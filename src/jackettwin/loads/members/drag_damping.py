@@ -1,0 +1,45 @@
+r"""How fast a random sea moves past the members, without simulating it: what their linear drag takes.
+
+.. math:: σ^2 = \tfrac{1}{2} \operatorname{tr}(P Σ), \qquad
+          Σ = \int S_η ω^2 (h^2\, d d^T + v^2\, e_z e_z^T)\, df
+
+P the projector across the member, h and v the depth functions of Airy waves, d the sea's heading: the mean
+variance of the two components across a member, as the simulation takes it from its time series. Radiation
+damping of the members is left out: below 1 Hz their diameters are too small to make waves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+
+from jackettwin.arrays import FloatArray
+from jackettwin.loads.members.morison import MorisonPoints, above_bed, drag_damping
+from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.loads.sea.waves import depth_functions, jonswap, wave_number
+
+_STEP_HZ = 1e-3
+_HIGHEST = 4.0
+"""The spectrum ends at this multiple of its peak, as a simulated sea does."""
+
+
+def velocity_std(grid: MorisonPoints, sea: SeaState, depth: float) -> FloatArray:
+    """Return the standard deviation of the water's velocity across the members, (n_points,) [m/s].
+
+    ``depth`` [m]; the sea is long-crested and wets members up to still water.
+    """
+    f = np.arange(1, int(_HIGHEST / sea.Tp / _STEP_HZ) + 1, dtype=np.float64) * _STEP_HZ
+    omega = 2.0 * np.pi * f
+    power = jonswap(f, Hs=sea.Hs, Tp=sea.Tp, gamma=sea.gamma) * _STEP_HZ * omega**2
+    horizontal, vertical = depth_functions(
+        wave_number(omega, depth), np.minimum(grid.points[:, 2], 0.0), depth
+    )
+    heading = np.array([np.cos(sea.direction), np.sin(sea.direction), 0.0])
+    along = np.einsum("i,nij,j->n", heading, grid.normal, heading)
+    variance = along * (horizontal**2 @ power) + grid.normal[:, 2, 2] * (vertical**2 @ power)
+    return np.asarray(np.sqrt(0.5 * variance))
+
+
+def sea_drag_damping(grid: MorisonPoints, sea: SeaState, depth: float) -> sp.csr_array:
+    """Return the linearised drag (Borgman 1967) on members that move in a random sea, (n_dof, n_dof)."""
+    return drag_damping(grid, velocity_std(grid, sea, depth) * above_bed(grid, depth))

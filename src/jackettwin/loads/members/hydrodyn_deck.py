@@ -1,0 +1,251 @@
+"""What an OpenFAST HydroDyn input file says of members: coefficients, marine growth, ends, filled members.
+
+Members are known by where their joints stand, so that the file may be that of any deck with the same members
+as the structure. Geometry, waves and everything of floating platforms are not read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise, takewhile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
+from jackettwin.errors import InputError
+from jackettwin.files.yaml import read_text
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable
+from jackettwin.loads.members.ends import EndCoefficients
+from jackettwin.structure import Structure
+
+_SAME_PLACE_M = 0.3
+"""Feet of HydroDyn's files reach a little into the bed, so that no water presses on their ends."""
+_SAME_DENSITY = 0.01
+_SIMPLE, _BY_DEPTH, _BY_MEMBER = 1, 2, 3
+
+
+class HydroDynMembers(NamedTuple):
+    """Coefficients and growth, coefficients of ends, and the members filled up to still water."""
+
+    coefficients: Coefficients
+    ends: EndCoefficients
+    flooded: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Tubes:
+    """The file's members: rows, ends (n, 2, 3) [m] from still water, and the structure's members they are."""
+
+    rows: tuple[SubdynRow, ...]
+    ends: Mapping[str, FloatArray]
+    names: Mapping[str, str]
+
+
+def read_hydrodyn(path: Path, structure: Structure, *, density_kg_m3: float) -> HydroDynMembers:
+    """Read a HydroDyn input file (v2.03 to OpenFAST 5) for the members of a structure.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or lacks a table, if its members are not the structure's where that matters, or
+        if it asks for what is not modelled: different ends, part-filled members, potential flow.
+    """
+    deck = Deck(path, tuple(read_text(path, what="HydroDyn file").splitlines()))
+    tubes = _tubes(deck, structure)
+    bare, grown = _simple(deck)
+    tables = (*_by_depth(deck, tubes), *_by_member(deck, tubes))
+    coefficients = Coefficients(
+        bare.drag, bare.added_mass, bare.pressure, _growth(deck), grown, tables, density_kg_m3
+    )
+    return HydroDynMembers(coefficients, _ends(deck), _flooded(deck, tubes, density_kg_m3))
+
+
+def _tubes(deck: Deck, structure: Structure) -> _Tubes:
+    joints = {
+        row["jointid"]: np.array([number(row, f"joint{axis}i", deck.path) for axis in "xyz"])
+        for row in deck.table("NJoints", required=True)
+    }
+    rows = deck.table("NMembers", required=True)
+    ends = {}
+    for row in rows:
+        at = f"line {row['#']}"
+        if row.get("proppot", "F").strip('"').upper().startswith("T"):
+            raise InputError("potential flow is not modelled", file=deck.path, field=f"{at}.PropPot")
+        try:
+            ends[row["memberid"]] = np.array([joints[row["mjointid1"]], joints[row["mjointid2"]]])
+        except KeyError as missing:
+            raise InputError(
+                "no such joint", file=deck.path, field=f"{at}.MJointID", value=missing.args[0]
+            ) from None
+    return _Tubes(rows, ends, _matched(ends, structure))
+
+
+def _matched(ends: Mapping[str, FloatArray], structure: Structure) -> dict[str, str]:
+    """Return the structure's member at the place of each of the file's; those that have none are left out."""
+    if not structure.members:
+        return {}
+    places = np.array([[structure.nodes[m.start], structure.nodes[m.end]] for m in structure.members])
+    places = places - [0.0, 0.0, structure.sea_level_z_m]
+    found = {}
+    for name, pair in ends.items():
+        off = [np.abs(places - way).max(axis=(1, 2)) for way in (pair, pair[::-1])]
+        nearest = np.minimum(*off)
+        if nearest.min() < _SAME_PLACE_M:
+            found[name] = structure.members[int(nearest.argmin())].name
+    return found
+
+
+def _simple(deck: Deck) -> tuple[Strip, Strip]:
+    """Return the simple coefficients without and with growth."""
+    for at, line in enumerate(deck.lines):
+        header = line.lower().split()
+        if header[:1] == ["simplcd"] and at + 2 < len(deck.lines):
+            words = dict(zip(header, deck.lines[at + 2].split(), strict=False))
+            row = SubdynRow(words | {"#": str(at + 3)}, deck.path)
+            return _strip(deck, row, "simpl", ""), _strip(deck, row, "simpl", "mg")
+    raise InputError("table is missing", file=deck.path, field="SimplCd", remedy="give a HydroDyn input file")
+
+
+def _strip(deck: Deck, row: SubdynRow, prefix: str, suffix: str) -> Strip:
+    cd, ca, cp = (number(row, f"{prefix}{name}{suffix}", deck.path) for name in ("cd", "ca", "cp"))
+    return Strip(cd, ca, cp)
+
+
+def _of_model(tubes: _Tubes, model: int) -> list[str]:
+    return [row["memberid"] for row in tubes.rows if row.get("mcoefmod", "1") == str(model)]
+
+
+def _names(deck: Deck, tubes: _Tubes, ids: list[str], field: str) -> tuple[str, ...]:
+    """Return the structure's members of some of the file's."""
+    for one in ids:
+        if one not in tubes.names:
+            raise InputError(
+                "the structure has no such member",
+                file=deck.path,
+                field=field,
+                value=one,
+                remedy="give the file of this structure, or its coefficients in the scenario",
+            )
+    return tuple(tubes.names[one] for one in ids)
+
+
+def _by_depth(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
+    ids = _of_model(tubes, _BY_DEPTH)
+    rows = deck.table("NCoefDpth", "NCoefDpthCyl")
+    if not ids:
+        return ()
+    if not rows:
+        raise InputError("table is missing", file=deck.path, field="NCoefDpth", remedy="give its rows")
+    members = () if len(ids) == len(tubes.rows) else _names(deck, tubes, ids, "MCoefMod")
+    return (
+        StripTable(
+            tuple(number(row, "dpth", deck.path) for row in rows),
+            tuple(_strip(deck, row, "dpth", "") for row in rows),
+            tuple(_strip(deck, row, "dpth", "mg") for row in rows),
+            members,
+        ),
+    )
+
+
+def _by_member(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
+    """Return tables of single members: coefficients at both ends, straight in between."""
+    wanted = _of_model(tubes, _BY_MEMBER)
+    rows = {next(iter(row.values())): row for row in deck.table("NCoefMembers", "NCoefMembersCyl")}
+    tables = []
+    for one in wanted:
+        if one not in rows:
+            raise InputError("member is missing", file=deck.path, field="NCoefMembers", value=one)
+        heights = tubes.ends[one][:, 2]
+        bare, grown = (
+            [_strip(deck, rows[one], "member", f"{mg}{end}") for end in (1, 2)] for mg in ("", "mg")
+        )
+        if abs(heights[0] - heights[1]) < 1e-6:  # level: the mean of both ends
+            z: tuple[float, ...] = (float(heights[0]),)
+            bare, grown = [_mean(bare)], [_mean(grown)]
+        else:
+            z = (float(heights[0]), float(heights[1]))
+        tables.append(StripTable(z, tuple(bare), tuple(grown), _names(deck, tubes, [one], "NCoefMembers")))
+    return tuple(tables)
+
+
+def _mean(strips: list[Strip]) -> Strip:
+    drag, added, pressure = np.mean([strip.row() for strip in strips], axis=0)
+    return Strip(float(drag), float(added), float(pressure))
+
+
+def _growth(deck: Deck) -> tuple[GrowthBand, ...]:
+    """Return the bands between the heights of the table, from the top."""
+    columns = ("mgdpth", "mgthck", "mgdens")
+    rows = [[number(row, key, deck.path) for key in columns] for row in deck.table("NMGDepths")]
+    return tuple(
+        GrowthBand(upper[0], lower[0], upper[1], lower[1], upper[2], lower[2])
+        for upper, lower in pairwise(sorted(rows, reverse=True))
+    )
+
+
+def _ends(deck: Deck) -> EndCoefficients:
+    rows = {row["axcoefid"]: row for row in deck.table("NAxCoef")}
+    used = {row.get("jointaxid", "1") for row in deck.table("NJoints")}
+    found = {
+        tuple(number(rows[one], key, deck.path) for key in ("axcp", "axca", "axcd"))
+        for one in used & set(rows)
+    }
+    if len(found) > 1:
+        raise InputError(
+            "joints with different axial coefficients",
+            file=deck.path,
+            field="JointAxID",
+            value=sorted(used),
+            remedy="give one set, or the rest of the file's coefficients in the scenario",
+        )
+    pressure, added, drag = found.pop() if found else (0.0, 0.0, 0.0)
+    return EndCoefficients(pressure, added, drag)
+
+
+def _flooded(deck: Deck, tubes: _Tubes, density: float) -> tuple[str, ...]:
+    """Return the filled members; a row is a count, members, level and density.
+
+    The list is believed, not its count: public decks number the groups there.
+    """
+    ids: list[str] = []
+    for row in deck.table("NFillGroups"):
+        at = f"line {row['#']}"
+        words = list(takewhile(_is_entry, deck.lines[int(row["#"]) - 1].split()))
+        if len(words) < 4:
+            raise InputError(
+                "row is too short", file=deck.path, field=f"{at}.FillMList", value=" ".join(words)
+            )
+        level, filling = words[-2:]
+        if to_float(level, deck.path, f"{at}.FillFSLoc") < 0.0:
+            raise InputError(
+                "members filled below still water", file=deck.path, field=f"{at}.FillFSLoc", value=level
+            )
+        if not _is_default(filling):
+            weight = to_float(filling, deck.path, f"{at}.FillDens")
+            if abs(weight / density - 1.0) > _SAME_DENSITY:
+                raise InputError(
+                    "members filled with something else than this water",
+                    file=deck.path,
+                    field=f"{at}.FillDens",
+                    value=weight,
+                    allowed=f"{density:g}",
+                )
+        ids += words[1:-2]
+    return tuple(dict.fromkeys(_names(deck, tubes, ids, "FillMList")))
+
+
+def _is_default(word: str) -> bool:
+    return word.strip('"').lower() == "default"
+
+
+def _is_entry(word: str) -> bool:
+    """Whether a word is a number or a default: what follows is a comment."""
+    try:
+        float(word)
+    except ValueError:
+        return _is_default(word)
+    return True

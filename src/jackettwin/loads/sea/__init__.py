@@ -1,0 +1,1 @@
+"""Waves, current and the sea during a record."""

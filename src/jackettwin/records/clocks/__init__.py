@@ -1,0 +1,1 @@
+"""Clocks of loggers: time grids, delays between channels, lost time."""

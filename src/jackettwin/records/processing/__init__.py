@@ -1,0 +1,1 @@
+"""Filters, axes, tones and merging: a record in, a record out."""

@@ -1,0 +1,236 @@
+"""How good a record is: every fault found, in plain words, and whether it can be repaired."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.findings import Finding
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.clocks.findings import clock_findings, clocks_of, in_step
+from jackettwin.records.processing import filters
+from jackettwin.records.quality import faults, sensor_polarity
+from jackettwin.records.quality.changes import SensorChange, changes, described
+from jackettwin.records.quality.channel_findings import ChannelQuality, channel_findings
+from jackettwin.records.quality.units import wrong_units
+from jackettwin.records.record import LARGEST
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from jackettwin.records.clocks.found import LoggerClocks
+    from jackettwin.records.record import Record
+
+
+STUCK_S = 1.0
+"""Shortest frozen reading [s]."""
+MOST_SPIKES = 0.02
+"""Share of samples beyond which outliers are the signal's nature, not spikes to remove."""
+EMPTY = 0.9
+"""Share of missing samples beyond which a channel carries nothing."""
+DRIFT_CYCLES = 5.0
+"""Drift is what is slower than this many cycles a record."""
+MOST_DRIFT = 1e9
+"""A channel that drifts over more rms than this holds a drift and its rounding, no vibration."""
+PARTS = 10
+"""Parts of a record whose rms are compared."""
+WEAK_RATIO = 1.0 / 300.0
+"""Rms over the median of the channels of one quantity, below which a sensor is hardly alive, and above whose
+inverse it is in another unit."""
+JITTER = 0.05
+"""Clock jitter as a share of the step that deserves a word."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """The quality of a record.
+
+    Attributes
+    ----------
+    score : float
+        Mean score of the vibration channels: 1 is faultless, 0 carries nothing.
+    channels : tuple of ChannelQuality
+        In the record's order.
+    findings : tuple of Finding
+    suspect : (n_channels, n_samples) bool array
+        Samples that ``repair`` declares missing: spikes, frozen and unreadable ones, the shorter side of a
+        change.
+    clocks : LoggerClocks
+        Channels that ``repair`` brings into step with the others, and the stretch without a jump of a clock.
+    """
+
+    score: float
+    channels: tuple[ChannelQuality, ...]
+    findings: tuple[Finding, ...]
+    suspect: BoolArray
+    clocks: LoggerClocks
+
+    def summary(self) -> dict[str, Any]:
+        """Return everything but the samples as plain JSON data."""
+        return {
+            "score": self.score,
+            "findings": [f.document for f in self.findings],
+            "channels": [asdict(channel) for channel in self.channels],
+        }
+
+
+def assess(record: Record) -> Quality:
+    """Look for gaps, spikes, clipping, frozen and dead channels, drift, swapped signs and a bad clock.
+
+    Never fails, whatever the samples are.
+    """
+    unreadable = np.isinf(record.data) | (np.abs(record.data) > LARGEST)
+    record = replace(record, data=np.where(unreadable, np.nan, record.data))
+    held = [faults.hold_length(row) for row in record.data]
+    spikes = [faults.spikes(row, hold=hold) for row, hold in zip(record.data, held, strict=True)]
+    slow_free = _without_slow(record, spikes)
+    clocks = clocks_of(record, slow_free)
+    # channels are held against each other in step, where they are
+    together = in_step(slow_free, clocks, record.sample_rate_hz)
+    groups = list(sensor_polarity.parallel_groups(record, together[:, clocks.start : clocks.stop]))
+    swapped = sensor_polarity.swapped(record, groups)
+    changed = _changed(record, together)
+    judged = [
+        _judge(record, i, held[i], spikes[i], slow_free[i], swapped.get(channel.name), changed.get(i))
+        for i, channel in enumerate(record.channels)
+    ]
+    channels = tuple(quality for quality, _, _ in judged)
+    findings = [finding for _, _, found in judged for finding in found]
+    units = wrong_units(record, groups)
+    findings += [Finding("unit", name, wrong.words) for name, wrong in units.items()]
+    findings += [Finding("file", params={"text": str(text)}) for text in record.metadata.get("remarks", ())]
+    findings += [*_unreadable(record, unreadable), *_weak(record, channels), *_clock(record)]
+    findings += clock_findings(record, clocks)
+    vibrating = [q.score for q, c in zip(channels, record.channels, strict=True) if c.quantity in VIBRATIONS]
+    scores = vibrating or [q.score for q in channels]
+    suspect = np.array([mask for _, mask, _ in judged], dtype=np.bool_).reshape(record.data.shape)
+    score = float(np.mean(scores)) if scores else 0.0
+    return Quality(score, channels, tuple(findings), suspect | unreadable, clocks)
+
+
+def shortest_stuck(sample_rate_hz: float) -> int:
+    """Return the samples of the shortest frozen reading."""
+    return max(int(STUCK_S * sample_rate_hz), 20)
+
+
+def _without_slow(record: Record, spikes: list[BoolArray]) -> FloatArray:
+    """Return the data without mean and drift, spikes taken out lest they hide it."""
+    data = record.data.copy()
+    for row, mask in zip(data, spikes, strict=True):
+        row[mask] = np.nan
+    return filters.remove_slow(data, DRIFT_CYCLES / max(data.shape[1], 1))
+
+
+def _changed(record: Record, slow_free: FloatArray) -> dict[int, SensorChange]:
+    """Return by row the vibration channels that change while the record runs."""
+    rows = [i for i, channel in enumerate(record.channels) if channel.quantity in VIBRATIONS]
+    return {rows[c.row]: replace(c, row=rows[c.row]) for c in changes(slow_free[rows])}
+
+
+def _judge(
+    record: Record,
+    i: int,
+    hold: int,
+    spikes: BoolArray,
+    slow_free: FloatArray,
+    sign: bool | None,
+    change: SensorChange | None,
+) -> tuple[ChannelQuality, BoolArray, list[Finding]]:
+    """Return the quality of one channel, its suspect samples and its findings."""
+    channel, y = record.channels[i], record.data[i]
+    n, vibrates = max(len(y), 1), channel.quantity in VIBRATIONS
+    missing = ~np.isfinite(y)
+    longest = faults.runs(missing)[:, 1].max(initial=0)
+    empty = bool(missing.mean() > EMPTY) if len(y) else True
+    dead = empty or (vibrates and faults.is_constant(y))
+    none = np.zeros(len(y), dtype=np.bool_)
+    look = vibrates and not dead
+    held = hold if look else 1
+    spikes = spikes if look else none
+    clipped = faults.clipped(y) if look else none
+    stuck = faults.stuck(y, shortest_stuck(record.sample_rate_hz)) if look else none
+    outliers = bool(spikes.mean() > MOST_SPIKES) if look else False
+    # a frozen reading is told already
+    change = None if stuck.any() or not look else change
+    changed = none.copy()
+    if change is not None and change.certain:
+        changed[change.start : change.stop] = True
+    kept = np.isfinite(slow_free)
+    drift = faults.drift_ratio(np.where(kept, y - slow_free, np.nan), slow_free) if look else 0.0
+    quality = ChannelQuality(
+        name=channel.name,
+        score=0.0,
+        dead=dead or drift > MOST_DRIFT,
+        gap_share=float(missing.sum()) / n,
+        longest_gap_s=float(longest) / record.sample_rate_hz,
+        spike_share=float(spikes.sum()) / n,
+        clipped_share=float(clipped.sum()) / n,
+        stuck_share=float(stuck.sum()) / n,
+        changed_share=float(changed.sum()) / n,
+        hold_length=held,
+        drift_ratio=drift,
+        unsteadiness=faults.unsteadiness(np.where(spikes, np.nan, slow_free), PARTS) if look else 1.0,
+        swapped_sign=bool(sign),
+        quantiser_steps=_steps(y, slow_free) if look else 0.0,
+    )
+    findings = list(channel_findings(channel, quality, empty=empty, outliers=outliers, sign=sign))
+    if change is not None and not quality.dead:
+        code, what = (
+            "changed" if change.certain else "changed_unclear",
+            described(change, 1.0 / record.sample_rate_hz),
+        )
+        findings.append(Finding(code, channel.name, {"what": what}, repaired=change.certain))
+    suspect = (none if outliers else spikes) | stuck | changed
+    return replace(quality, score=_score(quality, sign)), suspect, findings
+
+
+def _steps(y: FloatArray, slow_free: FloatArray) -> float:
+    """Return the step of a reading over the rms of its vibration."""
+    size = float(np.nanstd(slow_free)) if np.isfinite(slow_free).any() else 0.0
+    return faults.quantiser_step(y) / size if size > 0.0 else 0.0
+
+
+def _score(q: ChannelQuality, sign: bool | None) -> float:
+    """Return 1 for a faultless channel, less for every fault, 0 for a dead one."""
+    if q.dead:
+        return 0.0
+    lost = 1.0 - min(
+        1.0, q.gap_share + q.changed_share + 10.0 * (q.spike_share + q.clipped_share + q.stuck_share)
+    )
+    doubt = (0.5 if sign is False else 1.0) * (0.9 if sign else 1.0) * (0.7 if q.hold_length > 1 else 1.0)
+    return lost * doubt
+
+
+def _unreadable(record: Record, unreadable: BoolArray) -> Iterator[Finding]:
+    """Yield channels with infinite or absurdly large samples."""
+    for channel, row in zip(record.channels, unreadable, strict=True):
+        if row.any():
+            params = {"samples": int(row.sum()), "limit": LARGEST}
+            yield Finding("unreadable", channel.name, params, repaired=True)
+
+
+def _weak(record: Record, channels: tuple[ChannelQuality, ...]) -> Iterator[Finding]:
+    """Yield channels whose rms is a tiny part, or a huge multiple, of that of their like."""
+    live = [i for i, q in enumerate(channels) if not q.dead and record.channels[i].quantity in VIBRATIONS]
+    rms = {i: float(np.nanstd(record.data[i])) for i in live}
+    for i in live:
+        like = [rms[j] for j in live if record.channels[j].quantity == record.channels[i].quantity]
+        ratio = rms[i] / float(np.median(like))
+        if not WEAK_RATIO <= ratio <= 1.0 / WEAK_RATIO:
+            yield Finding("weak" if ratio < 1.0 else "strong", channels[i].name, {"ratio": float(ratio)})
+
+
+def _clock(record: Record) -> Iterator[Finding]:
+    """Yield what the time stamps of the file said, if it had any."""
+    clock = record.metadata.get("clock")
+    if not isinstance(clock, dict):
+        return
+    jitter = float(clock.get("jitter_s") or 0.0) * record.sample_rate_hz
+    if jitter > JITTER:
+        yield Finding("stamps_jitter", params={"share": jitter})
+    for what in ("missing", "disordered"):
+        if clock.get(what):
+            yield Finding(f"stamps_{what}", params={"samples": int(clock[what])})

@@ -1,0 +1,183 @@
+"""Detectors of what loggers do to a signal. Pure functions; NaN marks a missing sample.
+
+Every detector takes one channel, a vector of samples, and says what it saw; none changes it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from jackettwin.arrays import BoolArray, FloatArray, Int64Array
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.record import SMALLEST
+
+SPIKE_WINDOW = 9
+"""A spike is shorter than half of this [samples]."""
+SPIKE_BLOCK = 256
+"""Samples over which the usual departure is taken, beside the whole channel."""
+SPIKE_SIGMAS = 8.0
+"""Robust standard deviations from the local median; 1e-15 for Gaussian noise."""
+CREST_SIGMAS = 4.0
+"""Robust standard deviations of the window itself: a smooth crest, which the median cuts, reaches 0.8."""
+RAIL_RATIO = 5.0
+"""Samples at a rail per sample at the levels next to it; a pure sine reaches 3."""
+LEAST_AT_RAIL = 5
+"""Fewer samples at the extreme say nothing."""
+STUCK_RUN_RATIO = 50.0
+"""Run of equal values, in units of the channel's usual run, that is a frozen reading."""
+MOST_UNSTEADY = 1e9
+"""What is said of a signal that is silent but for one part."""
+
+
+MOST_LEVELS = 64
+"""A channel with more levels than this is not read coarsely."""
+FEWEST_SAMPLES_A_LEVEL = 20
+"""Fewer samples a level may have few levels by chance."""
+
+
+def quantiser_step(y: FloatArray) -> float:
+    """Return the step between the levels of a channel that takes few, else 0.
+
+    >>> float(quantiser_step(np.tile([0.0, 0.5, 1.0, 2.0], 100)))
+    0.5
+    """
+    finite = y[np.isfinite(y)]
+    levels = np.unique(finite)
+    if len(levels) < 2 or len(levels) > min(MOST_LEVELS, len(finite) / FEWEST_SAMPLES_A_LEVEL):
+        return 0.0
+    return float(np.min(np.diff(levels)))
+
+
+def runs(mask: BoolArray) -> Int64Array:
+    """Return start and length of every run of True.
+
+    >>> runs(np.array([True, False, True, True])).tolist()
+    [[0, 1], [2, 2]]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return np.column_stack([edges[::2], edges[1::2] - edges[::2]]).astype(np.int64)
+
+
+def is_constant(y: FloatArray) -> bool:
+    """Tell whether no two samples differ by more than rounding, or there are fewer than two."""
+    finite = y[np.isfinite(y)]
+    if len(finite) < 2:
+        return True
+    return bool(np.ptp(finite) <= max(4.0 * np.spacing(np.abs(finite).max()), SMALLEST))
+
+
+def spikes(y: FloatArray, *, hold: int = 1) -> BoolArray:
+    """Mark samples that leave their neighbours for less than five samples and by far.
+
+    Far is ``SPIKE_SIGMAS`` robust standard deviations of the departures from the running median, of
+    the whole channel and of the surroundings (a gust is no spike), ``CREST_SIGMAS`` of the window (nor is
+    the crest of a smooth wave, whose flanks the median follows), and one robust standard deviation of the
+    signal: smaller ones do no harm. ``hold`` is the number of samples each value is repeated.
+    """
+    finite = np.isfinite(y)
+    if finite.sum() < 2 * SPIKE_WINDOW or is_constant(y):
+        return np.zeros(len(y), dtype=np.bool_)
+    x = bridge(y)
+    median = ndimage.median_filter(x, size=(SPIKE_WINDOW - 1) * hold + 1, mode="nearest")
+    departure = np.abs(x - median)
+    usual = np.maximum(_surroundings(departure), np.median(departure[finite]))
+    quartiles = np.percentile(y[finite], [25.0, 75.0])
+    least = max(float(quartiles[1] - quartiles[0]) / 1.349, 1e-12 * float(np.ptp(y[finite])))
+    far: BoolArray = finite & (departure > np.maximum(SPIKE_SIGMAS * 1.4826 * usual, least))
+    at = np.flatnonzero(far)
+    far[at] = departure[at] > CREST_SIGMAS * 1.4826 * _spread_around(x, at, hold)
+    return far
+
+
+def _spread_around(x: FloatArray, at: Int64Array, hold: int) -> FloatArray:
+    """Return the median departure from the median within the window around some samples."""
+    reach = hold * np.arange(-(SPIKE_WINDOW // 2), SPIKE_WINDOW // 2 + 1)
+    window = x[np.clip(at[:, None] + reach, 0, len(x) - 1)]
+    out: FloatArray = np.median(np.abs(window - np.median(window, axis=1, keepdims=True)), axis=1)
+    return out
+
+
+def _surroundings(departure: FloatArray) -> FloatArray:
+    """Return for every sample the largest median of its block and the two beside it; the last goes on."""
+    n_blocks = max(len(departure) // SPIKE_BLOCK, 1)
+    block = len(departure) // n_blocks
+    medians = np.median(departure[: n_blocks * block].reshape(n_blocks, block), axis=1)
+    wide = np.repeat(ndimage.maximum_filter1d(medians, 3, mode="nearest"), block)
+    return np.pad(wide, (0, len(departure) - len(wide)), mode="edge")
+
+
+def clipped(y: FloatArray) -> BoolArray:
+    """Mark samples at a rail: many equal extremes with few samples at the levels beside them."""
+    mask = np.zeros(len(y), dtype=np.bool_)
+    finite = np.isfinite(y)
+    levels, counts = np.unique(y[finite], return_counts=True)
+    if len(levels) < 2 * LEAST_AT_RAIL:
+        return mask
+    for rail, at_rail, beside in (
+        (levels[-1], counts[-1], counts[-4:-1]),
+        (levels[0], counts[0], counts[1:4]),
+    ):
+        if at_rail >= LEAST_AT_RAIL and at_rail > RAIL_RATIO * max(float(np.mean(beside)), 1.0):
+            mask |= y == rail
+    return mask
+
+
+def stuck(y: FloatArray, shortest: int) -> BoolArray:
+    """Mark runs of one value, at least ``shortest`` samples and far longer than usual, in a live channel."""
+    mask = np.zeros(len(y), dtype=np.bool_)
+    if is_constant(y):
+        return mask
+    same = np.concatenate([[False], np.diff(y) == 0.0])
+    found = runs(same)
+    if not len(found):
+        return mask
+    # A run of n equal values shows as n − 1 repetitions; values never repeated are runs of one.
+    usual = len(y) / max(len(y) - int(same.sum()), 1)
+    for start, length in found:
+        if length + 1 >= max(shortest, STUCK_RUN_RATIO * usual):
+            mask[start - 1 : start + length] = True
+    return mask
+
+
+def hold_length(y: FloatArray) -> int:
+    """Return how many samples every value is repeated: above 1, the channel has a lower rate."""
+    finite = np.isfinite(y)
+    if finite.sum() < 20 or is_constant(y):
+        return 1
+    changes = np.flatnonzero(np.diff(y[finite]) != 0.0)
+    steps = np.diff(changes)
+    if len(steps) < 5:
+        return 1
+    usual = int(np.median(steps))
+    regular = float(np.mean(steps % max(usual, 1) == 0))
+    return usual if usual > 1 and regular > 0.9 else 1
+
+
+def drift_ratio(slow: FloatArray, fast: FloatArray) -> float:
+    """Return the range of the slow part over the standard deviation of the fast part."""
+    finite = np.isfinite(slow) & np.isfinite(fast)
+    if finite.sum() < 2:
+        return 0.0
+    scale = float(np.std(fast[finite]))
+    return float(np.ptp(slow[finite])) / scale if scale > 0.0 else 0.0
+
+
+def unsteadiness(y: FloatArray, n_parts: int) -> float:
+    """Return the rms of the loudest part of a channel over the median of its parts; 1 if it is steady.
+
+    Parameters
+    ----------
+    y : (n_samples,)
+        Zero mean; NaN marks missing samples.
+
+    Examples
+    --------
+    >>> unsteadiness(np.array([1.0, -1.0, 1.0, -1.0, 5.0, -5.0]), 3)
+    5.0
+    """
+    parts = [part[np.isfinite(part)] for part in np.array_split(y, n_parts)]
+    rms = np.array([np.sqrt(np.mean(part**2)) for part in parts if len(part)])
+    if len(rms) < n_parts or not rms.max() > 0.0:
+        return 1.0
+    return float(min(rms.max() / max(float(np.median(rms)), SMALLEST), MOST_UNSTEADY))

@@ -1,0 +1,45 @@
+"""Whether a record is long enough for what moves in it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.records.processing.filters import bridge
+
+CYCLES = 30
+"""Motion of fewer cycles a record is not told: its damping is uncertain by a factor of two at 2 %."""
+FROM_CYCLES = 3
+"""Slower than this is drift."""
+SHARE = 0.05
+"""Of the power, of any channel, that is motion of so few cycles: then what is faster is not all there is.
+White
+noise of a rate for which thirty cycles are little has less."""
+SHORT_S = 120.0
+"""Longer records hold thirty cycles of whatever structure; what is slower is wind, waves and drift."""
+
+
+def slow_share(y: FloatArray, duration_s: float) -> float:
+    """Return the largest share of a channel's power that is too slow for a short record; 0 for long ones.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        NaN marks a missing sample.
+
+    Examples
+    --------
+    >>> t = np.arange(600) / 20.0
+    >>> slow, fast = np.sin(2 * np.pi * 0.2 * t), np.sin(2 * np.pi * 3.0 * t)
+    >>> round(slow_share(np.array([slow + fast]), 30.0), 2), slow_share(np.array([fast]), 30.0) < 0.01
+    (0.5, True)
+    """
+    if duration_s > SHORT_S or y.shape[1] < 4 * CYCLES:
+        return 0.0
+    x = np.array([bridge(row) for row in y])
+    t = np.linspace(-1.0, 1.0, x.shape[1])
+    x = x - np.array([np.polyval(np.polyfit(t, row, 1), t) for row in x])
+    power = np.abs(np.fft.rfft(x * np.hanning(x.shape[1]), axis=1)) ** 2
+    total = power[:, FROM_CYCLES:].sum(axis=1)
+    share = power[:, FROM_CYCLES : CYCLES + 1].sum(axis=1) / np.where(total > 0.0, total, 1.0)
+    return float(share.max(initial=0.0))

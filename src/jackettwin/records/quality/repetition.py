@@ -1,0 +1,41 @@
+"""Samples that stand in a file more than once, in every channel alike."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.quality import faults
+from jackettwin.records.record import Record
+
+
+def without_repeats(record: Record) -> tuple[Record, int]:
+    """Return a record with each sample once, at the lower rate, and how often it stood there.
+
+    Only where all vibration channels that vary repeat alike; else the record as it is, and 1.
+
+    Examples
+    --------
+    >>> from jackettwin.records import Channel
+    >>> data = np.repeat(np.random.default_rng(1).normal(size=(2, 50)), 3, axis=1)
+    >>> once, times = without_repeats(Record(data, 30.0, (Channel("a"), Channel("b"))))
+    >>> times, once.sample_rate_hz, once.data.shape
+    (3, 10.0, (2, 50))
+    """
+    rows = [
+        i
+        for i, channel in enumerate(record.channels)
+        if channel.quantity in VIBRATIONS and not faults.is_constant(record.data[i])
+    ]
+    times = {faults.hold_length(record.data[i]) for i in rows}
+    if len(times) != 1 or times == {1}:
+        return record, 1
+    (each,) = times
+    # the first of each group of equal samples, where most channels change
+    change = np.nonzero(np.diff(record.data[rows], axis=1))[1] + 1
+    first = int(np.bincount(change % each, minlength=each).argmax())
+    return replace(
+        record, data=record.data[:, first::each], sample_rate_hz=record.sample_rate_hz / each
+    ), each

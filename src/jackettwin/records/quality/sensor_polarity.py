@@ -1,0 +1,268 @@
+"""Which channels point the wrong way, where a record can tell.
+
+No record alone says which way a sensor points: turn it, and its row of every mode shape changes sign, which
+is as good a mode shape. It takes knowledge of the structure, and there are two pieces of it:
+
+* two parallel sensors at one place (one ``node``, or one height on the tower axis) move together always;
+* in the first bending mode of a tower, and below it, every point of its axis moves the same way. Channels
+  with a ``height_m`` must be in phase in the strongest narrow band of displacement, where that mode or what
+  is slower prevails (higher bending modes move top and middle against each other by nature).
+
+On a bridge, or beside the axis of a building, neighbours may move against each other from the first mode on:
+nothing is said there. Neither is anything said where the same channels move together in a band nearby, which
+those of a tower do not: then torsion, or another structure than a tower, parts them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.processing.transforms import hann_lines
+from jackettwin.records.quality import faults
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Channel, Record
+
+
+BAND = 0.15
+"""Half width of the band around the strongest line, as a share of its frequency."""
+LEAST_CYCLES = 20
+"""The band's frequency must fit this often into the record."""
+CERTAIN = 0.9
+"""Coherency in the band, in absolute value, from which a sign is certain."""
+WIDTH = 1.3
+"""Of the bands in which a sign is looked for again: upper over lower edge."""
+NEARBY = 2.5
+"""Bands within this factor of the strongest are nearby: a tower's second bending mode is farther."""
+FEWEST_BANDS = 4
+"""Bands in which sensors at one place must move together."""
+UNCLEAR = 0.3
+"""Coherency, in absolute value, that noise alone reaches in a band."""
+SAME_SIZE = 1.25
+"""Largest ratio of the amplitudes of two sensors at one place."""
+PARALLEL = 0.98
+"""Cosine of the angle between channels that measure the same."""
+
+
+@dataclass(frozen=True)
+class SharedMotion:
+    """How parallel channels move together.
+
+    Attributes
+    ----------
+    rows : list of int
+        Of the record.
+    peak : float
+        The strongest line of displacement.
+    size : (n,) array
+        Amplitude around that line.
+    coherency : (n, n) array
+        Its real part around that line, signs as the directions say.
+    bands : list of (float, (n, n) array)
+        Middle and coherency of the bands over all frequencies.
+    """
+
+    rows: list[int]
+    peak: float
+    size: FloatArray
+    coherency: FloatArray
+    bands: list[tuple[float, FloatArray]]
+
+
+@dataclass(frozen=True)
+class ParallelChannels:
+    """Parallel channels at one place (``heights`` is None), or at several heights of a tower."""
+
+    seen: SharedMotion
+    heights: list[float] | None = None
+
+
+def parallel_groups(record: Record, y: FloatArray) -> Iterator[ParallelChannels]:
+    """Yield the parallel accelerations whose places say how they move together.
+
+    Parameters
+    ----------
+    record : Record
+    y : (n_channels, n_samples)
+        Its samples without mean and drift; NaN marks missing ones.
+    """
+    for rows, senses in _parallel(record, y):
+        places = [_place(record.channels[i]) for i in rows]
+        if all(place is None for place in places):
+            continue
+        spectra = windowed_spectra(y[rows] * senses[:, None])
+        for together in _one_place(places):
+            yield ParallelChannels(_together(rows, together, spectra))
+        tower = [k for k, place in enumerate(places) if isinstance(place, float)]
+        if len({places[k] for k in tower}) > 1:
+            heights = [place for k in tower if isinstance(place := places[k], float)]
+            yield ParallelChannels(_together(rows, tower, spectra), heights)
+
+
+def swapped(record: Record, groups: Sequence[ParallelChannels]) -> dict[str, bool]:
+    """Return channels that move against parallel ones: True if it is certainly they, False if in doubt.
+
+    Parameters
+    ----------
+    record : Record
+    groups : of ``parallel_groups``
+    """
+    found: dict[str, bool] = {}
+    for group in groups:
+        against = (
+            _against_same_place(group.seen)
+            if group.heights is None
+            else _against_tower(group.seen, group.heights)
+        )
+        found.update({record.channels[group.seen.rows[i]].name: certain for i, certain in against})
+    return found
+
+
+def band_coherency(inside: ComplexArray) -> FloatArray:
+    """Return the real part of the coherency between rows, from lines of their spectra.
+
+    Returns
+    -------
+    (n_channels, n_channels) array
+        Between −1 and 1; zeros where a row does not move.
+    """
+    cross = np.real(inside @ inside.conj().T)
+    power = np.sqrt(np.outer(np.diag(cross), np.diag(cross)))
+    coherency: FloatArray = np.where(power > 0.0, cross / np.where(power > 0.0, power, 1.0), 0.0)
+    return coherency
+
+
+def strongest_line(spectra: ComplexArray) -> int:
+    """Return the line around which the channels' displacements, each of unit power, are strongest.
+
+    Parameters
+    ----------
+    spectra : (n_channels, n_lines) complex
+        Transforms of accelerations, more than ``LEAST_CYCLES`` lines.
+    """
+    k = np.arange(LEAST_CYCLES, spectra.shape[1])
+    displacement = np.abs(spectra[:, LEAST_CYCLES:] / k**2) ** 2
+    total = displacement.sum(axis=1, keepdims=True)
+    common = np.sum(displacement / np.where(total > 0.0, total, 1.0), axis=0)
+    return int(k[np.argmax(np.convolve(common, np.ones(5), mode="same"))])
+
+
+def around(spectra: ComplexArray, peak: float) -> ComplexArray:
+    """Return the lines of the narrow band around one."""
+    k = np.arange(spectra.shape[1])
+    return spectra[:, np.abs(k - peak) <= max(BAND * peak, 3)]
+
+
+def windowed_spectra(y: FloatArray) -> ComplexArray:
+    """Return the transforms of rows behind a Hann window, gaps bridged."""
+    x = np.apply_along_axis(bridge, 1, y)
+    return hann_lines(x - x.mean(axis=1, keepdims=True))[0]
+
+
+def against_majority(coherency: FloatArray) -> tuple[list[int], bool]:
+    """Return the rows in counterphase with the others, and whether that is certain.
+
+    Certain takes at least three rows whose coherencies all exceed ``CERTAIN`` and a majority;
+    with two, or with as many on either side, all that is known is that they disagree.
+
+    >>> against_majority(np.array([[1.0, 0.99, -0.98], [0.99, 1.0, -0.97], [-0.98, -0.97, 1.0]]))
+    ([2], True)
+    """
+    clear = np.flatnonzero(np.mean(np.abs(coherency) > CERTAIN, axis=1) > 0.5)
+    if len(clear) < 2:
+        return [], False
+    among = coherency[np.ix_(clear, clear)]
+    signs = np.sign(np.linalg.eigh(among)[1][:, -1])
+    negative, positive = clear[signs < 0.0], clear[signs >= 0.0]
+    minority = negative if len(negative) <= len(positive) else positive
+    certain = len(negative) != len(positive) and bool(np.all(np.abs(among) > CERTAIN))
+    return [int(i) for i in minority], certain
+
+
+def _parallel(record: Record, y: FloatArray) -> Iterator[tuple[list[int], FloatArray]]:
+    """Yield groups of live accelerations along one line of one frame, with the sense of each."""
+    left = [
+        i
+        for i, channel in enumerate(record.channels)
+        if channel.quantity == "acceleration" and any(channel.direction) and not faults.is_constant(y[i])
+    ]
+    while left and y.shape[1] >= 4 * LEAST_CYCLES:
+        lead = record.channels[left[0]]
+        along = {
+            i: float(np.array(lead.direction) @ np.array(record.channels[i].direction))
+            for i in left
+            if record.channels[i].frame == lead.frame
+        }
+        rows = [i for i, cosine in along.items() if abs(cosine) > PARALLEL]
+        left = [i for i in left if i not in rows]
+        if len(rows) > 1:
+            yield rows, np.sign([along[i] for i in rows])
+
+
+def _place(channel: Channel) -> str | float | None:
+    """Return the node a channel sits at, else its height on the tower axis, else None."""
+    return channel.node if channel.node is not None else channel.height_m
+
+
+def _one_place(places: list[str | float | None]) -> Iterator[list[int]]:
+    for place in dict.fromkeys(p for p in places if p is not None):
+        group = [k for k, other in enumerate(places) if other == place]
+        if len(group) > 1:
+            yield group
+
+
+def _together(rows: list[int], chosen: list[int], all_spectra: ComplexArray) -> SharedMotion:
+    picked, spectra = [rows[k] for k in chosen], all_spectra[chosen]
+    peak = strongest_line(spectra)
+    n_bands = max(int(np.log((spectra.shape[1] - 1) / LEAST_CYCLES) / np.log(WIDTH)), 0)
+    edges = (LEAST_CYCLES * WIDTH ** np.arange(n_bands + 1)).astype(np.int64)
+    bands = [((a + b) / 2.0, band_coherency(spectra[:, a:b])) for a, b in pairwise(edges)]
+    inside = around(spectra, peak)
+    size = np.linalg.norm(inside, axis=1)
+    return SharedMotion(picked, float(peak), size, band_coherency(inside), bands)
+
+
+def one_motion(seen: SharedMotion) -> bool:
+    """Tell whether channels show one motion up to size and sign: in four bands, nowhere with another sign."""
+    coherencies = np.array([coherency for _, coherency in seen.bands])
+    clear = np.abs(coherencies) > CERTAIN
+    same = np.sign(coherencies) == np.sign(seen.coherency)
+    return bool(np.all(clear.sum(axis=0) >= FEWEST_BANDS) and np.all(same | (np.abs(coherencies) < UNCLEAR)))
+
+
+def _against_same_place(seen: SharedMotion) -> Iterator[tuple[int, bool]]:
+    """Yield the channels at one place that move against the others wherever they move together at all."""
+    minority, certain = against_majority(seen.coherency)
+    if minority and one_motion(seen):
+        yield from ((i, certain) for i in minority)
+
+
+def _against_tower(seen: SharedMotion, heights: list[float]) -> Iterator[tuple[int, bool]]:
+    """Yield the channels of a tower that are in counterphase in its first mode."""
+    minority, certain = against_majority(seen.coherency)
+    if not minority or _beside_the_axis(seen, heights):
+        return
+    for i in minority:
+        for middle, coherency in seen.bands:
+            nearby = 1.0 / NEARBY < middle / seen.peak < NEARBY
+            together = [j for j in np.flatnonzero(coherency[i] > CERTAIN) if j not in minority]
+            if together and (nearby or any(heights[j] == heights[i] for j in together)):
+                return
+    yield from ((i, certain) for i in minority)
+
+
+def _beside_the_axis(seen: SharedMotion, heights: list[float]) -> bool:
+    """Tell whether sensors at one height do not see the same motion: then not all are on the axis."""
+    return any(
+        abs(seen.coherency[i, j]) < CERTAIN
+        or max(seen.size[i], seen.size[j]) > SAME_SIZE * min(seen.size[i], seen.size[j])
+        for i, j in combinations(range(len(heights)), 2)
+        if heights[i] == heights[j]
+    )

@@ -1,0 +1,80 @@
+r"""Channels whose zero steps: a level before, another afterwards.
+
+The sum :math:`S_k = \sum_{j \le k} (y_j - \bar y)` of a vibration stays small, as its velocity does; a step
+of its zero by a at sample k makes a triangle of height a k (n − k)/n of it. A step is believed where it
+explains most of what is slow, which neither a drift nor a few slow swings does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.processing.transforms import of_fast_length
+
+SLOW = 20
+"""Cycles a record below which motion is slow."""
+EXPLAINED = 0.85
+"""Share of the slow power that a step must explain: the best of a straight drift explains 0.75."""
+LEAST_SIZE = 0.5
+"""Of a step, over the rms of the rest."""
+ENDS = 0.05
+"""Share of the record at either end in which a step is not told from a trend."""
+GAP_S = 0.5
+"""Seconds of the record on either side of a step that are declared missing, at least three samples."""
+
+
+@dataclass(frozen=True)
+class ZeroStep:
+    """A channel whose zero is higher by so much from a sample on."""
+
+    at: int
+    by: float
+    over_rms: float
+
+
+def zero_step(y: FloatArray) -> ZeroStep | None:
+    """Return the step of the zero of a channel, None if it has none.
+
+    Parameters
+    ----------
+    y : (n_samples,)
+        NaN marks a missing sample.
+
+    Examples
+    --------
+    >>> y = np.sin(0.3 * np.arange(3000.0))
+    >>> y[1000:] += 2.0
+    >>> step = zero_step(y)
+    >>> abs(step.at - 1000) < 10, round(step.by, 1)
+    (True, 2.0)
+    """
+    n, there = len(y), np.isfinite(y)
+    if n < 10 * SLOW or there.mean() < 0.5:
+        return None
+    x = bridge(y)
+    x = x - x.mean()
+    k = np.arange(1, n)
+    inside = (k > ENDS * n) & (k < (1.0 - ENDS) * n)
+    # by how much a step there lowers the sum of squares
+    gain = np.where(inside, np.cumsum(x)[:-1] ** 2 * n / (k * (n - k)), 0.0)
+    at = int(k[np.argmax(gain)])
+    by = float(x[at:].mean() - x[:at].mean())
+    rest = x - np.where(np.arange(n) >= at, by, 0.0)
+    slow = [float(np.sum(np.abs(np.fft.rfft(of_fast_length(s - s.mean()))[1:SLOW]) ** 2)) for s in (x, rest)]
+    rms = float(rest.std())
+    if rms == 0.0 or abs(by) < LEAST_SIZE * rms or slow[1] > (1.0 - EXPLAINED) * slow[0]:
+        return None
+    return ZeroStep(at, by, abs(by) / rms)
+
+
+def without_step(y: FloatArray, step: ZeroStep, sample_rate_hz: float) -> FloatArray:
+    """Return a channel with its step taken back, missing around it."""
+    out = y.copy()
+    out[step.at :] -= step.by
+    gap = max(round(GAP_S * sample_rate_hz), 3)
+    out[max(step.at - gap, 0) : step.at + gap] = np.nan
+    return out

@@ -1,0 +1,1 @@
+"""Pages, each one self-contained file."""

@@ -1,0 +1,72 @@
+"""The page on a twin followed through time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jackettwin.answers import Span
+from jackettwin.report.figures.follow import parameters_through_time
+from jackettwin.report.pages.page import PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.tables.answers import ranged
+from jackettwin.report.tables.numbers import count
+from jackettwin.soil.laws.families import parameter_words
+from jackettwin.study.follow_result import Followed
+from jackettwin.version import __version__
+
+
+def build_follow_page(followed: Followed, path: Path) -> Path:
+    """Write one self-contained HTML file on a twin followed through time; return its path.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    each, others = followed.moments, [n for n in followed.units if n not in followed.stiffness]
+    drift = (
+        f"Does the ground drift? What is known of its stiffness from all records up to each {each}; band: "
+        "one slope of all stiffness, 90 %, fitted to all data at once."
+    )
+    more = f"What else becomes known, {each} after {each}? Median and 90 %."
+    sections = [
+        PageSection(
+            "Drift",
+            (
+                Text((followed.statement,)),
+                _plot(followed, "stiffness_through_time", drift, followed.stiffness),
+                _table(followed, followed.stiffness),
+            ),
+        ),
+        *([PageSection("Damping", (_plot(followed, "others_through_time", more, others),
+                                   _table(followed, others)))] if others else []),
+        *([PageSection("Warnings", (Text(followed.warnings, "warnings"),))] if followed.warnings else []),
+    ]  # fmt: skip
+    return write_page(
+        sections,
+        path,
+        title=f"{followed.name} through time",
+        subtitle=f"{followed.law}, {count(len(followed.days), each)} · jackettwin {__version__}",
+    )
+
+
+def _plot(followed: Followed, name: str, caption: str, names: Sequence[str]) -> Plot:
+    return Plot(name, caption, parameters_through_time(followed, names), fits=True)
+
+
+def _table(followed: Followed, names: Sequence[str]) -> PageTable:
+    by_day, failed = followed.moments == "day", any(day.status != "ok" for day in followed.days)
+    rows = []
+    for day in followed.days:
+        cells = [ranged(Span(day.median[n], *day.interval_90[n]), followed.units[n]) for n in names]
+        when = f"{day.time_utc:%Y-%m-%d}" if by_day else f"{day.time_utc:%Y-%m-%d %H:%M}"
+        rows.append(
+            (when, *([str(day.records)] if by_day else []), *([day.status] if failed else []), *cells)
+        )
+    columns = ("time (UTC)", *(["records"] if by_day else []), *(["posterior"] if failed else []))
+    return PageTable(
+        f"What was known after each {followed.moments}? Median and, in brackets, 90 % interval.",
+        (*columns, *map(parameter_words, names)),
+        tuple(rows),
+        text_columns=len(columns),
+    )

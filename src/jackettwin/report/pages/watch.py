@@ -1,0 +1,115 @@
+"""The page on modes watched through time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from jackettwin.change.table_watch import Alarm, Watched
+from jackettwin.change.watch_document import alarm_document, next_sentence, statement
+from jackettwin.report.figures.watch import (
+    change_pattern,
+    evidence_through_time,
+    explained_shares,
+    frequencies,
+    leading,
+    unexplained_through_time,
+)
+from jackettwin.report.pages.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.tables.numbers import count
+from jackettwin.version import __version__
+
+_LISTED = 0.01
+"""Probability from which a cause stands in the table; all stand in ``watched.json``."""
+_PATTERN = (
+    "Change of each quantity, 90 %; beside it what the likeliest causes would have done, at their sizes."
+)
+
+
+def build_watch_page(watched: Watched, path: Path) -> Path:
+    """Write one self-contained HTML file on modes watched through time; return its path.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    outcome: list[Block] = [Text((statement(watched),))]
+    sections = []
+    if watched.looks:
+        caption = (
+            "What conditions do not explain, day by day. Grey: where nine days of ten lie if nothing has "
+            "changed. Orange: when the change began, 90 %; red: the alarm, and its size."
+        )
+        figure = unexplained_through_time(watched, [leading(watched)])
+        outcome.append(Plot("leading_through_time", caption, figure, fits=True))
+    sections.append(PageSection("Has it changed?", tuple(outcome)))
+    sections += [
+        PageSection(
+            f"Change {i}" if len(watched.alarms) > 1 else "The change", tuple(_alarm(watched, alarm, i))
+        )
+        for i, alarm in enumerate(watched.alarms, start=1)
+    ]
+    if watched.looks:
+        figure = unexplained_through_time(watched, frequencies(watched))
+        caption = "The same of every frequency, and of the direction of every pair that shows one."
+        sections.append(
+            PageSection("Every mode", (Plot("unexplained_through_time", caption, figure, fits=True),))
+        )
+        caption = (
+            f"Evidence of all changes that are looked for, summed over when they began. While nothing "
+            f"changes the mean time to the dashed line is at least {watched.watch.arl_years:g} years."
+        )
+        sections.append(
+            PageSection(
+                "Evidence",
+                (Plot("evidence_through_time", caption, evidence_through_time(watched), fits=True),),
+            )
+        )
+    caption = "What explains how much of the variance of each quantity over the baseline."
+    sections.append(
+        PageSection(
+            "What moves the modes", (Plot("explained_shares", caption, explained_shares(watched), fits=True),)
+        )
+    )
+    if watched.limits:
+        sections.append(PageSection("Limits", (Text(watched.limits, "list"),)))
+    return write_page(
+        sections,
+        path,
+        title=f"{watched.table.name} watched",
+        subtitle=f"{count(len(watched.looks), 'day')} after the baseline · jackettwin {__version__}",
+    )
+
+
+def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
+    document = alarm_document(watched.watch, watched.table.time, alarm)
+    shown = [cause for cause in document["causes"] if cause["probability"] >= _LISTED]
+    rows = [(c["cause"], f"{100.0 * c['probability']:.0f}", *_size(c)) for c in shown]
+    others = len(document["causes"]) - len(shown)
+    if others:
+        rest = 1.0 - sum(cause["probability"] for cause in shown)
+        rows.append((count(others, "other cause"), f"{100.0 * rest:.0f}", "–", "–"))
+    caption = "Causes, after the data of the change."
+    blocks: list[Block] = [
+        PageTable(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
+        Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
+    ]
+    if document["inseparable"]:
+        said = tuple(f"These data do not tell apart: {', '.join(g)}." for g in document["inseparable"])
+        blocks.append(Text(said, "list"))
+    if document["next_measurements"]:
+        blocks.append(Text((next_sentence(document),)))
+    return blocks
+
+
+def _size(cause: dict[str, Any]) -> tuple[str, str]:
+    """Return size and interval in words; what is there or not has no size."""
+    if cause["interval_90"] is None or cause["cause"].partition(" (or ")[0].endswith((" lost", " flooded")):
+        return "–", "–"
+    (low, high), unit = cause["interval_90"], cause["unit"]
+    scale, unit = {"-": (100.0, "%"), "m": (1000.0, "mm"), "kg": (1e-3, "t")}.get(unit, (1.0, unit))
+    if unit == "mm" and abs(cause["size"]) >= 0.1:
+        scale, unit = 1.0, "m"
+    size, *ends = (f"{scale * x:.2g}" for x in (cause["size"], low, high))
+    return f"{size} {unit}", f"{ends[0]} to {ends[1]}"

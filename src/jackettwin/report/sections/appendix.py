@@ -1,0 +1,100 @@
+"""The appendix on the update: every law, the posterior, every solution."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from jackettwin.intervals import interval_90
+from jackettwin.report.figures import posterior as draw
+from jackettwin.report.pages.page import Block, PageTable, Plot, Text
+from jackettwin.report.tables import updating as tables
+from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
+from jackettwin.study import TwinResult
+from jackettwin.updating import Update
+from jackettwin.updating.law_choice import recommended
+from jackettwin.updating.update import Uncertainty
+
+
+def every_law(result: TwinResult) -> list[Block]:
+    """Return modes and parameters of every law at its best fit, damped beside undamped."""
+    if not result.updates:
+        return []
+    blocks: list[Block] = [tables.key_table(result), tables.parameter_table(result.updates)]
+    if result.relaxations:
+        blocks.append(tables.relaxation_table(result))
+    text = (
+        "A dashpot that is too strong to move acts as a spring: the damped frequencies fit while the "
+        "structure without damping is wrong. Differences beyond 5 % are flagged as locked dampers."
+    )
+    return [*blocks, Text((text,)), tables.damped_undamped_table(result)]
+
+
+def posterior(result: TwinResult) -> list[Block]:
+    """Return how the posterior was sampled, its draws, its profiles and what it predicts."""
+    known = [(u, u.uncertainty) for u in result.updates if u.uncertainty is not None]
+    if not known:
+        return []
+    blocks: list[Block] = [Text(tuple(f"{u.law}: {_status(k)}" for u, k in known))]
+    shown = recommended(result.updates)
+    if shown is None or shown.uncertainty is None:
+        return blocks
+    k = shown.uncertainty
+    return [
+        *blocks,
+        Plot(
+            "posterior",
+            f"{shown.law}: which values go together? Draws from the posterior on logarithmic axes; "
+            "line: before the data; dotted: 90 %.",
+            draw.corner(shown, k),
+        ),
+        Plot(
+            "profiles",
+            f"{shown.law}: how sharply do the data fix each parameter? Profiles of the posterior "
+            "density, priors included; below the dashed line: 90 %.",
+            draw.profiles(shown, k),
+        ),
+        _predictions(shown, k, result),
+    ]
+
+
+def every_solution(result: TwinResult) -> list[Block]:
+    """Return every distinct solution of each law, and how complete the search was."""
+    if not result.updates:
+        return []
+    said = tuple(f"{u.law}: {u.search.statement}" for u in result.updates)
+    return [Text(said), *(tables.solutions_table(result, u) for u in result.updates)]
+
+
+def _status(k: Uncertainty) -> str:
+    if k.posterior is None:
+        return f"no posterior: {k.status}. The intervals are Laplace's approximation."
+    p = k.posterior
+    return (
+        f"posterior of {len(p.log_theta)} draws, R-hat at most {p.convergence.rhat.max():.3f}, "
+        f"at least {min(p.convergence.ess_bulk.min(), p.convergence.ess_tail.min()):.0f} effective, "
+        f"log evidence {p.log_evidence:.2f} ± {p.log_evidence_std:.2f}"
+        f"{'.' if p.evidence_known else ': its runs do not agree, so that laws are not compared by it.'}"
+    )
+
+
+def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> PageTable:
+    q, labels = k.predictive, {m.mode: m.label for m in result.measured}
+    rows = [
+        (
+            words(labels.get(mode, result.labels[mode - 1])),
+            _span(q.frequency_hz[:, i], 1.0, 4),
+            _span(q.undamped_hz[:, i], 1.0, 4),
+            _span(q.damping_ratio[:, i], 100.0, 2),
+        )
+        for i, mode in enumerate(q.modes)
+    ]
+    columns = ("mode", "f [Hz]", "undamped f [Hz]", "ζ [%]")
+    return PageTable(
+        f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1
+    )
+
+
+def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:
+    known = interval_90(factor * draws)
+    return UNKNOWN if known is None else f"{fixed(known[0], decimals)} – {fixed(known[2], decimals)}"

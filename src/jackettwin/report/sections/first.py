@@ -1,0 +1,62 @@
+"""The first page: a headline, five answers, and the drawings that belong to them."""
+
+from __future__ import annotations
+
+from jackettwin.answers import Answers
+from jackettwin.report.figures.drawings import campbell, damping_bars, ground_intervals
+from jackettwin.report.figures.drawings_shapes import shape_drawings
+from jackettwin.report.pages.page import Block, Drawing, FirstPage
+from jackettwin.report.tables.sentences import MARGIN, Said
+from jackettwin.study import TwinResult
+from jackettwin.updating.law_choice import recommended
+
+MODEL, GROUND, DAMPING, NEXT = (
+    "Is the model right?",
+    "How stiff and how damped is the ground?",
+    "Whose damping is it?",
+    "What to do next?",
+)
+"""Titles of the questions that go on in the engineer's part."""
+
+
+def first_page(a: Answers, said: Said) -> FirstPage:
+    """Return the first page."""
+    drawings = []
+    speeds = campbell(a)
+    if speeds is not None:
+        caption = (
+            "Does the rotor excite a mode? Measured frequencies with their 90 % intervals against its speed; "
+            f"violet: 1P and {a.blades}P with {100 * MARGIN:.0f} % either side. Higher modes lie above."
+        )
+        drawings.append(Drawing("campbell", caption, (speeds,)))
+    bars = damping_bars(a.modes)
+    if bars is not None:
+        caption = "Whose damping is it? Each source's part of a mode's damping; dots: measured, with 90 %."
+        drawings.append(Drawing("damping", caption, (bars,)))
+    if speeds is None:
+        drawings += ground_drawing(a)
+    return FirstPage(said.headline, tuple((q.title, q.short) for q in said.questions), tuple(drawings))
+
+
+def ground_drawing(a: Answers) -> list[Drawing]:
+    """Return what was thought of the ground and what is known now."""
+    drawn = ground_intervals(a.ground, a.law, fits=a.fits)
+    if drawn is None:
+        return []
+    caption = (
+        "What did the data add? Each parameter of a foot before and after them, 90 %, on a logarithmic axis."
+    )
+    return [Drawing("ground", caption, (drawn,))]
+
+
+def shapes(result: TwinResult) -> list[Block]:
+    """Return the updated mode shapes with what was measured."""
+    u = recommended(result.updates)
+    drawn = [] if u is None else shape_drawings(result, u)
+    if not drawn:
+        return []
+    caption = (
+        "Do measured and updated shapes agree? Pale: at rest; coloured: the updated model, torsion from "
+        "above; black: what the sensors measured, scaled to the model."
+    )
+    return [Drawing("mode_shapes", caption, tuple(drawn))]

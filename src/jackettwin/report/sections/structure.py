@@ -1,0 +1,75 @@
+"""The report's section on the structure: a picture to turn, and what it is made of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.report.pages.page import Block, Embedded, PageTable
+from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
+from jackettwin.report.view.motions import damped_motion
+from jackettwin.report.view.page import View, render_view, thickness_quantities
+from jackettwin.study import TwinResult
+from jackettwin.updating.law_choice import recommended
+
+_STEEL = (210e9, 7850.0)
+"""Young's modulus [Pa] and density [kg/m³] of structural steel."""
+
+
+def the_structure(result: TwinResult) -> list[Block]:
+    """Return the structure and its updated modes to turn, on request, and the table of its parts."""
+    caption = (
+        "What does it look like, and how does it move? Turn it, colour it, set its updated modes in motion."
+    )
+    page = Embedded("structure", caption, render_view(_view(result)), "Show the structure and its modes")
+    return [page, structure_table(result)]
+
+
+def _view(result: TwinResult) -> View:
+    u = recommended(result.updates)
+    motions = (
+        []
+        if u is None
+        else [
+            damped_motion(result.assembly, words(m.label), complex(pole), u.modes.shapes[:, i])
+            for i, (m, pole) in enumerate(zip(result.measured, u.modes.poles, strict=True))
+            if np.isfinite(pole) and np.isfinite(u.modes.shapes[:, i]).all()
+        ]
+    )
+    return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
+
+
+def structure_table(result: TwinResult) -> PageTable:
+    """Return what the structure is made of, part by part."""
+    mesh, structure = result.assembly.mesh, result.assembly.structure
+    p = mesh.properties
+    rows: list[tuple[str, ...]] = []
+    for part in dict.fromkeys(member.part for member in structure.members):
+        chosen = [structure.members[m].part == part for m in mesh.member]
+        mass = float((p.rho * p.A * p.L)[chosen].sum())
+        members = [m for m in structure.members if m.part == part]
+        walls = [1e3 * s.thickness_m for m in members for s in (m.section_start, m.section_end)]
+        diameters = [s.outer_diameter_m for m in members for s in (m.section_start, m.section_end)]
+        rows.append(
+            (
+                part.replace("_", " ") or "structure",
+                str(len(members)),
+                fixed(mass / 1e3, 1),
+                _range(diameters, 2),
+                _range(walls, 1),
+                _range([float(v) / 1e9 for v in p.E[chosen]], 0),
+                _range([float(v) for v in p.rho[chosen]], 0),
+            )
+        )
+    for body in structure.masses:
+        name = "rotor–nacelle assembly" if body.part == "rna" else f"mass at {body.node}"
+        rows.append((name, UNKNOWN, fixed(body.mass_kg / 1e3, 1), *[UNKNOWN] * 4))
+    columns = ("part", "members", "mass [t]", "diameter [m]", "wall [mm]", "E [GPa]", "density [kg/m³]")
+    caption = "What is the structure made of?"
+    if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
+        caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
+    return PageTable(caption, columns, tuple(rows))
+
+
+def _range(values: list[float], decimals: int) -> str:
+    low, high = fixed(min(values), decimals), fixed(max(values), decimals)
+    return low if low == high else f"{low} … {high}"

@@ -1,0 +1,1 @@
+"""Tables, sentences and numbers of the report."""

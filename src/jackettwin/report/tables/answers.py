@@ -1,0 +1,143 @@
+"""The answers as tables: measured, designed and updated modes, the ground, whose damping, what to do next."""
+
+from __future__ import annotations
+
+from jackettwin.answers import Answers, Span
+from jackettwin.report.pages.page import PageTable
+from jackettwin.report.tables.numbers import UNKNOWN, between, factor, fixed, words
+from jackettwin.report.tables.sentences import span_words, step_words, verdict_words
+from jackettwin.report.tables.sentences_fit import value_words
+from jackettwin.soil.laws.families import parameter_words
+from jackettwin.study import TwinResult
+from jackettwin.updating.budget import SOURCES
+
+
+def modes_table(a: Answers, result: TwinResult) -> PageTable:
+    """Return every measured mode beside the design and the updated model."""
+    rows = []
+    for mode, m in zip(a.modes, result.measured, strict=True):
+        fitted = [what for what, flag in (("f", mode.fits_frequency), ("ζ", mode.fits_damping)) if flag]
+        rows.append(
+            (
+                words(mode.label),
+                " and ".join(fitted) or "nothing",
+                _cell(mode.measured_hz, 1.0, 4),
+                _cell(mode.design_hz, 1.0, 4),
+                fixed(mode.rigid_hz, 4),
+                _cell(mode.model_hz, 1.0, 4),
+                _cell(mode.measured_damping, 100.0, 2),
+                _cell(mode.model_damping, 100.0, 2),
+                fixed(m.mac, 2),
+            )
+        )
+    columns = (
+        "mode",
+        "fitted",
+        "measured\nf [Hz]",
+        "design\nf [Hz]",
+        "rigid feet\nf [Hz]",
+        "updated\nf [Hz]",
+        "measured\nζ [%]",
+        "updated\nζ [%]",
+        "MAC\n[-]",
+    )
+    caption = (
+        f"Does the model meet what was measured? Beneath each value its 90 % interval; updated: "
+        f"{a.law or 'no law'}. MAC: how alike measured and modelled shapes are."
+    )
+    return PageTable(caption, columns, tuple(rows), 2)
+
+
+def _cell(span: Span | None, factor: float, decimals: int) -> str:
+    if span is None:
+        return UNKNOWN
+    text = fixed(factor * span.value, decimals)
+    if span.low is None or span.high is None:
+        return text
+    return f"{text}\n{fixed(factor * span.low, decimals)} – {fixed(factor * span.high, decimals)}"
+
+
+def ground_table(a: Answers) -> PageTable:
+    """Return what is known of every parameter of the ground, and why."""
+    rows = tuple(
+        (parameter_words(g.name), (verdict_words(g) if a.fits else "does not fit") or UNKNOWN,
+         g.reason or UNKNOWN, ranged(g.before, g.unit),
+         ranged(g.value, g.unit), UNKNOWN if g.factor is None else f"{g.factor:.3g}")
+        for g in a.ground
+    )  # fmt: skip
+    median = "median" if any(g.verdict for g in a.ground) else "best fit"
+    columns = ("parameter", "verdict", "why", "before the data", f"now, {median}", "factor [-]")
+    caption = (
+        f"What is known of the ground ({a.law})? Of a foot. In brackets 90 %; factor: its upper over its "
+        f"lower end. Known: {a.usable:g} or less, by the data alone."
+    )
+    return PageTable(caption, columns, rows, 3)
+
+
+def ranged(span: Span | None, unit: str) -> str:
+    """Return a value above its interval in brackets, as a cell of a table."""
+    if span is None:
+        return "any between its bounds"
+    if span.low is None or span.high is None:
+        return span_words(span, unit)
+    return f"{value_words(span, unit)}\n({between(span.low, span.high, unit)})"
+
+
+def laws_table(a: Answers) -> PageTable:
+    """Return every law that was fitted, its probability and its misfit."""
+    rows = tuple(
+        (
+            law.law,
+            "recommended" if law.law == a.law else "locks a damper: do not use" if law.locked else "",
+            UNKNOWN if law.probability is None else fixed(100.0 * law.probability, 0),
+            f"{law.misfit:.3g}",
+        )
+        for law in a.laws
+    )
+    source = {
+        "evidence": "from the evidence that was sampled for each",
+        "approximation": "by Laplace's approximation; --all-laws samples it",
+        "": "not known: the data carry no standard deviations",
+    }[a.probability_from]
+    caption = f"Which law? Probability of each, all equally likely before: {source}."
+    marked = frozenset(i for i, law in enumerate(a.laws) if law.locked)
+    return PageTable(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
+
+
+def budget_table(a: Answers) -> PageTable:
+    """Return each mode's damping by source."""
+    sources = [s for s in SOURCES if any(s in m.sources for m in a.modes)]
+    names = {"structure": "steel", "soil": "ground"}
+    rows = tuple(
+        (
+            words(m.label),
+            _cell(m.measured_damping, 100.0, 2),
+            _cell(m.model_damping, 100.0, 2),
+            *(_cell(m.sources.get(s), 100.0, 3) for s in sources),
+        )
+        for m in a.modes
+    )
+    columns = ("mode", "measured\nζ [%]", "model\nζ [%]", *(f"{names.get(s, s)}\nζ [%]" for s in sources))
+    caption = (
+        "Who damps which mode by how much? Beneath each value its 90 % interval; sources at the best fit."
+    )
+    return PageTable(caption, columns, rows, 1)
+
+
+def next_table(a: Answers) -> PageTable:
+    """Return what each further measurement would make of what is not known."""
+    names = [g.name for g in a.ground if g.verdict in ("weak", "unidentified")]
+    now = {g.name: g.factor for g in a.ground}
+    rows = [("as it is", *(_number(now[name]) for name in names))]
+    rows += [(step_words(a, s), *(_number(s.factors.get(name)) for name in names)) for s in a.next_steps]
+    caption = (
+        "What would make the ground known? Factor between the ends of each 90 % interval, as expected; "
+        f"{a.usable:g} or less counts as known."
+    )
+    return PageTable(
+        caption, ("measurement", *(f"{parameter_words(name)} [-]" for name in names)), tuple(rows), 1
+    )
+
+
+def _number(value: float | None) -> str:
+    return factor(value)

@@ -1,0 +1,517 @@
+"""The answers in words: a headline, and five questions with their sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import expm1, log
+
+from jackettwin.answers import Answers, Span
+from jackettwin.answers.result import Clearance, GroundAnswer, ModeAnswer, NextStep
+from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, words
+from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
+from jackettwin.soil.laws.families import FAMILIES, parameter_words
+
+MARGIN = 0.10
+"""Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
+excitation range with a margin; ten per cent is its usual size)."""
+WIDE = 10.0
+"""Upper over lower end of an interval from which it is no rough knowledge: not even the order is known."""
+_NOTHING = 0.005
+"""Change of a logarithm that is not worth saying."""
+SMALL = 0.10
+"""A source that gives less of a mode's damping is not named first."""
+_MOST = 4
+"""Parameters of the ground on the first page; what there is of single legs follows."""
+_SOURCES = {"structure": "the steel", "soil": "the ground", "rotor": "the rotor", "water": "the water"}
+_UNEXPLAINED = "unexplained"
+_ROUGHLY = "known roughly"
+_STEPS = {
+    "feet": "measure at the feet: low-noise accelerometers on one foot, in step with those on the tower; its "
+    "amplitude (to 10 %) gives the stiffness, its lag (to 0.6°) the damping",
+    "decays": "stop the rotor in a calm and record a few free decays: the rotor then damps next to nothing",
+    "torsion": "measure torsion as well: two accelerometers at one height on opposite sides of the tower",
+    "second_bending": "measure the second bending modes as well: accelerometers half-way up the tower",
+    "model": "make the model surer (weigh the nacelle, check the drawings) and say so under "
+    "update.model_error; one without any error would do this",
+}
+_GERUNDS = {
+    "feet": "motion measured at the feet, in step with the tower's",
+    "decays": "free decays in a calm",
+    "torsion": "torsion, from two accelerometers at one height",
+    "second_bending": "the second bending modes, from accelerometers half-way up",
+    "model": "a model with less error of its own",
+}
+
+
+@dataclass(frozen=True)
+class AnsweredQuestion:
+    """A question of the first page: its answer in one or two sentences, and what else there is to say."""
+
+    title: str
+    short: tuple[str, ...]
+    more: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Said:
+    """The first page in words."""
+
+    headline: tuple[str, ...]
+    questions: tuple[AnsweredQuestion, ...]
+
+
+def sentences(a: Answers) -> Said:
+    """Return the first page in words."""
+    return Said(
+        tuple(filter(None, _headline(a))),
+        (
+            AnsweredQuestion("Is the model right?", *_model(a)),
+            AnsweredQuestion("How stiff and how damped is the ground?", *_ground(a)),
+            AnsweredQuestion("Whose damping is it?", *_owners(a)),
+            AnsweredQuestion("How far can this be trusted?", (*_trust(a), *_law(a))),
+            AnsweredQuestion("What to do next?", *_next(a)),
+        ),
+    )
+
+
+def _headline(a: Answers) -> list[str]:
+    """Return the headline; what stands in the way of an answer (misfit, nothing known) comes first."""
+    if misfit := misfit_headline(a):
+        return [misfit[0], *_stiff_enough(a), *misfit[1:]]
+    lead = [*_stiff_enough(a), *(ground := _ground_headline(a))]
+    if a.ground and all(g.verdict == "unidentified" for g in a.ground):
+        lead = [*ground, *_stiff_enough(a)]
+    return [*lead, _owner_headline(a), _next_headline(a)]
+
+
+def span_words(span: Span, unit: str) -> str:
+    """Return a value with its interval.
+
+    >>> span_words(Span(3.8e9, 2.0e9, 1.4e10), "N/m")
+    '3.8 GN/m (2 to 14 GN/m)'
+    """
+    value = value_words(span, unit)
+    if span.low is None or span.high is None:
+        return value
+    return f"{value} ({between(span.low, span.high, unit)})"
+
+
+def percent_words(span: Span, digits: int = 2) -> str:
+    """Return a ratio in per cent with its interval."""
+    text = f"{100.0 * span.value:.{digits}g} %"
+    if span.low is None or span.high is None or span.high < 1.05 * span.low:  # as good as given
+        return text
+    return f"{text} ({100.0 * span.low:.{digits}g} to {100.0 * span.high:.{digits}g} %)"
+
+
+def data_words(a: Answers) -> str:
+    """Return what was measured: ``these 5 records``, or ``these targets``."""
+    return f"these {a.records} records" if a.records > 1 else "this record" if a.records else "these targets"
+
+
+def _firsts(a: Answers) -> list[ModeAnswer]:
+    return [m for m in a.modes if m.label in ("fore_aft_1", "side_side_1") and m.measured_hz is not None]
+
+
+def _tight(a: Answers) -> list[Clearance]:
+    return [c for c in a.clearances if c.margin < MARGIN]
+
+
+def _stiff_enough(a: Answers) -> list[str]:
+    first, tight = _firsts(a), _tight(a)
+    if not first:
+        return ["No first bending mode was measured: nothing can be said of the foundation as a whole."]
+    names = listed([words(m.label) for m in first])
+    if tight:
+        worst = min(tight, key=lambda c: c.margin)
+        where = "lies inside" if worst.margin <= 0.0 else f"comes within {100 * worst.margin:.0f} % of"
+        return [f"{words(worst.label).capitalize()} {where} the {worst.order} range of the rotor."]
+    off = [m for m in first if m.as_designed is False]
+    if off:
+        return [f"The model is not as designed: {listed([_against_design(m) for m in off])}."]
+    clear = _clear(a, {m.label for m in first})
+    if all(m.as_designed for m in first):
+        return [f"The foundation is stiff enough: {names} {_be(first)} as designed{clear}."]
+    higher = any(_softening(m) < 0.0 for m in first)
+    sides = {_side(m) for m in first}
+    each = [f"{_moved(m)} {_side(m)}" if len(sides) > 1 else _moved(m) for m in first]
+    side = "" if len(sides) > 1 else f" {sides.pop()}"
+    why = ": no ground raises a frequency" if higher else ""
+    return [f"{names.capitalize()} {_be(first)} {listed(each)}{side} what rigid feet would give{clear}{why}."]
+
+
+def _be(modes: Sequence[object]) -> str:
+    return "is" if len(modes) == 1 else "are"
+
+
+def _softening(m: ModeAnswer) -> float:
+    """Return by which share a measured frequency lies below that on rigid feet."""
+    return 1.0 - (0.0 if m.measured_hz is None else m.measured_hz.value) / m.rigid_hz
+
+
+def _moved(m: ModeAnswer) -> str:
+    return f"{100.0 * abs(_softening(m)):.1f} %"
+
+
+def _side(m: ModeAnswer) -> str:
+    return "above" if _softening(m) < 0.0 else "below"
+
+
+def _clear(a: Answers, labels: set[str]) -> str:
+    """Return how far the first modes stay from the rotor's speeds."""
+    texts = []
+    for order in dict.fromkeys(c.order for c in a.clearances):
+        least = min(
+            (c for c in a.clearances if c.order == order and c.label in labels), key=lambda c: c.margin
+        )
+        mode = next(m for m in a.modes if m.label == least.label)
+        value = 0.0 if mode.measured_hz is None else mode.measured_hz.value
+        side = "above" if value > least.high_hz else "below"
+        texts.append(f"{100 * least.margin:.0f} % {side} {order}")
+    return f" and at least {listed(texts)}" if texts else ""
+
+
+def _against_design(m: ModeAnswer) -> str:
+    """Return measured against designed frequency."""
+    if m.measured_hz is None or m.design_hz is None:
+        return words(m.label)
+    change = 100.0 * (m.measured_hz.value / m.design_hz.value - 1.0)
+    side = "above" if change > 0 else "below"
+    return (
+        f"{words(m.label)} at {m.measured_hz.value:.4g} Hz is {abs(change):.1f} % {side} the design's "
+        f"{m.design_hz.value:.4g} Hz"
+    )
+
+
+def _ground_headline(a: Answers) -> list[str]:
+    """Return what is known of the ground."""
+    if not a.ground:
+        return []
+    if all(g.verdict == "" for g in a.ground):
+        return ["How well the ground is known cannot be said: the data carry no standard deviations."]
+    known = [g for g in a.ground if g.verdict == "identified"]
+    weak = [g for g in a.ground if g.verdict == "weak"]
+    if not known and not weak:
+        return [f"Nothing of the ground is known from {data_words(a)}: its values are what was said before."]
+    said = []
+    for kind in ("stiffness", "damping"):
+        of_kind = [g for g in a.ground if g.kind == kind]
+        sure = [g for g in of_kind if g.verdict == "identified"]
+        if sure:
+            said.append(f"The ground's {kind} is known: {listed([_value(g) for g in sure])}.")
+        elif all(g.verdict == "unidentified" for g in of_kind) and of_kind:
+            said.append(f"The ground's {kind} is not known from {data_words(a)}.")
+        elif of_kind:
+            some = [g for g in of_kind if g.verdict == "weak"]
+            best = [g for g in some if verdict_words(g) == _ROUGHLY] or some
+            ranges = listed([_range(g) for g in best])
+            said.append(f"The ground's {kind} is {verdict_words(best[0])}: {ranges}.")
+    return said
+
+
+def verdict_words(g: GroundAnswer, *, fits: bool = True) -> str:
+    """Return how well a parameter of the ground is known, in words; nothing without a verdict."""
+    if g.verdict != "weak":
+        return {"identified": "known", "unidentified": "not known"}.get(g.verdict, "")
+    if not fits:
+        return "the interval of a model that does not fit"
+    return _ROUGHLY if g.factor is None or g.factor <= WIDE else "not known to a factor of ten"
+
+
+def _value(g: GroundAnswer) -> str:
+    return f"{parameter_words(g.name)} {span_words(g.value, g.unit)}"
+
+
+def _range(g: GroundAnswer) -> str:
+    if g.value.low is None or g.value.high is None:
+        return _value(g)
+    return f"{parameter_words(g.name)} {between(g.value.low, g.value.high, g.unit)}"
+
+
+def _shares(m: ModeAnswer) -> dict[str, float]:
+    """Return each source's part of a mode's damping ratio, and what is measured beyond all of them."""
+    parts = {source: span.value for source, span in m.sources.items()}
+    beyond = m.measured_damping.value - sum(parts.values()) if m.measured_damping is not None else 0.0
+    return parts | ({_UNEXPLAINED: beyond} if parts and beyond > 0.0 and _disagrees(m) else {})
+
+
+def _owner_headline(a: Answers) -> str:
+    """Return who gives more than half of the damping of each mode of the first pair."""
+    by_owner: dict[str, list[str]] = {}
+    for m in _firsts(a):
+        shares = _shares(m) if m.measured_damping is not None else {}
+        for owner, part in shares.items():
+            if part > 0.5 * sum(shares.values()):
+                share = f"{100 * part / sum(shares.values()):.0f} % in {words(m.label)}"
+                by_owner.setdefault(owner, []).append(share)
+    parts = [
+        f"{listed(of)} is unexplained" if owner == _UNEXPLAINED else f"{_SOURCES[owner]} gives {listed(of)}"
+        for owner, of in by_owner.items()
+    ]
+    return f"Of the damping, {listed(parts)}." if parts else ""
+
+
+def _next_headline(a: Answers) -> str:
+    if not a.next_steps:
+        return ""
+    best = a.next_steps[0]
+    kinds = dict.fromkeys(g.kind for g in a.ground if g.name in best.factors)
+    if best.what == "records" and not _enough(a, best):
+        return f"No single measurement makes the ground's {listed(list(kinds))} known: see what to do next."
+    what = _STEPS.get(best.what, _records(a, best)).split(":")[0]
+    return f"What would make the ground's {listed(list(kinds))} known: {_GERUNDS.get(best.what, what)}."
+
+
+def _model(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    short, more = [], []
+    judged = [m for m in a.modes if m.as_designed is not None and m.fits_frequency]
+    if judged:
+        good = sum(bool(m.as_designed) for m in judged)
+        first = listed([_beside_design(m) for m in _firsts(a)])
+        lie = "lies" if len(judged) == 1 else "lie"
+        short.append(f"{good} of {count(len(judged), 'measured mode')} {lie} where the design says: {first}.")
+        short += [f"{_against_design(m).capitalize()}." for m in judged if not m.as_designed]
+        more.append(
+            "The design is the model on the foundation that the twin's priors state, within their 90 % and "
+            "the model's own error."
+        )
+    elif a.modes:
+        beside = [
+            f"{words(m.label)} {_hertz(m.measured_hz)}, on rigid feet {m.rigid_hz:.4f}" for m in _firsts(a)
+        ]
+        short.append(f"The twin states no design foundation (update.priors). Measured: {listed(beside)}.")
+    short += [] if a.fit is None else [fit_sentence(a.fit)]
+    short += _margins(a)
+    misses = [
+        (abs(m.model_hz.value / m.measured_hz.value - 1.0), m.label)
+        for m in a.modes
+        if m.model_hz is not None and m.measured_hz is not None and m.fits_frequency
+    ]
+    if misses:
+        worst, label = max(misses)
+        how = "meets every fitted frequency within" if a.fits else "misses fitted frequencies by up to"
+        more.append(f"Updated, the model {how} {100 * worst:.1f} % ({words(label)}).")
+    return tuple(short), tuple(more)
+
+
+def _hertz(span: Span | None) -> str:
+    if span is None:
+        return UNKNOWN
+    if span.low is None or span.high is None:
+        return f"{span.value:.4f} Hz"
+    return f"{span.value:.4f} Hz ({span.low:.4f} to {span.high:.4f})"
+
+
+def _beside_design(m: ModeAnswer) -> str:
+    design = UNKNOWN if m.design_hz is None else f"{m.design_hz.value:.4f}"
+    return f"{words(m.label)} {_hertz(m.measured_hz)}, design {design}"
+
+
+def _margins(a: Answers) -> list[str]:
+    if a.rotor_speed_hz is None:
+        return ["Margins to 1P and 3P are not known: state rotor_speed_rpm: [lowest, highest] in the twin."]
+    tight = _tight(a)
+    if not tight:
+        first = {m.label for m in _firsts(a)}
+        return [f"The first modes stay{_clear(a, first).removeprefix(' and')}."] if first else []
+    return [
+        f"{words(c.label).capitalize()} is {100 * c.margin:.0f} % from {c.order} "
+        f"({c.low_hz:.3g} to {c.high_hz:.3g} Hz), less than the usual {100 * MARGIN:.0f} %."
+        if c.margin > 0.0
+        else f"{words(c.label).capitalize()} lies inside {c.order} ({c.low_hz:.3g} to {c.high_hz:.3g} Hz)."
+        for c in tight
+    ]
+
+
+def _ground(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    said = [_parameter(g, a.fits) for g in a.ground]
+    if not a.ground:
+        said = ["No law was fitted."]
+    first, more = _firsts(a), []
+    if first and all(_softening(m) > 0.0 for m in first):
+        lower = listed([f"{words(m.label)} by {_moved(m)}" for m in first])
+        more.append(f"The ground lowers {lower} below rigid feet: that much is there to be seen of it.")
+    return tuple(said[:_MOST]), (*said[_MOST:], *more)
+
+
+def _parameter(g: GroundAnswer, fits: bool) -> str:
+    name = parameter_words(g.name).capitalize()
+    before = "" if g.before is None else f"; before the data {span_words(g.before, g.unit)}"
+    verdict = verdict_words(g, fits=fits) or "no interval"
+    return f"{name} {span_words(g.value, g.unit)}{before}: {verdict}."
+
+
+def _law(a: Answers) -> list[str]:
+    law = next((one for one in a.laws if one.law == a.law), None)
+    if law is None:
+        return []
+    why = FAMILIES[law.law].words
+    if law.probability is None:
+        return [f"Law: {law.law} ({why})."]
+    others = [one for one in a.laws if one.law != a.law and one.probability is not None]
+    best = max((one.probability or 0.0 for one in others), default=0.0)
+    about = "about " if a.probability_from == "approximation" else ""
+    open_ = bool(others) and best >= 0.1 * law.probability
+    verdict = "the data do not tell the laws apart" if open_ else "no other law comes near"
+    if not others:
+        verdict = "all others lock a damper" if len(a.laws) > 1 else "no other was tried"
+        return [f"Recommended law: {law.law} ({why}); {verdict}."]
+    return [
+        f"Recommended law: {law.law} ({why}), {about}{100 * law.probability:.0f} % probable among "
+        f"{count(len(others) + 1, 'law')}; {verdict}."
+    ]
+
+
+def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    short = [_budget_words(m) for m in _firsts(a) if m.sources and m.measured_damping is not None]
+    missing = [
+        _SOURCES[s] for s in ("rotor", "water") if a.modes and all(s not in m.sources for m in a.modes)
+    ]
+    if missing and any(m.sources for m in a.modes):
+        short.append(f"Not modelled: {listed(missing)}; what it damps is booked on the others.")
+    return tuple(short), tuple(_disagreement(m) for m in a.modes if _disagrees(m))
+
+
+def _budget_words(m: ModeAnswer) -> str:
+    whole = sum(span.value for span in m.sources.values())
+    parts = [
+        f"{_SOURCES[s]} {percent_words(span)}"
+        for s, span in sorted(m.sources.items(), key=lambda item: -item[1].value)
+        if span.value > SMALL * whole or s == "soil"
+    ]
+    if beyond := _shares(m).get(_UNEXPLAINED):
+        parts.append(f"unexplained {percent_words(Span(beyond))}")
+    measured = "" if m.measured_damping is None else percent_words(m.measured_damping)
+    return f"{words(m.label).capitalize()} measures {measured}: {', '.join(parts)}."
+
+
+def _disagrees(m: ModeAnswer) -> bool:
+    """Return whether measured and modelled damping differ beyond their intervals, or by a tenth without."""
+    a, b = m.measured_damping, m.model_damping
+    if a is None or b is None:
+        return False
+    return not a.meets(b) if a.low is not None else abs(b.value / a.value - 1.0) > 0.1
+
+
+def _disagreement(m: ModeAnswer) -> str:
+    a, b = m.measured_damping, m.model_damping
+    if a is None or b is None:
+        return ""
+    why = (
+        "the model damps it more than was measured"
+        if b.value > a.value
+        else "it has damping nothing explains"
+    )
+    fitted = "" if m.fits_damping else "; its damping was not fitted"
+    return (
+        f"{words(m.label).capitalize()}: {why}: {percent_words(b)} in the model, {percent_words(a)} "
+        f"measured{fitted}."
+    )
+
+
+def _trust(a: Answers) -> list[str]:
+    if a.records:
+        said = [
+            f"Data: {count(a.records, 'record')}, {a.minutes:.0f} minutes; "
+            f"{count(len(a.modes), 'mode')} paired with the model."
+        ]
+    else:
+        said = [f"Data: {count(len(a.modes), 'mode')} given as targets."]
+    judged = [g for g in a.ground if g.verdict]
+    if judged:
+        known = [g for g in judged if g.verdict == "identified"]
+        said.append(
+            f"Identifiability: {len(known)} of {count(len(judged), 'ground parameter')} known to a factor of "
+            f"{a.usable:g} or better."
+        )
+    errors = {f"{100 * m.model_error:.2g} %" for m in a.modes if m.fits_frequency and m.model_error > 0.0}
+    stated = sorted(errors)
+    said.append(
+        f"Model error: {listed(stated)} on frequencies, as the twin states."
+        if stated
+        else "Model error: none is stated (update.model_error); intervals are those of a perfect model."
+    )
+    return [*said, *_if_off(a)]
+
+
+def _if_off(a: Answers) -> list[str]:
+    """Return what an error of the model would do to the ground's stiffness: the data do not show it."""
+    moved = {} if a.fit is None else a.fit.moved
+    of_kind = [g for g in a.ground if g.kind == "stiffness" and g.verdict in ("identified", "weak")]
+    parts = [
+        f"{parameter_words(g.name)} by {_percent(abs(moved[g.name]))}"
+        for g in of_kind[:_MOST]
+        if abs(moved.get(g.name, 0.0)) > _NOTHING
+    ]
+    return (
+        [f"Each 1 % by which all frequencies of the model are wrong moves {listed(parts)}."] if parts else []
+    )
+
+
+def _percent(log_change: float) -> str:
+    """Return a change of a logarithm as per cent; that of a fit far from its data may be of any size."""
+    return f"{100.0 * expm1(log_change):.2g} %" if log_change < log(WIDE) else "more than tenfold"
+
+
+def _next(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    if a.fit is not None and not a.fit.fits:
+        return (f"{mend(a.fit)}. Then run again: only a model that fits tells what to measure next.",), ()
+    first = {step.what == "records": step for step in reversed(a.next_steps)}  # the best of either kind
+    short = [_step(a, step) for step in a.next_steps if step in first.values()]
+    open_ = [g for g in a.ground if g.verdict != "identified"]
+    if a.ground and not open_:
+        short = ["The ground is known well enough to use. Watch it: `jackettwin follow`, `jackettwin watch`."]
+    elif a.ground and all(g.verdict == "" for g in a.ground):
+        short = ["Give every target its standard deviation: then there are intervals, and advice."]
+    if a.records_for:
+        needs = [f"{words(label)} {n}" for label, n in a.records_for.items()]
+        short.append(
+            f"For damping ratios to ±{100 * a.precision:.0f} %, so many records like these: {listed(needs)} "
+            f"(now {a.records})."
+        )
+    rest = [step for step in a.next_steps if step not in first.values() and _gains(a, step)]
+    return tuple(short), tuple(_step(a, step) for step in rest)
+
+
+def _step(a: Answers, step: NextStep) -> str:
+    what, gains = step_words(a, step), _gains(a, step)
+    narrow = "They narrow" if step.what == "records" and not _enough(a, step) else "It narrows"
+    how = f"the 90 % interval of {listed(gains)}" if gains else "no interval noticeably"
+    return f"{what[0].upper()}{what[1:]}. {narrow} {how}."
+
+
+def _gains(a: Answers, step: NextStep) -> list[str]:
+    """Return what becomes surer by a step: of stiffness and of damping the surest, if one sees it at all."""
+    kinds = {g.name: g.kind for g in a.ground}
+    gains: dict[str, tuple[str, float]] = {}  # of stiffness and of damping, the one that becomes surest
+    for name, left in sorted(step.factors.items(), key=lambda item: item[1]):
+        gains.setdefault(kinds.get(name, ""), (name, left))
+    return [
+        f"{parameter_words(name)} to a factor of {factor(left)} (now {factor(_now(a, name))})"
+        for name, left in gains.values()
+        if factor(left) != factor(_now(a, name))
+    ]
+
+
+def step_words(a: Answers, step: NextStep) -> str:
+    """Return what to do in words."""
+    return _STEPS.get(step.what, _records(a, step))
+
+
+def _now(a: Answers, name: str) -> float | None:
+    return next((g.factor for g in a.ground if g.name == name), None)
+
+
+def _enough(a: Answers, step: NextStep) -> bool:
+    return max(step.factors.values()) <= a.usable
+
+
+def _records(a: Answers, step: NextStep) -> str:
+    """Return what more records alone do."""
+    days = step.days or 0.0
+    times = days * 1440.0 / max(a.minutes, 1e-9)
+    length = count(round(days), "day") if days >= 2.0 else count(max(round(24 * days), 1), "hour")
+    if _enough(a, step):
+        return f"record {length} of the same ({round(times * a.records)} records instead of {a.records})"
+    return f"more records alone do not make it known, not even {length} of them"

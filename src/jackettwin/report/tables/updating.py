@@ -1,0 +1,192 @@
+"""Tables of measured against updated: every number is the result's, none is computed but differences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import exp
+
+import numpy as np
+
+from jackettwin.answers import Answers
+from jackettwin.arrays import FloatArray
+from jackettwin.report.pages.page import PageTable
+from jackettwin.report.tables.numbers import UNKNOWN, count, frequency, percent, scientific, words
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.study import TwinResult
+from jackettwin.study.truth import StatedMode, TrueParameter
+from jackettwin.updating import Update
+
+
+def key_table(result: TwinResult) -> PageTable:
+    """Return measured against updated, one row a mode."""
+    columns = ["mode", "no.", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
+    columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
+    rows = []
+    for i, m in enumerate(result.measured):
+        measured_hz = frequency(m.frequency_hz, m.frequency_std_hz)
+        row = [words(m.label), str(m.mode), _mark(measured_hz, m.fits_frequency)]
+        row += [frequency(float(u.modes.frequency_hz[i])) for u in result.updates]
+        row += [_mark(percent(m.damping_ratio, m.damping_ratio_std), m.fits_damping)]
+        row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
+        rows.append(tuple(row))
+    caption = "Does each law meet the modes (best fit)? In brackets: not fitted; ± one standard deviation."
+    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
+
+
+def _mark(text: str, fitted: bool) -> str:
+    return text if fitted or text == UNKNOWN else f"({text})"
+
+
+def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) -> PageTable:
+    """Return the true modes that the records state beside the measured and the updated ones."""
+    columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", "updated\nf [Hz]"]
+    columns += ["true\nζ [%]", "measured\nζ [%]", "updated\nζ [%]"]
+    place = {m.label: i for i, m in enumerate(result.measured)}
+    rows = []
+    for true in stated:
+        i = place[true.label]
+        m, model = result.measured[i], a.modes[i]
+        row = [words(true.label), frequency(true.frequency_hz), frequency(m.frequency_hz, m.frequency_std_hz)]
+        row += [UNKNOWN if model.model_hz is None else frequency(model.model_hz.value)]
+        row += [percent(true.damping_ratio), percent(m.damping_ratio, m.damping_ratio_std)]
+        row += [UNKNOWN if model.model_damping is None else percent(model.model_damping.value)]
+        rows.append(tuple(row))
+    caption = (
+        "Is it true? What these records state of their asset, the mean over them, beside what was found."
+    )
+    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
+
+
+def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> PageTable:
+    """Return the true parameters of the support beside the updated ones."""
+    rows = [
+        (
+            p.law,
+            p.name,
+            f"{p.true:.4g}",
+            f"{p.value:.4g}",
+            UNKNOWN if p.interval_90 is None else f"{p.interval_90[0]:.4g} – {p.interval_90[1]:.4g}",
+            UNKNOWN if p.covered is None else "yes" if p.covered else "no",
+        )
+        for p in parameters
+    ]
+    columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
+    return PageTable(
+        "Are the parameters true? Those the records state beside those found, SI units.",
+        columns,
+        tuple(rows),
+        text_columns=2,
+    )
+
+
+def damped_undamped_table(result: TwinResult) -> PageTable:
+    """Return damped and undamped frequencies side by side, law by law."""
+    columns = ["mode"]
+    for u in result.updates:
+        flag = ", locked" if u.best.locked_damper else ""
+        columns += [f"{u.law}{flag}\ndamped [Hz]", "\nundamped [Hz]"]
+    rows = []
+    for i, m in enumerate(result.measured):
+        pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
+        rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
+    caption = "Is a damper locked? Damped and undamped frequencies of the full updated model."
+    return PageTable(caption, tuple(columns), tuple(rows))
+
+
+def relaxation_table(result: TwinResult) -> PageTable:
+    """Return measured real poles beside the updated model's nearest."""
+    rows = []
+    for i, r in enumerate(result.relaxations):
+        for u in result.updates:
+            known = None if u.uncertainty is None else u.uncertainty.predictive.rates[r.name]
+            span = UNKNOWN if known is None else " … ".join(f"{v:.3g}" for v in _interval(known))
+            spread = "" if r.rate_std_rad_s is None else f" ± {r.rate_std_rad_s:.2g}"
+            rate = float(u.best.rates[i])
+            rows.append(
+                (r.name, u.law, f"{r.rate_rad_s:.3g}{spread}", f"{rate:.3g}", span, f"{1.0 / rate:.3g}")
+            )
+    columns = (
+        "pole",
+        "law",
+        "measured rate [1/s]",
+        "best fit [1/s]",
+        "90 % interval [1/s]",
+        "time constant [s]",
+    )
+    caption = (
+        "Real poles exp(−at): measured rates beside those of the updated model, nearest by rate and shape."
+    )
+    return PageTable(caption, columns, tuple(rows), text_columns=2)
+
+
+def _interval(draws: FloatArray) -> tuple[float, float]:
+    low, high = np.nanquantile(draws, [0.05, 0.95])
+    return float(low), float(high)
+
+
+def parameter_table(updates: Sequence[Update]) -> PageTable:
+    """Return the updated support parameters."""
+    rows = []
+    for u in updates:
+        known = u.uncertainty
+        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
+            span, verdict = UNKNOWN, UNKNOWN
+            if known is not None:
+                low, high = known.interval_90[i]
+                span, verdict = f"{scientific(low)} … {scientific(high)}", known.verdicts[i].verdict
+            text = f"{verdict}{', on its bound' if p.name in u.best.at_bound else ''}"
+            rows.append(
+                (
+                    u.law,
+                    p.name,
+                    UNKNOWN if p.unit == "-" else p.unit,
+                    text,
+                    _prior(p),
+                    scientific(float(value)),
+                    span,
+                )
+            )
+    columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
+    return PageTable(
+        "What are each law's parameters at its best fit? Intervals are the posterior's, whose median is the "
+        "value stated everywhere else. c_fore_aft, c_side_side: the rotor's dashpot.",
+        columns,
+        tuple(rows),
+        4,
+    )
+
+
+def _prior(p: Parameter) -> str:
+    if p.median is None or p.log_std is None:
+        return f"{scientific(p.low)} … {scientific(p.high)}"
+    return f"{scientific(p.median)} ×÷ {exp(p.log_std):.2g}"
+
+
+def solutions_table(result: TwinResult, u: Update) -> PageTable:
+    """Return every distinct solution of a law, with the modes that took part in the fit."""
+    of_solution = u.problem.states[0].residuals.modes
+    fitted = [m for m in result.measured if m.mode in of_solution]
+    columns = ("solution", "parameters", "cost [-]", "", *(words(m.label) for m in fitted))
+    rows, marked = [], set()
+    for i, s in enumerate(u.solutions):
+        if s.locked_damper:
+            marked.add(i)
+        notes = [f"{i + 1}: {count(s.found, 'start')}"] + ["best fit"] * (s is u.best)
+        notes += ["locked damper"] * s.locked_damper
+        values = [
+            f"{p.name} {scientific(float(v))}{_unit(p.unit)}{' *' if p.name in s.at_bound else ''}"
+            for p, v in zip(u.problem.parameters, s.theta, strict=True)
+        ]
+        modes = zip(s.frequency_hz, s.undamped_hz, s.damping_ratio, strict=True)
+        cells = [f"{frequency(float(f))}\n{frequency(float(f0))}\n{percent(float(z))}" for f, f0, z in modes]
+        head = ("\n".join(notes), "\n".join(values), scientific(s.cost))
+        rows.append((*head, "f [Hz]\nundamped f [Hz]\nζ [%]", *cells))
+    caption = (
+        f"{u.law}: are there other solutions? All found, cheapest first, and how many starts ended there; "
+        "* on a bound."
+    )
+    return PageTable(caption, columns, tuple(rows), 2, frozenset(marked))
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "-" else f" {unit}"

@@ -1,0 +1,1 @@
+"""A structure to turn, colour and set in motion."""

@@ -1,0 +1,144 @@
+"""Motions of a view: modes, a wave passing, a record played back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.response.motion.passage import Passage
+from jackettwin.response.motion.playback import Playback
+from jackettwin.structure import Assembly
+
+
+@dataclass(frozen=True)
+class DrawnMotion:
+    """Displacements of every node over time as shapes times coordinates.
+
+    Attributes
+    ----------
+    name, note : str
+    group : str
+        Under which heading the page lists it.
+    shapes : (n_shapes, 3·n_nodes) translations, any scale
+    q : (n_frames, n_shapes)
+    step_s : float
+        Time between frames.
+    start_s : float
+        Time of the first.
+    cyclic : bool
+        Frames go round; a record stops and starts again.
+    wave : dict, optional
+        ``height_m``, ``length_m``, ``direction_rad``: the surface, with its crest at the origin in frame 0.
+    load_kn_m : (n_frames, n_elements), optional
+    """
+
+    name: str
+    note: str
+    group: Literal["undamped modes", "damped modes", "loads and response"]
+    shapes: FloatArray
+    q: FloatArray
+    step_s: float
+    cyclic: bool = True
+    start_s: float = 0.0
+    wave: dict[str, float] | None = None
+    load_kn_m: FloatArray | None = None
+
+    def document(self) -> dict[str, Any]:
+        """Return plain data; shapes are scaled so that the largest translation ever is one."""
+        largest = float(np.abs(self._extreme()).max(initial=0.0))
+        scale = 1.0 / largest if largest > 0.0 else 1.0
+        return {
+            "name": self.name,
+            "note": self.note,
+            "group": self.group,
+            "shapes": [np.round(shape * scale, 5).tolist() for shape in self.shapes],
+            "q": [[float(f"{v:.5g}") for v in row] for row in self.q],
+            "largest_m": largest if self.group == "loads and response" else None,
+            "step_s": self.step_s,
+            "start_s": self.start_s,
+            "cyclic": self.cyclic,
+            "wave": self.wave,
+            "load": None if self.load_kn_m is None else np.round(self.load_kn_m, 3).tolist(),
+        }
+
+    def _extreme(self) -> FloatArray:
+        return self.q @ self.shapes
+
+
+_FRAMES = 48
+
+
+def undamped_motion(assembly: Assembly, name: str, frequency_hz: float, shape: FloatArray) -> DrawnMotion:
+    """Return a standing mode."""
+    theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
+    return DrawnMotion(
+        name,
+        f"{frequency_hz:.4f} Hz, undamped",
+        "undamped modes",
+        _translations(assembly, shape[None]),
+        np.cos(theta)[:, None],
+        1.0 / (frequency_hz * _FRAMES),
+    )
+
+
+def damped_motion(assembly: Assembly, name: str, eigenvalue: complex, shape: ComplexArray) -> DrawnMotion:
+    """Return a complex mode: its parts do not pass through rest together. Its decay is not drawn."""
+    f = abs(eigenvalue) / (2.0 * np.pi)
+    theta = 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES
+    parts = np.stack([shape.real, -shape.imag])
+    zeta = -eigenvalue.real / abs(eigenvalue)
+    return DrawnMotion(
+        name,
+        f"{f:.4f} Hz, ζ = {100 * zeta:.2f} %",
+        "damped modes",
+        _translations(assembly, parts),
+        np.stack([np.cos(theta), np.sin(theta)], axis=1),
+        1.0 / (f * _FRAMES),
+    )
+
+
+def wave_motion(assembly: Assembly, passage: Passage) -> DrawnMotion:
+    """Return a wave passing, with the structure at rest under it at every instant."""
+    rest = _translations(assembly, passage.displacement)
+    # few shapes carry all phases
+    u, s, vt = np.linalg.svd(rest, full_matrices=False)
+    kept = s > 1e-4 * s[0] if s[0] > 0.0 else np.arange(s.size) < 1
+    return DrawnMotion(
+        "regular wave",
+        f"H {passage.height_m:g} m, T {passage.period_s:g} s, length {passage.length_m:.0f} m, "
+        f"towards {np.degrees(passage.direction_rad):.0f}° from +x; quasi-static",
+        "loads and response",
+        vt[kept],
+        u[:, kept] * s[kept],
+        passage.period_s / len(rest),
+        wave={
+            "height_m": passage.height_m,
+            "length_m": passage.length_m,
+            "direction_rad": passage.direction_rad,
+        },
+        load_kn_m=passage.load_n_m / 1e3,
+    )
+
+
+def record_motion(assembly: Assembly, name: str, found: Playback) -> DrawnMotion:
+    """Return a record played back."""
+    end = found.start_s + found.step_s * len(found.q)
+    return DrawnMotion(
+        f"record {name}",
+        f"{found.start_s:.0f} to {end:.0f} s, {found.shapes.shape[1]} modes",
+        "loads and response",
+        _translations(assembly, found.shapes.T),
+        found.q,
+        found.step_s,
+        cyclic=False,
+        start_s=found.start_s,
+    )
+
+
+def _translations(assembly: Assembly, shapes: FloatArray) -> FloatArray:
+    """Return (n_shapes, 3·n_nodes) from shapes (n_shapes, assembly.n_dof)."""
+    full = np.asarray((assembly.expand @ shapes.T).T)
+    return full.reshape(shapes.shape[0], -1, 6)[:, :, :3].reshape(shapes.shape[0], -1)

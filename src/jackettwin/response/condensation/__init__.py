@@ -1,0 +1,1 @@
+"""The structure condensed to its supports, and its poles."""

@@ -1,0 +1,986 @@
+"""The condensed F(λ), small dense linear algebra, and loops over many poles and points, compiled.
+
+Everything here works on plain arrays. A condensed structure is the tuple ``model``
+
+    terms (n_terms, n_pairs), n_moments, mid (n_mid,), P (n_b, n_r), w2 (n_r,),
+    group, row, column, weight (n_entries,)
+
+of :class:`jackettwin.response.condensation.condensed.Condensed`; a support law is a row of
+:mod:`jackettwin.soil.laws.coefficients`.
+
+One file on purpose: compiled code on disk is renewed when its own file changes, whatever other file it calls.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call, untyped-decorator, call-overload"
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+# sums may be regrouped for speed, but signed zeros stay: they tell the sides of the branch cut apart
+_HOW: dict[str, Any] = {"error_model": "numpy", "fastmath": {"reassoc", "contract"}}
+compiled = njit(cache=True, **_HOW)
+"""For what Python calls."""
+making = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_HOW)
+"""For what only compiled code calls: half the compiling of a small kernel is its door to Python."""
+inner = njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, _nrt=False, **_HOW)
+"""For what makes no array either: a tenth of the compiling is counting who still holds one."""
+within = njit(inline="always", **_HOW)
+"""For what is called in one place: written into it there, so that what it calls is optimised once less."""
+
+MAX_STEPS = 30
+_TINY = 1e-300
+_MAX_DEPTH = 24
+_NEAR = 0.05
+"""A retained mode whose diagonal is less than this share of its ω² is near its resonance."""
+COARSE = 1e-4
+"""A cluster has come to rest as a whole when its mean moves less than this (relative): its poles are then
+known to the square of that and of their distance, and each can be refined from its own start."""
+INSEPARABLE = 1e-5
+"""Poles nearer than this (relative) stay together to the end: the block's error, their distance squared, is
+rounding."""
+_PARALLEL = 1.0 - 5e-7
+"""Two shapes of one pole with a larger cosine are one mode found twice."""
+_SKEWED = 1e3
+"""Condition number from which modes of a multiple pole hardly resemble pinned ones: they are not turned."""
+_CLEARLY = 1.0 + 1e-9
+"""An exchange must be better by more than rounding."""
+EQUAL = 1e-9
+"""Poles nearer than this (relative) are one multiple pole."""
+
+
+def compiled_before() -> bool:
+    """Tell whether what is compiled for this file lies on disk, so that nothing is compiled again."""
+    written = Path(__file__).stat().st_mtime
+    kept = Path(refine.stats.cache_path).glob("condensed_kernels.refine-*.nbi")
+    return any(file.stat().st_mtime >= written for file in kept)
+
+
+@inner
+def _law(row, s):
+    """Return D(s) and dD/ds."""
+    d = row[0] + (row[1] + row[5] * s) * s
+    dd = row[1] + 2.0 * row[5] * s
+    if row[2] > 0.0:
+        p = row[2] * np.exp(row[3] * np.log(s / row[4]))
+        d += p
+        dd += row[3] * p / s
+    for j in range(6, row.size, 2):
+        if row[j] > 0.0 and row[j + 1] > 0.0:
+            u = 1.0 / (1.0 + row[j + 1] * s)
+            d += row[j] * row[j + 1] * s * u
+            dd += row[j] * row[j + 1] * u * u
+    return d, dd
+
+
+@inner
+def law_derivatives(row, s, out):
+    """Fill ∂D(s)/∂row."""
+    for j in range(out.size):
+        out[j] = 0.0
+    out[0] = 1.0
+    out[1] = s
+    out[5] = s * s
+    if row[2] > 0.0:
+        log = np.log(s / row[4])
+        p = np.exp(row[3] * log)
+        out[2] = p
+        out[3] = row[2] * p * log
+        out[4] = -row[2] * p * row[3] / row[4]
+    for j in range(6, row.size, 2):
+        u = 1.0 / (1.0 + row[j + 1] * s)
+        out[j] = row[j + 1] * s * u
+        out[j + 1] = row[j] * s * u * u
+
+
+@inner
+def _structure(model, mu, s0, s1):
+    """Fill S0(μ) and dS0/dμ, packed; return nothing."""
+    terms, n_moments, mid = model[0], model[1], model[2]
+    n_pairs = terms.shape[1]
+    for p in range(n_pairs):
+        s0[p] = 0.0
+        s1[p] = 0.0
+    power = 1.0 + 0.0j
+    for t in range(terms.shape[0]):
+        if t == 0:
+            c, dc = 1.0 + 0.0j, 0.0j
+        elif t == 1:
+            c, dc = mu, 1.0 + 0.0j
+        elif t < n_moments:
+            c, dc = -mu * mu * power, -t * mu * power
+            power = -power * mu
+        else:
+            w = mid[t - n_moments]
+            u = 1.0 / (w + mu)
+            c, dc = -mu * mu * u, -mu * (2.0 * w + mu) * u * u
+        for p in range(n_pairs):
+            s0[p] += c * terms[t, p]
+            s1[p] += dc * terms[t, p]
+
+
+@compiled
+def fill(model, rows, a, b, s, F, dF, s0, s1):
+    """Fill F(s) and dF/ds, and the packed S0(μ), S0′(μ); return μ."""
+    P, w2 = model[3], model[4]
+    group, row, column, weight = model[5], model[6], model[7], model[8]
+    nb, nr = P.shape
+    t = 1.0 + b * s
+    q = s * s + a * s
+    dq = 2.0 * s + a
+    mu = q / t
+    g = dq - b * mu
+    _structure(model, mu, s0, s1)
+    p = 0
+    for i in range(nb):
+        for j in range(i, nb):
+            F[i, j] = t * s0[p]
+            dF[i, j] = b * s0[p] + g * s1[p]
+            F[j, i] = F[i, j]
+            dF[j, i] = dF[i, j]
+            p += 1
+    for i in range(nb):
+        for j in range(nr):
+            F[i, nb + j] = q * P[i, j]
+            dF[i, nb + j] = dq * P[i, j]
+            F[nb + j, i] = F[i, nb + j]
+            dF[nb + j, i] = dF[i, nb + j]
+    for j in range(nr):
+        for i in range(nr):
+            F[nb + i, nb + j] = 0.0
+            dF[nb + i, nb + j] = 0.0
+    for j in range(nr):
+        F[nb + j, nb + j] = q + t * w2[j]
+        dF[nb + j, nb + j] = dq + b * w2[j]
+    last = -1
+    d, dd = 0.0j, 0.0j
+    for e in range(group.size):
+        if group[e] != last:
+            last = group[e]
+            d, dd = _law(rows[last], s)
+        F[row[e], column[e]] += weight[e] * d
+        dF[row[e], column[e]] += weight[e] * dd
+    return mu
+
+
+@inner
+def _copy(A, n, B):
+    """Fill the leading n × n of B with that of A."""
+    for i in range(n):
+        for j in range(n):
+            B[i, j] = A[i, j]
+
+
+@inner
+def _assign(x, y):
+    """Fill y with x."""
+    for i in range(x.size):
+        y[i] = x[i]
+
+
+@inner
+def _count_from(start, numbers):
+    """Fill numbers with start, start + 1 and so on."""
+    for k in range(numbers.size):
+        numbers[k] = start + k
+
+
+@inner
+def _mirror(G, n):
+    """Copy the upper triangle of the leading n × n of G to the lower one."""
+    for i in range(n):
+        for k in range(i):
+            G[i, k] = G[k, i]
+
+
+@inner
+def eliminate(F, w2, place, G):
+    """Eliminate retained modes from F; return the size of what is left in G and the phase of their pivots.
+
+    They only meet the boundary, not each other, unless a law acts all over the structure (water): then all
+    stay. Those near their own resonance stay, too, for they would be poor pivots: ``place`` (n_retained,)
+    says where in G, or −1.
+    """
+    nr = w2.size
+    nb = F.shape[0] - nr
+    m, phase = nb, 1.0 + 0.0j
+    for i in range(1, nr):
+        for j in range(i):
+            if F[nb + i, nb + j] != 0.0:
+                _copy(F, F.shape[0], G)
+                _count_from(nb, place)
+                return nb + nr, phase
+    _copy(F, nb, G)
+    for j in range(nr):
+        pivot = F[nb + j, nb + j]
+        if abs(pivot) < _NEAR * w2[j]:
+            place[j] = m
+            for i in range(m):
+                G[i, m] = F[i, nb + j] if i < nb else 0.0
+                G[m, i] = G[i, m]
+            G[m, m] = pivot
+            m += 1
+            continue
+        place[j] = -1
+        phase *= pivot / abs(pivot)
+        inverse = 1.0 / pivot
+        for i in range(nb):
+            f = F[i, nb + j] * inverse
+            for k in range(i, nb):
+                G[i, k] -= f * F[k, nb + j]
+    _mirror(G, nb)
+    return m, phase
+
+
+@inner
+def solve_eliminated(F, place, G, m, pivot, x, z):
+    """Overwrite x with F⁻¹x from the factors of what :func:`eliminate` left; ``z`` is room for m numbers."""
+    nr = place.size
+    nb = F.shape[0] - nr
+    for i in range(nb):
+        z[i] = x[i]
+    for j in range(nr):
+        if place[j] >= 0:
+            z[place[j]] = x[nb + j]
+            continue
+        x[nb + j] /= F[nb + j, nb + j]
+        for i in range(nb):
+            z[i] -= F[i, nb + j] * x[nb + j]
+    solve(G, m, pivot, z)
+    for i in range(nb):
+        x[i] = z[i]
+    for j in range(nr):
+        if place[j] >= 0:
+            x[nb + j] = z[place[j]]
+            continue
+        force = 0.0j
+        for i in range(nb):
+            force += F[i, nb + j] * z[i]
+        x[nb + j] -= force / F[nb + j, nb + j]
+
+
+@inner
+def factor(A, n, pivot):
+    """Factor the leading n × n of A = PLU in place; return the phase of its determinant (0 if singular)."""
+    phase = 1.0 + 0.0j
+    for k in range(n):
+        best, at = -1.0, k
+        for i in range(k, n):
+            size = abs(A[i, k].real) + abs(A[i, k].imag)
+            if size > best:
+                best, at = size, i
+        pivot[k] = at
+        if best == 0.0:
+            return 0.0j
+        if at != k:
+            for j in range(n):
+                A[k, j], A[at, j] = A[at, j], A[k, j]
+            phase = -phase
+        phase *= A[k, k] / abs(A[k, k])
+        inverse = 1.0 / A[k, k]
+        for i in range(k + 1, n):
+            if A[i, k] != 0.0:
+                f = A[i, k] * inverse
+                A[i, k] = f
+                for j in range(k + 1, n):
+                    A[i, j] -= f * A[k, j]
+    return phase
+
+
+@inner
+def solve(A, n, pivot, x):
+    """Overwrite x (n,) with A⁻¹x from the factors of :func:`factor`."""
+    for k in range(n):
+        at = pivot[k]
+        x[k], x[at] = x[at], x[k]
+    for i in range(1, n):
+        for j in range(i):
+            x[i] -= A[i, j] * x[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            x[i] -= A[i, j] * x[j]
+        x[i] /= A[i, i]
+
+
+@inner
+def times(A, x, y):
+    """Fill y with A x; return xᵀAx."""
+    total = 0.0j
+    for i in range(x.size):
+        row = 0.0j
+        for j in range(x.size):
+            row += A[i, j] * x[j]
+        y[i] = row
+        total += x[i] * row
+    return total
+
+
+@inner
+def _product(x, y):
+    """Return xᵀy."""
+    total = 0.0j
+    for i in range(x.size):
+        total += x[i] * y[i]
+    return total
+
+
+@making
+def _matrices(n):
+    """Return room for F, dF/ds and what elimination leaves of F."""
+    shape = (n, n)
+    return np.empty(shape, np.complex128), np.empty(shape, np.complex128), np.empty(shape, np.complex128)
+
+
+@inner
+def _normalise(x):
+    size = 0.0
+    for i in range(x.size):
+        size += x[i].real ** 2 + x[i].imag ** 2
+    size = 1.0 / np.sqrt(size)
+    for i in range(x.size):
+        x[i] *= size
+
+
+@inner
+def _bounded(step, s):
+    """Return the step, no longer than a third of |s|."""
+    size, most = abs(step), 0.3 * abs(s)
+    return step * (most / size) if size > most else step
+
+
+@inner
+def _likeness(x, y):
+    """Return xᴴy."""
+    total = 0.0j
+    for i in range(x.size):
+        total += np.conj(x[i]) * y[i]
+    return total
+
+
+@inner
+def _mean(values):
+    """Return the mean."""
+    total = 0.0j
+    for i in range(values.size):
+        total += values[i]
+    return total / values.size
+
+
+@making
+def _room(model):
+    """Return what refining one pole or two works with."""
+    n, n_pairs, n_retained = model[3].shape[0] + model[3].shape[1], model[0].shape[1], model[4].size
+    F, dF, G = _matrices(n)
+    s0, s1, z = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128), np.empty(n, np.complex128)
+    U, W, small = np.empty((2, n), np.complex128), np.empty((2, n), np.complex128), np.empty(8, np.complex128)
+    return F, dF, G, s0, s1, np.empty(n, np.int64), np.empty(n_retained, np.int64), U, W, z, small
+
+
+@inner
+def _orthonormalise(U, W, m):
+    """Make the first rows of U, one or two, orthonormal, those of W following."""
+    for j in range(m):
+        for _ in range(2 * j):  # twice is enough: nearly parallel rows lose their digits once
+            c = _likeness(U[0], U[1])
+            for k in range(U.shape[1]):
+                U[1, k] -= c * U[0, k]
+                W[1, k] -= c * W[0, k]
+        size = 1.0 / np.sqrt(_likeness(U[j], U[j]).real)
+        for k in range(U.shape[1]):
+            U[j, k] *= size
+            W[j, k] *= size
+
+
+@inner
+def _small_eigen(A, B, Y):
+    """Return the two δ of A y = δ B y, filling Y with y; the matrices (4,) are row by row."""
+    inverse = 1.0 / (B[0] * B[3] - B[1] * B[2])
+    c00, c01 = (B[3] * A[0] - B[1] * A[2]) * inverse, (B[3] * A[1] - B[1] * A[3]) * inverse
+    c10, c11 = (B[0] * A[2] - B[2] * A[0]) * inverse, (B[0] * A[3] - B[2] * A[1]) * inverse
+    middle, half = 0.5 * (c00 + c11), 0.5 * (c00 - c11)
+    root = np.sqrt(half * half + c01 * c10)
+    # of the two roots the one that adds to half, so that no digits are lost
+    top = half + root if abs(half + root) > abs(half - root) else half - root
+    Y[0], Y[1], Y[2], Y[3] = top, -c01, c10, top
+    return middle + (top - half), middle - (top - half)
+
+
+@inner
+def _ritz(room, s, values, vectors):
+    """Fill the Rayleigh–Ritz values and vectors about s in the span of U (W is F U); return their step."""
+    F, dF, G, s0, s1, pivot, place, U, W, y, small = room
+    m, A, B = values.size, small[:4], small[4:]
+    _orthonormalise(U, W, m)
+    for j in range(m):
+        times(dF, U[j], y)
+        for i in range(m):
+            A[2 * i + j] = -_product(U[i], W[j])
+            B[2 * i + j] = _product(U[i], y)
+    if m == 1:
+        step = A[0] / B[0]
+        if np.isfinite(abs(step)):
+            values[0] = s + _bounded(step, s)
+            _assign(U[0], vectors[0])
+        return _bounded(step, s)
+    one, other = _small_eigen(A, B, A)
+    middle, half = 0.5 * (one + other), 0.5 * (one - other)
+    spread = abs(half)
+    if not np.isfinite(spread):
+        return middle
+    step = _bounded(middle, s)
+    half *= min(1.0, 0.3 * abs(s) / max(spread, _TINY))
+    values[0], values[1] = s + step + half, s + step - half
+    for j in range(2):
+        _assign(U[j], vectors[j])
+        if spread > EQUAL * abs(s):
+            # vectors of equal values would be rounding's, and might be parallel
+            for k in range(y.size):
+                vectors[j, k] = A[j] * U[0, k] + A[2 + j] * U[1, k]
+            _normalise(vectors[j])
+    return step
+
+
+@inner
+def _iterate(model, laws, a, b, values, vectors, tolerance, room):
+    """Refine one pole, or two nearly equal ones about their mean, by inverse iteration and Rayleigh–Ritz.
+
+    One pole converges cubically: F is symmetric. Two are known to the square of their distance. The starts'
+    shapes know the poles better than their values do. Return whether the mean came to rest.
+    """
+    F, dF, G, s0, s1, pivot, place, U, W, z, small = room
+    m = values.size
+    for round_ in range(MAX_STEPS):
+        s = _mean(values)
+        fill(model, laws, a, b, s, F, dF, s0, s1)
+        left, phase = m, 1.0 + 0.0j
+        if round_ > 0:
+            left, phase = eliminate(F, model[4], place, G)
+            if factor(G, left, pivot) == 0.0:
+                return True
+        for j in range(m):
+            if round_ == 0:
+                _assign(vectors[j], U[j])
+                times(F, U[j], W[j])
+            else:
+                times(dF, vectors[j], W[j])
+                _assign(W[j], U[j])
+                solve_eliminated(F, place, G, left, pivot, U[j], z)
+        step = _ritz(room, s, values, vectors)
+        if not np.isfinite(abs(step)):
+            return False
+        if round_ > 0 and abs(step) <= tolerance * abs(s):
+            return True
+    return False
+
+
+@inner
+def _exchange(values, shapes, a, b):
+    """Let two modes take each other's place."""
+    values[a], values[b] = values[b], values[a]
+    for i in range(shapes.shape[1]):
+        shapes[a, i], shapes[b, i] = shapes[b, i], shapes[a, i]
+
+
+@inner
+def _take(values, shapes, i, other_values, other_shapes, j):
+    """Copy mode i to the place j of others."""
+    other_values[j] = values[i]
+    for k in range(shapes.shape[1]):
+        other_shapes[j, k] = shapes[i, k]
+
+
+@within
+def _refine_cluster(model, laws, a, b, values, vectors, tolerance, room):
+    """Refine one pole, or two that are near each other: together, then alone where they stand clear.
+
+    Two end in the order of |λ|, not in that of the starts. Return whether all came to rest.
+    """
+    first, size = 0, values.size
+    near = COARSE if size == 2 else tolerance
+    while first < values.size:
+        last = first + size
+        if not _iterate(model, laws, a, b, values[first:last], vectors[first:last], near, room):
+            return False
+        if near == tolerance:
+            first = last
+            continue
+        near = tolerance
+        if abs(values[1]) < abs(values[0]):
+            _exchange(values, vectors, 0, 1)
+        if abs(values[1] - values[0]) > INSEPARABLE * abs(values[1]):
+            size = 1
+    return True
+
+
+@inner
+def _known(values, family, first, at):
+    """Fill ``at`` with the places of a family's finite values, in the order of their size.
+
+    Return how many there are.
+    """
+    m = 0
+    for i in range(first, values.size):
+        if family[i] == family[first] and np.isfinite(values[i].real):
+            j = m
+            while j > 0 and abs(values[at[j - 1]]) > abs(values[i]):
+                at[j] = at[j - 1]
+                j -= 1
+            at[j] = i
+            m += 1
+    return m
+
+
+@compiled
+def refine(model, rows, rayleigh, family, values, vectors, near, tolerance):
+    """Refine starts of every set in place; two of one family that are near each other go together.
+
+    ``family`` (n_modes,) ascends; a mode without a start is NaN. Returns (n_sets, n_modes) numbers: 1 where
+    a mode converged, 0 where it did not, and for modes of a cluster of more than two, which are left as they
+    are, one less than minus the place of its first.
+    """
+    n_sets, n_modes = values.shape
+    room = _room(model)
+    done = np.zeros((n_sets, n_modes), np.int64)
+    own, at = np.empty(2, np.complex128), np.empty(n_modes, np.int64)
+    x = np.empty((2, vectors.shape[2]), np.complex128)
+    for k in range(n_sets):
+        a, b = rayleigh[k]
+        for first in range(n_modes):
+            if first > 0 and family[first] == family[first - 1]:
+                continue
+            m, start = _known(values[k], family, first, at), 0
+            for end in range(1, m + 1):
+                before, last = at[end - 1], at[min(end, m - 1)]
+                if end < m and abs(values[k, last] - values[k, before]) <= near * abs(values[k, last]):
+                    continue
+                size = end - start
+                for i in range(size):
+                    if size > 2:
+                        done[k, at[start + i]] = -1 - at[start]
+                    else:
+                        _take(values[k], vectors[k], at[start + i], own, x, i)
+                if size <= 2:
+                    ok = _refine_cluster(model, rows[k], a, b, own[:size], x[:size], tolerance, room)
+                    for i in range(size):
+                        _take(own, x, i, values[k], vectors[k], at[start + i])
+                        done[k, at[start + i]] = 1 if ok else 0
+                start = end
+    return done
+
+
+@inner
+def _weighed(M, x, y):
+    """Fill y with M x; M is real."""
+    for i in range(x.size):
+        total = 0.0j
+        for j in range(x.size):
+            total += M[i, j] * x[j]
+        y[i] = total
+
+
+@inner
+def _members(family, values, first, own):
+    """Fill ``own`` with the known modes of the family that begins at ``first``.
+
+    Return how many there are and where the next family begins.
+    """
+    last, m = first, 0
+    while last < values.size and family[last] == family[first]:
+        if np.isfinite(values[last].real):
+            own[m] = last
+            m += 1
+        last += 1
+    return m, last
+
+
+@inner
+def _among(M, starts, shapes, own, m, heavy, room, pivot):
+    """Return the least share, by mass, of any of m modes that lies in the space of their starts."""
+    gram, part, across = room[: m * m].reshape(m, m), room[m * m : m * (m + 1)], room[m * (m + 1) :]
+    for i in range(m):
+        _weighed(M, starts[own[i]], heavy[i])
+        for j in range(m):
+            gram[j, i] = _likeness(starts[own[j]], heavy[i])
+    factor(gram, m, pivot)
+    least = 1.0
+    for j in range(m):
+        x = shapes[own[j]]
+        for i in range(m):
+            part[i] = np.conj(_likeness(x, heavy[i]))
+            across[i] = part[i]
+        solve(gram, m, pivot, across)
+        share = 0.0
+        for i in range(m):
+            share += (np.conj(part[i]) * across[i]).real
+        _weighed(M, x, heavy[m])
+        least = min(least, share / _likeness(x, heavy[m]).real)
+    return least
+
+
+@compiled
+def recognised(M, family, starts, values, shapes, least, same):
+    """Tell in which sets every mode lies, by mass, in the space of its family's starts, and none is twice.
+
+    ``least`` is the share of it that must; poles nearer than ``same`` (relative) with parallel shapes are one
+    mode. Modes that are NaN are left out.
+    """
+    n_sets, n_modes, n = shapes.shape
+    good = np.ones(n_sets, np.bool_)
+    heavy = np.empty((n_modes + 1, n), np.complex128)
+    room, pivot = np.empty(n_modes * (n_modes + 2), np.complex128), np.empty(n_modes, np.int64)
+    own = np.empty(n_modes, np.int64)
+    for k in range(n_sets):
+        first = 0
+        while first < n_modes:
+            m, last = _members(family, values[k], first, own)
+            if m:
+                good[k] &= _among(M, starts[k], shapes[k], own, m, heavy, room, pivot) >= least
+            first = last
+        for i in range(n_modes):
+            for j in range(i):
+                if abs(values[k, i] - values[k, j]) <= same * abs(values[k, i]):
+                    good[k] &= abs(_likeness(shapes[k, i], shapes[k, j])) < _PARALLEL
+    return good
+
+
+@inner
+def _sort(own, m, values, shapes):
+    """Put m modes in the order of |λ|."""
+    for i in range(1, m):
+        for j in range(i, 0, -1):
+            if abs(values[own[j]]) < abs(values[own[j - 1]]):
+                _exchange(values, shapes, own[j], own[j - 1])
+
+
+@inner
+def _name(like, own, m, values, shapes, likeness):
+    """Put each of m modes of a family in the place it resembles most.
+
+    From the order of |λ| on, two modes exchange places until no exchange makes the sum of the likenesses
+    larger: what comes out depends on the modes alone, not on how they were found.
+    """
+    _sort(own, m, values, shapes)
+    for j in range(m):
+        for i in range(m):
+            # shapes of one family have about the same modal mass: their unit norm does for weighing
+            likeness[i, j] = abs(_product(shapes[own[j]], like[own[i]])) ** 2
+    better = True
+    while better:
+        better = False
+        for i in range(m):
+            for j in range(i):
+                now, then = likeness[i, i] + likeness[j, j], likeness[i, j] + likeness[j, i]
+                if then > _CLEARLY * now:
+                    _exchange(values, shapes, own[i], own[j])
+                    for n in range(m):
+                        likeness[n, i], likeness[n, j] = likeness[n, j], likeness[n, i]
+                    better = True
+
+
+@making
+def _turn(like, own, m, values, shapes):
+    """Mix m modes of a multiple pole until each has a part of its own pinned mode and none of the others'.
+
+    Modes that hardly resemble these are left as they are.
+    """
+    n = shapes.shape[1]
+    part, pivot = np.empty((m, m), np.complex128), np.empty(m, np.int64)
+    column, mixed = np.empty(m, np.complex128), np.zeros((m, n), np.complex128)
+    largest, mean = 0.0, 0.0j
+    for j in range(m):
+        mean += values[own[j]] / m
+        for i in range(m):
+            part[i, j] = _product(shapes[own[j]], like[own[i]])
+            largest = max(largest, abs(part[i, j]))
+    if factor(part, m, pivot) == 0.0:
+        return
+    for i in range(m):
+        for j in range(m):
+            column[j] = largest if i == j else 0.0
+        solve(part, m, pivot, column)
+        for j in range(m):
+            if not abs(column[j]) < _SKEWED:
+                return
+            for k in range(n):
+                mixed[i, k] += column[j] * shapes[own[j], k]
+    for i in range(m):
+        _normalise(mixed[i])
+        values[own[i]] = mean
+        _assign(mixed[i], shapes[own[i]])
+
+
+@compiled
+def arrange(like, family, values, shapes, same):
+    """Name the modes of every family in every set, in place.
+
+    ``like`` (n_modes, n) is φᵀM of the pinned modes that name them. Returns (n_sets, n_modes) numbers, the
+    same for the modes of one multiple pole, those nearer than ``same`` (relative): the place of its first.
+    """
+    n_sets, n_modes = values.shape
+    number = np.empty((n_sets, n_modes), np.int64)
+    own = np.empty(n_modes, np.int64)
+    likeness = np.empty((n_modes, n_modes))
+    for k in range(n_sets):
+        for i in range(n_modes):
+            number[k, i] = i
+        first = 0
+        while first < n_modes:
+            m, last = _members(family, values[k], first, own)
+            if m > 1:
+                _name(like, own, m, values[k], shapes[k], likeness)
+            for i in range(m):
+                for j in range(i + 1, m):
+                    near = abs(values[k, own[j]] - values[k, own[i]]) <= same * abs(values[k, own[i]])
+                    if near and number[k, own[j]] == own[j]:
+                        number[k, own[j]] = number[k, own[i]]
+            first = last
+    return number
+
+
+@compiled
+def turn(like, number, values, shapes):
+    """Turn the modes of the multiple poles that :func:`arrange` numbered to the pinned ones, in place."""
+    n_sets, n_modes = values.shape
+    own = np.empty(n_modes, np.int64)
+    for k in range(n_sets):
+        for i in range(n_modes):
+            m = 0
+            for j in range(i, n_modes):
+                if number[k, j] == i:
+                    own[m] = j
+                    m += 1
+            if m > 1:
+                _turn(like, own, m, values[k], shapes[k])
+
+
+@inner
+def _forces(model, s, mu, s0, s1, x, forces):
+    """Fill the forces S_g x of every group, then (∂F/∂a) x and (∂F/∂b) x."""
+    P, w2 = model[3], model[4]
+    group, row, column, weight = model[5], model[6], model[7], model[8]
+    nb, nr = P.shape
+    a, b = forces.shape[0] - 2, forces.shape[0] - 1
+    for e in range(forces.shape[0]):
+        for i in range(nb + nr):
+            forces[e, i] = 0.0
+    for e in range(group.size):
+        forces[group[e], row[e]] += weight[e] * x[column[e]]
+    p = 0
+    for i in range(nb):
+        for j in range(i, nb):
+            da, db = s * s1[p], s * (s0[p] - mu * s1[p])
+            forces[a, i] += da * x[j]
+            forces[b, i] += db * x[j]
+            if i != j:
+                forces[a, j] += da * x[i]
+                forces[b, j] += db * x[i]
+            p += 1
+    for j in range(nr):
+        forces[a, nb + j] += s * x[nb + j]
+        forces[b, nb + j] += s * w2[j] * x[nb + j]
+        for i in range(nb):
+            forces[a, i] += s * P[i, j] * x[nb + j]
+            forces[a, nb + j] += s * P[i, j] * x[i]
+
+
+@inner
+def _loads(rows, s, jacobian, rayleigh_jacobian, forces, law, loads):
+    """Fill −(∂F/∂z) x for every parameter z from the forces of the groups, of a and of b."""
+    n_groups, width, n_z = jacobian.shape
+    n = forces.shape[1]
+    for z in range(n_z):
+        for i in range(n):
+            loads[z, i] = 0.0
+    for g in range(n_groups + 2):
+        if g < n_groups:
+            law_derivatives(rows[g], s, law)
+        for z in range(n_z):
+            c = 0.0j
+            if g < n_groups:
+                for w in range(width):
+                    c += law[w] * jacobian[g, w, z]
+            else:
+                c += rayleigh_jacobian[g - n_groups, z]
+            if c != 0.0:
+                for i in range(n):
+                    loads[z, i] -= c * forces[g, i]
+
+
+@inner
+def _border(F, Y, X, bordered, pivot):
+    """Factor [F, F′X; Xᴴ, 0] with Y = F′X, rows of Y and X being modes of one multiple pole."""
+    m, n = X.shape
+    _copy(F, n, bordered)
+    for j in range(m):
+        for i in range(m):
+            bordered[n + i, n + j] = 0.0
+        for i in range(n):
+            bordered[i, n + j] = Y[j, i]
+            bordered[n + j, i] = np.conj(X[j, i])
+    factor(bordered, n + m, pivot)
+
+
+@inner
+def _bordered_solution(bordered, load, pivot, full, x):
+    """Fill x with the solution of a factored bordered system under a load."""
+    n = load.size
+    for i in range(full.size):
+        full[i] = load[i] if i < n else 0.0
+    solve(bordered, full.size, pivot, full)
+    for i in range(n):
+        x[i] = full[i]
+
+
+@compiled
+def slopes(
+    model, rows, rayleigh, which, multiple, values, vectors, jacobian, rayleigh_jacobian, dvalues, dvectors
+):
+    """Fill dλ/dz and dx/dz (without a component along x) for every mode and parameter z.
+
+    ``jacobian`` (n_sets, n_groups, width, n_z) and ``rayleigh_jacobian`` (n_sets, 2, n_z) say how the law
+    rows and (a, b) depend on z. An empty ``dvectors`` asks for the eigenvalues alone. Neighbours in the list
+    with the same number in ``multiple`` (n_values,) are modes of one multiple pole: the diagonal of its
+    derivative (Xᵀ F′X)⁻¹ Xᵀ(−∂F/∂z)X holds their slopes, whose sum is that of the poles whatever the vectors,
+    and dx has no component along any of them.
+    """
+    n_values, n = vectors.shape
+    n_pairs = model[0].shape[1]
+    n_groups, width, n_z = jacobian.shape[1], jacobian.shape[2], jacobian.shape[3]
+    F, dF = np.empty((n, n), np.complex128), np.empty((n, n), np.complex128)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    law = np.empty(width, np.complex128)
+    forces, loads = np.empty((n_groups + 2, n), np.complex128), np.empty((n_z, n), np.complex128)
+    first = 0
+    while first < n_values:
+        last = first + 1
+        while last < n_values and multiple[last] == multiple[first]:
+            last += 1
+        k, m, s, X = which[first], last - first, _mean(values[first:last]), vectors[first:last]
+        mu = fill(model, rows[k], rayleigh[k, 0], rayleigh[k, 1], s, F, dF, s0, s1)
+        Y, B, g = np.empty((m, n), np.complex128), np.empty((m, m), np.complex128), np.empty(m, np.complex128)
+        small, pivot = np.empty(m, np.int64), np.empty(n + m, np.int64)
+        bordered, full = np.empty((n + m, n + m), np.complex128), np.zeros(n + m, np.complex128)
+        for j in range(m):
+            times(dF, X[j], Y[j])
+            for i in range(m):
+                B[i, j] = _product(X[i], Y[j])
+        factor(B, m, small)
+        if dvectors.size:
+            _border(F, Y, X, bordered, pivot)
+        for j in range(m):
+            _forces(model, s, mu, s0, s1, X[j], forces)
+            _loads(rows[k], s, jacobian[k], rayleigh_jacobian[k], forces, law, loads)
+            for z in range(n_z):
+                for i in range(m):
+                    g[i] = _product(X[i], loads[z])
+                solve(B, m, small, g)
+                dvalues[first + j, z] = g[j]
+                if dvectors.size:
+                    _bordered_solution(bordered, loads[z], pivot, full, dvectors[first + j, z])
+        first = last
+
+
+@inner
+def _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place):
+    """Return the phase of det F(s)/Π(s − p)(s − p̄) over the known poles p."""
+    fill(model, rows, a, b, s, F, dF, s0, s1)
+    left, phase = eliminate(F, model[4], place, G)
+    phase *= factor(G, left, pivot)
+    for p in known:
+        away = (s - p) * (s - np.conj(p))
+        phase *= np.conj(away) / abs(away)
+    return phase
+
+
+@inner
+def _point(kind, u, radius, small):
+    """Return a point of the path at u in [0, 1]: the great arc, the upper side of the cut, the small arc.
+
+    The great arc's points crowd towards the negative real axis, where multiple poles of the supports lie.
+    """
+    if kind == 0:
+        return radius * np.exp(1j * np.pi * (1.0 - (1.0 - u) ** 2))
+    if kind == 1:
+        return complex(-radius * (small / radius) ** u, 0.0)
+    return small * np.exp(1j * np.pi * (1.0 - u))
+
+
+@compiled
+def winding(model, rows, a, b, radius, cut, n_points, known):
+    """Return the change of arg det F along the upper half circle in units of π, NaN if it runs over a pole.
+
+    Known poles are divided out, so that only unknown ones can turn the phase fast, and counted in the end.
+    With a branch cut the path returns along the upper side of the cut and around the origin.
+    """
+    n = model[3].shape[0] + model[3].shape[1]
+    n_pairs = model[0].shape[1]
+    F, dF, G = _matrices(n)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    pivot, place = np.empty(n, np.int64), np.empty(model[4].size, np.int64)
+    stop, phase = np.empty(_MAX_DEPTH + 2), np.empty(_MAX_DEPTH + 2, np.complex128)
+    small = 1e-6 * radius
+    total = 0.0
+    for kind in range(3 if cut else 1):
+        n_here = n_points if kind < 2 else 4
+        u0 = 0.0
+        here = _phase(
+            model, rows, a, b, _point(kind, 0.0, radius, small), known, F, dF, G, s0, s1, pivot, place
+        )
+        for i in range(n_here):
+            depth = 0
+            stop[0] = (i + 1) / n_here
+            s = _point(kind, stop[0], radius, small)
+            phase[0] = _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place)
+            while depth >= 0:
+                turn = np.angle(phase[depth] * np.conj(here))
+                if abs(turn) <= 0.7:
+                    total += turn
+                    here, u0 = phase[depth], stop[depth]
+                    depth -= 1
+                    continue
+                if depth > _MAX_DEPTH:
+                    return np.nan
+                stop[depth + 1] = 0.5 * (u0 + stop[depth])
+                s = _point(kind, stop[depth + 1], radius, small)
+                phase[depth + 1] = _phase(model, rows, a, b, s, known, F, dF, G, s0, s1, pivot, place)
+                depth += 1
+    inside = 0
+    for p in known:
+        if abs(p) < radius:
+            inside += 1
+    return total / np.pi + 2.0 * inside
+
+
+@compiled
+def inertia(model, rows, a, b, points):
+    """Return the number of negative eigenvalues of the real symmetric F at each point of the real axis."""
+    w2 = model[4]
+    n = model[3].shape[0] + w2.size
+    n_pairs = model[0].shape[1]
+    F, dF, G = _matrices(n)
+    s0, s1 = np.empty(n_pairs, np.complex128), np.empty(n_pairs, np.complex128)
+    place = np.empty(w2.size, np.int64)
+    A = np.empty((n, n))
+    count = np.zeros(points.size, np.int64)
+    for m in range(points.size):
+        fill(model, rows, a, b, complex(points[m], 0.0), F, dF, s0, s1)
+        left, _ = eliminate(F, w2, place, G)
+        for j in range(w2.size):
+            if place[j] < 0 and F[n - w2.size + j, n - w2.size + j].real < 0.0:
+                count[m] += 1
+        for i in range(left):
+            for j in range(left):
+                A[i, j] = G[i, j].real
+        for k in range(left):
+            if A[k, k] < 0.0:
+                count[m] += 1
+            for i in range(k + 1, left):
+                f = A[i, k] / A[k, k] if A[k, k] != 0.0 else 0.0
+                for j in range(i, left):
+                    A[i, j] -= f * A[k, j]
+                    A[j, i] = A[i, j]
+    return count

@@ -1,0 +1,1 @@
+"""Modes and poles of the whole model, their names and their shapes."""

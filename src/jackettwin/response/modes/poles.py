@@ -1,0 +1,264 @@
+"""Every damped pole inside a disc, by a sparse method.
+
+The first-order system of the thesis, (7.2) and (7.5), is never formed. Arnoldi iteration works on its inverse
+about a small positive real shift σ, where F(σ) is real, symmetric and positive definite for any passive
+support. What it found is projected out and it runs again, until nothing is left inside the disc: that is what
+finds multiple poles. Each pole, or cluster of nearly equal poles, is then refined on the non-linear F(λ)x = 0
+itself, which keeps their number. A springpot starts from a law of few states; what that finds is refined
+on the springpot's own law in the space of all the shapes found, and there alone on the whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse.linalg as spla
+from scipy.sparse.csgraph import connected_components
+
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jackettwin.errors import NumericalError
+from jackettwin.response.state import factorised, shifted_inverse
+from jackettwin.response.system import Matrix, Pencil
+from jackettwin.soil.laws.viscoelastic import Prony, Springpot, one_branch, prony_fit
+
+Pair = tuple[complex, ComplexArray]
+"""A pole and its shape on the pencil's DOFs."""
+
+_SMALL = 300
+"""State vectors shorter than this are solved densely: Arnoldi needs room."""
+REAL = 1e-9
+"""A pole with |Im λ| below this share of |λ| is real."""
+_AT_ZERO = 5e-6
+"""A pole smaller than this share of the disc's radius is a structure at rest, not an oscillation."""
+_AT_REST = 1e-10
+"""A pole that a Newton step moves less than this (relative) is found."""
+_ROUNDING = 1e-7
+"""What rounding may leave in a pole of a finely cut mesh, whose stiffness spans many decades."""
+_FINE = (1e-4, 1e3, 4)
+"""Range over the radius and branches a decade of a springpot's fit where one branch did not do. Every branch
+inside the disc brings a real pole for every degree of freedom it holds, all of which have to be found."""
+_OFF = 0.05
+"""By which the starts of one branch, within 10 % of the law over a decade and a half, may miss."""
+_IN_SPACE = 1e-7
+"""Where a Newton step among the shapes found ends: they are not the springpot's own to more than this."""
+_STALE = 1e-3
+"""A pole that moved further (relative) wants new factors."""
+_ALIKE = 0.9
+"""Cosine of two shapes of unit length from which they are one."""
+_CLUSTER = 1e-5
+"""Poles nearer than this (relative) are refined together, so that none falls on its neighbour."""
+
+
+def poles_below(pencil: Pencil, radius: float) -> list[Pair]:
+    """Return every pole with |λ| ≤ radius [rad/s] and Im λ ≥ 0, by |λ|.
+
+    Raises
+    ------
+    NumericalError
+        If the iteration does not converge or a refined pole does not come to rest.
+    """
+    if all(isinstance(group.law, Prony) for group in pencil.groups):
+        values, vectors = _poles_within(pencil, radius * (1.0 + _CLUSTER))
+        pairs = [pair for at in _clusters(values) for pair in _exactly(pencil, values[at], vectors[:, at])]
+    else:
+        coarse = _fitted(pencil, lambda law: one_branch(law.row, radius))
+        pairs, whole = _from_start(pencil, coarse, radius)
+        if not whole:
+            low, high, per_decade = _FINE
+            hz = radius / (2.0 * pi)
+            fine = _fitted(pencil, lambda law: prony_fit(law, low * hz, high * hz, per_decade))
+            pairs, _ = _from_start(pencil, fine, radius)
+    inside = [pair for pair in pairs if abs(pair[0]) <= radius and pair[0].imag >= -REAL * abs(pair[0])]
+    return sorted(inside, key=lambda pair: abs(pair[0]))
+
+
+def _from_start(pencil: Pencil, start: Pencil, radius: float) -> tuple[list[Pair], bool]:
+    """Return the poles of ``pencil`` from those on other laws, and whether each start had its own."""
+    # a start law is off by some hundredths: what it has just outside may lie inside
+    values, vectors = _poles_within(start, radius * (1.0 + _OFF))
+    clusters = [at for at in _clusters(values) if values[at].imag.any()]  # the others are the start law's own
+    if not clusters:
+        return [], True
+    space = _extended(np.zeros((pencil.n, 0)), vectors)
+    small = _on_space(pencil, space)
+    found = [_nearly(pencil, small, space, values[at], space.T @ vectors[:, at]) for at in clusters]
+    pairs = [pair for part in found for pair in part]
+    return pairs, all(found) and not _doubled(pairs)
+
+
+def _doubled(pairs: list[Pair]) -> bool:
+    """Tell whether two starts came to one pole: the same value and the same shape."""
+    values = np.array([value for value, _ in pairs])
+    near = np.abs(values[:, None] - values) <= _ROUNDING * np.abs(values)
+    return any(
+        abs(np.vdot(pairs[i][1], pairs[j][1])) > _ALIKE
+        for i, j in zip(*np.nonzero(np.triu(near, 1)), strict=True)
+    )
+
+
+def _fitted(pencil: Pencil, fit: Callable[[Springpot], Prony]) -> Pencil:
+    """Return the pencil with a law of few states for every springpot."""
+    laws = [fit(g.law) if isinstance(g.law, Springpot) else g.law for g in pencil.groups]
+    return pencil.with_laws(laws)
+
+
+def _on_space(pencil: Pencil, V: FloatArray) -> Pencil:
+    """Return the pencil on the coordinates of a basis (n, n_vectors)."""
+    groups = tuple(replace(group, S=V.T @ (group.S @ V)) for group in pencil.groups)
+    return Pencil(V.T @ (pencil.M @ V), V.T @ (pencil.K @ V), pencil.rayleigh, groups)
+
+
+def _poles_within(pencil: Pencil, radius: float) -> tuple[ComplexArray, ComplexArray]:
+    """Return all poles with |λ| ≤ radius and Im λ ≥ 0 and their displacement parts (n, n_poles).
+
+    Of a nearly real pair both are returned: rounding may have made it from two real poles.
+    """
+    sigma = 0.02 * radius
+    inverse, size = shifted_inverse(pencil, sigma)
+    Q = np.eye(size) if size <= _SMALL else _invariant_subspace(inverse, sigma, radius, size)
+    theta, Y = np.linalg.eig(Q.T @ np.column_stack([inverse.matvec(q) for q in Q.T]))
+    keep = _inside(theta, sigma, radius)
+    values = (sigma + 1.0 / theta[keep]).astype(np.complex128)
+    # a structure at rest has double poles at zero, which rounding splits into slow pairs
+    resting = np.abs(values) <= _AT_ZERO * radius
+    values[resting] = values[resting].real
+    upper = values.imag >= -_CLUSTER * np.abs(values)
+    return values[upper], Q[: pencil.n] @ Y[:, keep][:, upper]
+
+
+def _inside(theta: ComplexArray, sigma: float, radius: float) -> BoolArray:
+    """Tell which eigenvalues θ = 1/(λ − σ) of the inverse belong to |λ| ≤ radius."""
+    return np.asarray((np.abs(theta) > 0.0) & (np.abs(1.0 + sigma * theta) <= radius * np.abs(theta)))
+
+
+def _invariant_subspace(inverse: spla.LinearOperator, sigma: float, radius: float, size: int) -> FloatArray:
+    """Return an orthonormal basis of the states of all poles with |λ| ≤ radius.
+
+    Arnoldi from one vector sees one state of a multiple pole. So it runs again beside what is already known,
+    from another start, until all it finds lies outside.
+    """
+    Q, k = np.zeros((size, 0)), 24
+    while True:
+        known = Q
+
+        def rest(b: FloatArray, known: FloatArray = known) -> FloatArray:
+            y = inverse.matvec(b)
+            return np.asarray(y - known @ (known.T @ y))
+
+        k = min(k, size - Q.shape[1] - 2)
+        if k < 1:
+            return np.eye(size)
+        operator = spla.LinearOperator((size, size), matvec=rest, dtype=np.float64)
+        try:
+            theta, x = spla.eigs(
+                operator, k=k, v0=_start(size, Q.shape[1]), ncv=min(size, 2 * k + 20), tol=1e-12, maxiter=300
+            )
+        except (spla.ArpackError, RuntimeError) as error:
+            if k > 4:  # the last of the many were too small beside the first to converge
+                k //= 2
+                continue
+            raise NumericalError(f"damped modes did not converge: {error}") from error
+        found = _inside(theta, sigma, radius)
+        if not found.any():
+            return Q
+        Q = _extended(Q, x[:, found])
+        k = 48 if found.all() else 8
+
+
+def _extended(Q: FloatArray, x: ComplexArray) -> FloatArray:
+    """Return the basis with the real and imaginary parts of ``x`` added, as far as they are independent."""
+    parts = np.hstack([x.real, x.imag])
+    parts = parts - Q @ (Q.T @ parts)
+    u, s, _ = la.svd(parts, full_matrices=False)
+    # what is nearly dependent would add noise; the next run finds it cleanly
+    new = u[:, s > 1e-6 * s[0]]
+    new = new - Q @ (Q.T @ new)
+    return np.hstack([Q, np.linalg.qr(new)[0]])
+
+
+def _clusters(values: ComplexArray) -> list[IntArray]:
+    """Return groups of poles that lie too close to be refined one by one."""
+    near = np.abs(values[:, None] - values) <= _CLUSTER * np.abs(values)
+    n_groups, group = connected_components(near.astype(float), directed=False)
+    return [np.flatnonzero(group == g) for g in range(n_groups)]
+
+
+def _exactly(pencil: Pencil, values: ComplexArray, x: ComplexArray) -> list[Pair]:
+    """Return the poles of one cluster that Arnoldi found on the pencil's own laws.
+
+    Raises
+    ------
+    NumericalError
+        If a pole does not come to rest where Arnoldi found it.
+    """
+    if not values.imag.any():  # real poles are as exact as Arnoldi made them
+        return list(zip(map(complex, values), x.T, strict=True))
+    found, y, at_rest = _newton(pencil, values, x)
+    if not at_rest or abs(found.mean() - values.mean()) > 1e-6 * abs(values.mean()):
+        raise NumericalError(f"the pole near λ = {values.mean():.6g} rad/s could not be refined")
+    return list(zip(map(complex, found), y.T, strict=True))
+
+
+def _nearly(
+    pencil: Pencil, small: Pencil, space: FloatArray, values: ComplexArray, x: ComplexArray
+) -> list[Pair]:
+    """Return the poles of one cluster from a start law's; none if it was an artefact near the branch cut.
+
+    Parameters
+    ----------
+    small : the pencil on the coordinates of ``space`` (n, n_vectors)
+    x : (n_vectors, n_values)
+    """
+    near, y, _ = _newton(small, values, x, rest=_IN_SPACE)
+    found, y, at_rest = _newton(pencil, near, space @ y)
+    if not at_rest or abs(found.mean() - values.mean()) > 0.1 * abs(values.mean()):
+        return []
+    return list(zip(map(complex, found), y.T, strict=True))
+
+
+def _newton(
+    pencil: Pencil, values: ComplexArray, x: ComplexArray, *, rest: float = _AT_REST, steps: int = 20
+) -> tuple[ComplexArray, ComplexArray, bool]:
+    r"""Refine a cluster of poles together: inverse iteration and Rayleigh–Ritz on F(λ) about their mean.
+
+    With one pole this is Newton's method; F is symmetric, so that
+    :math:`δ = -u^T F u / u^T F' u` with :math:`u = F^{-1} F' x` converges cubically. Near the pole the
+    factors serve on, by residual inverse iteration (Neumaier 1985): :math:`x - F(σ)^{-1} F(λ) x`.
+    """
+    change = last = np.inf
+    for _ in range(steps):
+        mean = complex(values.mean())
+        F, dF = pencil.F(mean), pencil.dF(mean)
+        try:
+            if change > min(_STALE, 0.1 * last):
+                solve = _solver(F)
+                x = solve(dF @ x)
+            else:
+                x = x - solve(F @ x + dF @ (x * (values - mean)))
+        except (RuntimeError, np.linalg.LinAlgError):
+            pass  # F is singular to the last digit: the vectors are as good as they get
+        last = change
+        Q = np.linalg.qr(x)[0]
+        delta, y = la.eig(-(Q.T @ (F @ Q)), Q.T @ (dF @ Q))
+        values, x = mean + delta, Q @ y
+        change = abs(values.mean() - mean) / abs(mean)
+        if change <= rest or 0.5 * last <= change <= _ROUNDING:
+            break
+    return values, x / np.linalg.norm(x, axis=0), change <= _ROUNDING
+
+
+def _solver(F: Matrix) -> Callable[[ComplexArray], ComplexArray]:
+    """Return what solves F x = b, F sparse or dense."""
+    if isinstance(F, np.ndarray):
+        return lambda b: np.asarray(np.linalg.solve(F, b), dtype=np.complex128)
+    factors = factorised(F)
+    return lambda b: np.asarray(factors.solve(b), dtype=np.complex128)
+
+
+def _start(n: int, seed: int = 0) -> FloatArray:
+    """Return a fixed start vector with something of every mode in it."""
+    return np.random.default_rng(seed).standard_normal(n)

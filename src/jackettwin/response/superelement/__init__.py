@@ -1,0 +1,1 @@
+"""A foundation as a superelement, and its files."""

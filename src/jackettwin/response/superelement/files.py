@@ -1,0 +1,106 @@
+"""Superelements as files: ``.npz`` with everything, and OpenFAST's ExtPtfm.
+
+ExtPtfm wants two files: the module's input file, and the matrices' file that it names. OpenFAST does not add
+the self-weight by itself: it is in the latter.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.files import atomic_path
+from jackettwin.response.superelement.extptfm import is_extptfm, read_extptfm
+from jackettwin.response.superelement.extptfm_layouts import DEFAULT, Layout, matrices_text, module_input
+from jackettwin.response.superelement.reduction import Superelement
+
+FORMATS = (".npz", ".dat")
+
+
+def write_superelement(element: Superelement, path: Path, *, layout: Layout = DEFAULT) -> tuple[Path, ...]:
+    """Write ``.npz``, or ``.dat`` for OpenFAST with ``NAME_ExtPtfm.dat`` beside it; return the files.
+
+    Parameters
+    ----------
+    layout : {"openfast5", "openfast4", "openfast3"}
+        The version that is to read ``.dat``.
+
+    Raises
+    ------
+    InputError
+        If the ending is neither.
+    """
+    require_format(path)
+    if path.suffix.lower() == ".npz":
+        with atomic_path(path) as temporary, temporary.open("wb") as stream:
+            np.savez_compressed(
+                stream,
+                M=element.M,
+                C=element.C,
+                K=element.K,
+                T=element.basis,
+                reference_m=np.array(element.reference_m),
+                weight_n=element.weight_n,
+                n_damped=element.n_damped,
+            )
+        return (path,)
+    module = path.with_name(f"{path.stem}_ExtPtfm.dat")
+    for target, text in (
+        (path, matrices_text(element, layout=layout)),
+        (module, module_input(element, path.name, layout=layout)),
+    ):
+        with atomic_path(target) as temporary:
+            temporary.write_text(text, encoding="ascii")
+    return (path, module)
+
+
+def require_format(path: Path) -> None:
+    """Refuse endings other than ``.npz`` and ``.dat``.
+
+    Raises
+    ------
+    InputError
+        Names the ending.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise InputError(
+            "unknown format of a superelement",
+            field="--out",
+            value=path.name,
+            allowed=", ".join(FORMATS),
+            remedy="give the file one of these endings",
+        )
+
+
+def is_superelement(path: Path) -> bool:
+    """Return whether a file holds a superelement: ``.npz``, or one of ExtPtfm's."""
+    if path.suffix.lower() != ".dat":
+        return path.suffix.lower() == ".npz"
+    return path.is_file() and is_extptfm(path)
+
+
+def read_superelement(path: Path) -> Superelement:
+    """Read a superelement, also by ExtPtfm's input file. ExtPtfm knows no shapes and no reference point.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or incomplete.
+    """
+    require_format(path)
+    if path.suffix.lower() == ".dat":
+        return read_extptfm(path)
+    if not path.is_file():
+        raise InputError("no such superelement file", file=path)
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            x, y, z = (float(v) for v in data["reference_m"])
+            return Superelement(
+                data["M"], data["C"], data["K"], (x, y, z), data["weight_n"], data["T"], int(data["n_damped"])
+            )
+    except (ValueError, KeyError, OSError) as error:
+        raise InputError(
+            f"not a superelement: {error}", file=path, remedy="write it with jackettwin"
+        ) from None

@@ -1,0 +1,14 @@
+from .context import Service as Service
+from .demonstration import demonstrate as demonstrate
+from .intake.files import Accepted as Accepted
+from .intake.folder import record_files as record_files, watch_folders as watch_folders
+from .server import serve as serve
+from .settings import ServiceSettings as ServiceSettings
+from .store_commands import (
+    add_conditions as add_conditions,
+    add_twin as add_twin,
+    adopt_version as adopt_version,
+    archive_asset as archive_asset,
+    rebuild as rebuild,
+    take_here as take_here,
+)

@@ -1,0 +1,159 @@
+"""What the command line does with a store, beside a server or without one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, Engine, select
+
+from jackettwin.errors import InputError
+from jackettwin.service import conditions
+from jackettwin.service.context import Desk
+from jackettwin.service.intake.bundles import bundle
+from jackettwin.service.intake.files import Accepted, take_file
+from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.web.catalogue import add_version, adopt, archive
+from jackettwin.service.work import consequences
+from jackettwin.service.work.tasks import read_file
+from jackettwin.store import assets, journal, reading, records, work, writing
+from jackettwin.store.results import StoredObservation
+from jackettwin.store.tables import observations
+
+
+def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str = "") -> dict[str, Any]:
+    """Add an asset or a version of it from a twin file on this machine; return what was added.
+
+    Raises
+    ------
+    InputError
+        If the twin or a file it names cannot be read, or the asset is archived.
+    """
+    assets.check_name(name)
+    contents = bundle(twin)
+    desk = Desk(ServiceSettings(store), database)
+    with writing(database) as connection:
+        _refuse_archived(connection, name)
+        version = add_version(connection, desk, name, contents, "command line", comment)
+    return {
+        "asset": name,
+        "version": version.version,
+        "model_hash": version.model_hash,
+        "settings_hash": version.settings_hash,
+        "files": sorted(contents),
+    }
+
+
+def adopt_version(database: Engine, store: Path, name: str, version: int) -> None:
+    """Make a version of an asset the one whose answers count.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset or version.
+    """
+    with writing(database) as connection:
+        adopt(connection, Desk(ServiceSettings(store), database), name, version, "command line")
+
+
+def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = False) -> None:
+    """Archive an asset, or bring it back.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    with writing(database) as connection:
+        archive(connection, Desk(ServiceSettings(store), database), name, "command line", undo=undo)
+
+
+def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
+    """Read a file in this process and keep its record for a server to observe.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset, or it is archived.
+    """
+    with reading(database) as connection:
+        _refuse_archived(connection, asset)
+    return take_file(Desk(ServiceSettings(store), database), read_file, asset, path, path.name)
+
+
+def _refuse_archived(connection: Connection, asset: str) -> None:
+    if assets.is_archived(connection, asset):
+        raise InputError(
+            "the asset is archived",
+            field="asset",
+            value=asset,
+            remedy="bring it back with `jackettwin asset archive NAME --undo --store STORE`",
+        )
+
+
+def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how: Any) -> tuple[int, int]:
+    """Keep the conditions of a table; return how many are new, and how many records are observed again.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset, it is archived, or the table cannot be read.
+    """
+    with reading(database) as connection:
+        assets.found_version(connection, asset)
+        _refuse_archived(connection, asset)
+    values = conditions.read_table(table, **how)
+    with writing(database) as connection:
+        return conditions.add(connection, Desk(ServiceSettings(store), database), asset, values)
+
+
+def rebuild(
+    database: Engine,
+    store: Path,
+    asset: str | None,
+    since: datetime | None,
+    *,
+    observe: bool = False,
+    progress: Callable[[str], None] = lambda _: None,
+) -> dict[str, Any]:
+    """Make states again from stored observations, and queue raw records to be observed again if asked to."""
+    desk = Desk(ServiceSettings(store), database)
+    start = datetime(1900, 1, 1, tzinfo=UTC) if since is None else since.replace(tzinfo=UTC)
+    with reading(database) as connection:
+        if asset is not None:
+            assets.found_version(connection, asset)
+        names = assets.asset_names(connection) if asset is None else [asset]
+    days = queued = 0
+    for name in names:
+        progress(f"rebuild {name} …")
+        with writing(database) as connection:
+            consequences.lock(connection, name)
+            for version in assets.all_versions(connection, name):
+                for first in _first_of_days(connection, name, version.model_hash, start):
+                    consequences.fold(connection, desk, name, version.version, first, anew=True)
+                    days += 1
+                if observe:
+                    queued += _queue_all(connection, desk, version, start)
+            journal.tell(connection, "state", name, {"rebuilt": True}, desk.now())
+    return {"assets": names, "days": days, "queued": queued}
+
+
+def _first_of_days(connection: Any, asset: str, model_hash: str, start: datetime) -> list[StoredObservation]:
+    """Return one observation of each UTC day that has any."""
+    where = (observations.c.asset == asset, observations.c.model_hash == model_hash)
+    query = select(observations).where(*where, observations.c.start_utc >= start)
+    first: dict[str, StoredObservation] = {}
+    for row in connection.execute(query.order_by(observations.c.start_utc)):
+        first.setdefault(f"{row.start_utc:%Y-%m-%d}", StoredObservation(**row._mapping))
+    return list(first.values())
+
+
+def _queue_all(connection: Any, desk: Desk, version: assets.Version, start: datetime) -> int:
+    count = 0
+    for record in records.all_with_samples(connection, version.asset):
+        if record.start_utc >= start:
+            number = work.enqueue(connection, version, record.record_id, desk.now())
+            count += work.try_again(connection, number, desk.now())
+    return count

@@ -1,0 +1,207 @@
+"""What the store knows, in the words of the API."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from fastapi import Path
+from sqlalchemy import Connection, select
+
+from jackettwin.errors import InputError
+from jackettwin.intervals import NORMAL_90
+from jackettwin.service.intake.bundles import twin_folder
+from jackettwin.service.web.schemas import (
+    AlarmOut,
+    ChangeOut,
+    ComparisonOut,
+    FindingOut,
+    ModeOut,
+    Page,
+    TwinOut,
+)
+from jackettwin.service.work import engine
+from jackettwin.store import assets, results, tables
+from jackettwin.store.records import read_cursor, write_cursor
+from jackettwin.version import __version__
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
+
+T = TypeVar("T")
+RowNumber = Path(ge=1, le=2**53)
+"""A row's number, as JavaScript can hold it."""
+
+
+def _row(cursor: str | None) -> int | None:
+    if cursor is None:
+        return None
+    place = read_cursor(cursor)
+    if len(place) != 1 or not isinstance(place[0], int) or not 0 <= place[0] < 2**53:
+        raise InputError("not a cursor of this list", field="cursor", value=cursor[:40])
+    return place[0]
+
+
+def modes(
+    connection: Connection,
+    version: assets.Version,
+    label: str | None,
+    since: datetime | None,
+    until: datetime | None,
+    cursor: str | None,
+    limit: int,
+) -> Page[ModeOut]:
+    """Return a page of modes through time."""
+    chosen: dict[str, Any] = {
+        "label": label,
+        "since": since,
+        "until": until,
+        "after": _row(cursor),
+        "limit": limit + 1,
+    }
+    rows = results.list_modes(connection, version.asset, version.model_hash, **chosen)
+    return _page(rows, limit, _mode_out)
+
+
+def _page(rows: list[Mapping[str, Any]], limit: int, made: Callable[[Mapping[str, Any]], T]) -> Page[T]:
+    """Return a page of rows, one of which, if there are more, is of the next page."""
+    more = write_cursor(rows[limit - 1]["id"]) if len(rows) > limit else None
+    return Page(items=[made(row) for row in rows[:limit]], next_cursor=more)
+
+
+def _mode_out(row: Mapping[str, Any]) -> ModeOut:
+    low, high = row["damping_ratio_low_95"], row["damping_ratio_high_95"]
+    known = {name: row[name] for name in ModeOut.model_fields if name in row}
+    return ModeOut(**known, damping_ratio_interval_95=None if low is None or high is None else (low, high))
+
+
+def findings(
+    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
+) -> Page[FindingOut]:
+    """Return a page of findings, newest first."""
+    rows = _findings(connection, version, severity, cursor, limit)
+    return _page(rows, limit, lambda row: FindingOut(**{k: row[k] for k in FindingOut.model_fields}))
+
+
+def _findings(
+    connection: Connection, version: assets.Version, severity: str | None, cursor: str | None, limit: int
+) -> list[Mapping[str, Any]]:
+    chosen: dict[str, Any] = {"severity": severity, "before": _row(cursor), "limit": limit + 1}
+    return results.list_findings(connection, version.asset, version.model_hash, **chosen)
+
+
+def alarms(connection: Connection, version: assets.Version, cursor: str | None, limit: int) -> Page[AlarmOut]:
+    """Return a page of alarms with who took note of them."""
+    rows = _findings(connection, version, "alarm", cursor, limit)
+    notes = results.acknowledgements_of(connection, version.asset)
+    return _page(rows, limit, lambda row: alarm_out(row, notes))
+
+
+def alarm_out(row: Mapping[str, Any], notes: Mapping[str, Mapping[str, Any]]) -> AlarmOut:
+    """Return an alarm as the API speaks of it."""
+    note = notes.get(results.alarm_key(row), {})
+    known = {name: row[name] for name in FindingOut.model_fields}
+    return AlarmOut(
+        **known,
+        acknowledged_by=note.get("by"),
+        acknowledged_utc=note.get("time_utc"),
+        comment=note.get("comment"),
+    )
+
+
+def twin(
+    connection: Connection, service: Service, version: assets.Version, at: datetime | None = None
+) -> TwinOut:
+    """Return what the twin knows at a time, from the states of its days."""
+    last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
+    model = engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
+    told = service.remembered.told(connection, version, model, last)
+    known = engine.knowledge(model, told.sums)
+    if at is None:
+        known["parameters"] = results.find_supports(connection, version.asset, version.version)
+    return TwinOut(
+        asset=version.asset,
+        version=version.version,
+        model_hash=version.model_hash,
+        code_version=__version__,
+        state_hash=told.state_hash,
+        days=told.days,
+        **known,
+    )
+
+
+def compared(
+    connection: Connection, service: Service, adopted: assets.Version, other: assets.Version
+) -> ComparisonOut:
+    """Return what the adopted version knows beside another one, of the same records, and what differs."""
+    mine, theirs = twin(connection, service, adopted), twin(connection, service, other)
+    changes = []
+    for name, std, unit in (
+        ("frequency_hz", "frequency_std_hz", "Hz"),
+        ("damping_ratio", "damping_ratio_std", "-"),
+    ):
+        before = {m["label"]: (m[name], m[std]) for m in mine.modes}
+        after = {m["label"]: (m[name], m[std]) for m in theirs.modes}
+        changes += [
+            _change(f"{label} {name}", unit, before.get(label), after.get(label))
+            for label in {**before, **after}
+        ]
+    before, after = (_logarithms(known.parameters.get("parameters", {})) for known in (mine, theirs))
+    units = {
+        name: p["unit"] for k in (mine, theirs) for name, p in k.parameters.get("parameters", {}).items()
+    }
+    changes += [_change(f"ln {name}", units[name], before.get(name), after.get(name)) for name in units]
+    return ComparisonOut(adopted=mine, other=theirs, changes=changes)
+
+
+def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
+    """Return the logarithm of every parameter's median with its standard deviation, of its 90 % interval."""
+    found = {}
+    for name, known in parameters.items():
+        span = known["interval_90"]
+        std = None if span is None else float(np.log(span[1] / span[0])) / (2.0 * NORMAL_90)
+        found[name] = (float(np.log(known["median"])), std)
+    return found
+
+
+def _change(
+    quantity: str,
+    unit: str,
+    before: tuple[float, float | None] | None,
+    after: tuple[float, float | None] | None,
+) -> ChangeOut:
+    """Return a quantity of two versions, and how far they are apart in what the adopted one is sure of."""
+    if before is None or after is None:
+        return ChangeOut(quantity=quantity, unit=unit, adopted=before and before[0], other=after and after[0])
+    difference = after[0] - before[0]
+    sure = before[1] or after[1]
+    return ChangeOut(
+        quantity=quantity,
+        unit=unit,
+        adopted=before[0],
+        other=after[0],
+        difference=difference,
+        in_standard_deviations=difference / sure if sure else None,
+    )
+
+
+def as_parquet(connection: Connection, name: str) -> bytes:
+    """Return a table as a Parquet file; times are UTC, nested values JSON."""
+    table = tables.metadata.tables[name]
+    rows = [dict(row._mapping) for row in connection.execute(select(table))]
+    columns = {
+        column.name: [
+            json.dumps(row[column.name]) if isinstance(row[column.name], dict | list) else row[column.name]
+            for row in rows
+        ]
+        for column in table.columns
+    }
+    buffer = io.BytesIO()
+    pq.write_table(pa.table(columns), buffer)
+    return buffer.getvalue()

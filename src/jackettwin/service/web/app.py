@@ -1,0 +1,159 @@
+"""The web application: routes under /api/v1, pages under /, and what every request passes through."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from importlib.resources import files
+from typing import Any
+
+from fastapi import FastAPI, HTTPException, Request
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.datastructures import MutableHeaders
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from jackettwin.service.context import Service
+from jackettwin.service.web import auth, pages, problems
+from jackettwin.service.web.routes import assets, health, jobs, modes, people, records
+from jackettwin.version import __version__
+
+API = "/api/v1"
+EXAMPLES: dict[str, Any] = json.loads(files("jackettwin.service").joinpath("examples.json").read_bytes())
+"""Of every schema one, by its name."""
+ROUTERS = (people.router, assets.router, records.router, modes.router, jobs.router, health.router)
+_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "same-origin",
+    "Content-Security-Policy": (
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+        "worker-src blob:; frame-ancestors 'none'"
+    ),
+}
+"""Scripts come from files of ours alone; Plotly writes styles into the page."""
+_FIELDS_BYTES = 2**20
+"""Room for what comes beside a file in a form."""
+_TEXT_BYTES = 32 * 2**20
+"""Of a request that is no form: twins with their files, years of conditions."""
+_FEW_BYTES = 2**16
+"""Of a request of somebody who sends no files: a name and a password."""
+
+
+def create_app(service: Service) -> FastAPI:
+    """Return the application of a server."""
+
+    @asynccontextmanager
+    async def living(_: FastAPI) -> AsyncIterator[None]:
+        feed = asyncio.create_task(service.feed.run())
+        yield
+        feed.cancel()
+        with suppress(asyncio.CancelledError):
+            await feed
+
+    app = FastAPI(
+        title="jackettwin",
+        summary="A digital twin of jacket foundations that lives: records in, answers out.",
+        version=__version__,
+        openapi_url=f"{API}/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=living,
+        license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+    )
+    app.state.service = service
+    problems.register(app)
+    for router in ROUTERS:
+        app.include_router(router, prefix=API)
+    app.include_router(pages.router)
+    app.openapi = lambda: described(app)  # type: ignore[method-assign]
+    app.add_middleware(Guard, service=service)
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
+    return app
+
+
+def described(app: FastAPI) -> dict[str, Any]:
+    """Return the OpenAPI document, with an example of everything that is sent or answered."""
+    document = FastAPI.openapi(app)
+    for name, schema in document["components"]["schemas"].items():
+        of = name.removeprefix("Page_").removesuffix("_")
+        if of in EXAMPLES:
+            one = EXAMPLES[of]
+            schema["example"] = one if of == name else {"items": [one], "next_cursor": None}
+    return document
+
+
+class Guard:
+    """Know who asks; refuse what is forged or too large; say to browsers what they may do with answers."""
+
+    def __init__(self, app: ASGIApp, service: Service) -> None:
+        self._app, self._service = app, service
+        own = {"Strict-Transport-Security": "max-age=31536000"} if service.settings.secure else {}
+        self._headers = {**_HEADERS, **own}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or answer it."""
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        request = Request(scope)
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                for name, value in self._headers.items():
+                    headers.setdefault(name, value)
+            await send(message)
+
+        try:
+            request.state.who = await _who(self._service, request)
+            auth.refuse_forged(request, request.state.who)
+            bounded = self._bounded(request, receive)
+        except problems.ApiError as error:
+            return await problems.answered(error)(scope, receive, with_headers)
+        await self._app(scope, bounded, with_headers)
+
+    def _bounded(self, request: Request, receive: Receive) -> Receive:
+        """Return the request's body as far as who asks may send it: it is read before a route is asked.
+
+        Raises
+        ------
+        ApiError
+            If it says itself that it is larger, or who asks may send no files, or nothing without login.
+        """
+        who = request.state.who
+        if who is None and request.method not in auth.SAFE_METHODS and request.url.path != f"{API}/login":
+            raise auth.unknown()
+        sends = who is not None and who.may("engineer")
+        most = _TEXT_BYTES if sends else _FEW_BYTES
+        if who is not None and request.headers.get("content-type", "").startswith("multipart/"):
+            if not sends:
+                raise auth.too_little(who, "engineer")
+            most = self._service.settings.upload_limit_bytes + _FIELDS_BYTES
+        length = request.headers.get("content-length", "0")
+        if not length.isdecimal() or int(length) > most:
+            raise problems.ApiError(413, "the request is too large", allowed=f"up to {most} bytes")
+        came = 0
+
+        async def counted() -> Message:
+            nonlocal came
+            message = await receive()
+            came += len(message.get("body", b""))
+            if came > most:
+                raise HTTPException(413, f"the request is too large; allowed: up to {most} bytes")
+            return message
+
+        return counted
+
+
+async def _who(service: Service, request: Request) -> auth.Who | None:
+    """Return who asks; without a database only the questions about the server's health are answered."""
+    try:
+        return await asyncio.to_thread(
+            auth.who_asks, request, service.database, service.settings, service.now()
+        )
+    except SQLAlchemyError:
+        if request.url.path in (f"{API}/health", f"{API}/ready"):
+            return None
+        raise problems.no_database() from None

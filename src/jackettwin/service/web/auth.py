@@ -1,0 +1,226 @@
+"""Who may do what: passwords, sessions, tokens, roles, forged requests, guessing."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from math import ceil
+from threading import Lock
+from urllib.parse import urlsplit
+
+from argon2 import PasswordHasher
+from argon2.exceptions import InvalidHashError, VerificationError
+from fastapi import Depends, Request
+from sqlalchemy import Connection, Engine
+
+from jackettwin.errors import InputError
+from jackettwin.service.settings import ServiceSettings, is_loopback
+from jackettwin.service.web.problems import ApiError
+from jackettwin.store import people, reading, writing
+
+COOKIE = "jackettwin_session"
+SESSION = timedelta(hours=12)
+TOKEN = timedelta(days=365)
+SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
+GUESSES, GUESSES_FROM = 5, 30
+"""Failed logins a minute: of one name from one address, and of any from it."""
+SHORTEST_PASSWORD = 12
+"""Characters; NIST SP 800-63B asks for 8 and advises more."""
+
+_hasher = PasswordHasher()  # argon2id with the parameters of RFC 9106, second recommended choice
+_NOBODY = _hasher.hash(secrets.token_hex())
+"""Verified where there is no such user, so that the time to answer tells nothing."""
+
+
+@dataclass(frozen=True)
+class Who:
+    """Somebody who may do what a role may; ``kind`` is how we know."""
+
+    name: str
+    role: str
+    kind: str
+    csrf: str = ""
+
+    def may(self, role: str) -> bool:
+        """Tell whether this role includes another one."""
+        return people.ROLES.index(self.role) >= people.ROLES.index(role)
+
+
+@dataclass
+class Guesses:
+    """Logins of late that have not succeeded, by who was tried and from where."""
+
+    within_s: float = 60.0
+    _tried: dict[str, list[float]] = field(default_factory=dict)
+    _lock: Lock = field(default_factory=Lock)
+
+    def wait_s(self, key: str, most: int) -> float:
+        """Count a try and return 0 if it may be made, else how long to wait: ``most`` in ``within_s`` may.
+
+        It is counted before it is made, so that many at once are not more.
+        """
+        with self._lock:
+            now = time.monotonic()
+            if len(self._tried) > 10_000:  # a flood of names must not fill the memory
+                self._tried.clear()
+            recent = self._tried[key] = [t for t in self._tried.get(key, []) if now - t < self.within_s]
+            if len(recent) >= most:
+                return recent[-most] + self.within_s - now
+            recent.append(now)
+            return 0.0
+
+    def succeeded(self, key: str) -> None:
+        """Take a try back."""
+        with self._lock:
+            if self._tried.get(key):
+                self._tried[key].pop()
+
+
+def hashed(password: str) -> str:
+    """Return the argon2id hash of a password.
+
+    Raises
+    ------
+    InputError
+        If it is too short.
+    """
+    if len(password) < SHORTEST_PASSWORD:
+        raise InputError(
+            "the password is too short",
+            field="password",
+            allowed=f"{SHORTEST_PASSWORD} characters or more",
+            remedy="take a few words that do not belong together",
+        )
+    return _hasher.hash(password)
+
+
+def checked_login(connection: Connection, name: str, password: str) -> people.User | None:
+    """Return the user whose password this is, or None; it takes as long for unknown names."""
+    user = people.find_user(connection, name)
+    try:
+        _hasher.verify(_NOBODY if user is None else user.password_hash, password)
+    except (VerificationError, InvalidHashError):
+        return None
+    return None if user is None or user.disabled else user
+
+
+def opened_session(
+    database: Engine, guesses: Guesses, name: str, password: str, place: str, now: datetime
+) -> tuple[people.User, str, str]:
+    """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
+
+    Raises
+    ------
+    ApiError
+        401 if it is nobody's, 429 after too many tries.
+    """
+    key = f"{place}/{name}"
+    wait = max(guesses.wait_s(place, GUESSES_FROM), guesses.wait_s(key, GUESSES))
+    if wait > 0.0:
+        raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
+    with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
+        user = checked_login(connection, name, password)
+    with writing(database) as connection:
+        people.note_down(connection, name, "login", key, "ok" if user else "refused", now)
+        grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
+    if user is None:
+        raise ApiError(401, "name or password is wrong")
+    guesses.succeeded(place)
+    guesses.succeeded(key)
+    return user, *grant
+
+
+def new_grant(
+    connection: Connection, user: str, kind: str, label: str, now: datetime, lasts: timedelta
+) -> tuple[str, str]:
+    """Return the secret of a new session or token, and its CSRF token."""
+    secret, csrf = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+    people.grant(
+        connection, secret, kind=kind, user=user, label=label, csrf=csrf, now=now, expires=now + lasts
+    )
+    return secret, csrf
+
+
+def who_asks(request: Request, database: Engine, settings: ServiceSettings, now: datetime) -> Who | None:
+    """Return who sent a request.
+
+    By bearer token, session, trusted proxy, or on an open loopback server anyone.
+    """
+    with reading(database) as connection:
+        if not people.any_user(connection):
+            return Who("local", "admin", "open") if settings.loopback and _from_here(request) else None
+        scheme, _, token = request.headers.get("authorization", "").partition(" ")
+        kind = "token" if scheme.lower() == "bearer" else "session"
+        secret = token.strip() if kind == "token" else request.cookies.get(COOKIE)
+        if secret or kind == "token":
+            found = people.find_grant(connection, secret or "", now)
+            if found is None or found.kind != kind:
+                return None
+            return Who(found.user, found.role, kind, found.csrf if kind == "session" else "")
+        if settings.trusted_header and settings.behind_proxy:
+            user = people.find_user(connection, request.headers.get(settings.trusted_header, ""))
+            return Who(user.name, user.role, "proxy") if user and not user.disabled else None
+    return None
+
+
+def unknown() -> ApiError:
+    """Return the answer to somebody of whom it is not known who it is."""
+    return ApiError(
+        401,
+        "log in, or send a token",
+        headers={"WWW-Authenticate": "Bearer"},
+        remedy="POST /api/v1/login, or Authorization: Bearer; a server without users is asked as localhost",
+    )
+
+
+def too_little(who: Who, role: str) -> ApiError:
+    """Return the answer to somebody whose role does not do."""
+    return ApiError(403, f"this needs the role {role}; {who.name} is {who.role}")
+
+
+def allowed(role: str) -> Callable[..., Awaitable[Who]]:
+    """Return the dependency of a route that asks for a role."""
+
+    async def check(request: Request) -> Who:
+        who: Who | None = request.state.who
+        if who is None:
+            raise unknown()
+        if not who.may(role):
+            raise too_little(who, role)
+        return who
+
+    check.role = role  # type: ignore[attr-defined]  # read by the test that walks over all routes
+    return check
+
+
+def refuse_forged(request: Request, who: Who | None) -> None:
+    """Refuse what another page had a browser send: no CSRF token, or another origin.
+
+    Raises
+    ------
+    ApiError
+        403.
+    """
+    if request.method in SAFE_METHODS:
+        return
+    origin = request.headers.get("origin")
+    if origin and urlsplit(origin).netloc != request.headers.get("host"):
+        raise ApiError(403, "sent from another page")
+    if who is not None and who.kind == "session":
+        given = request.headers.get("x-csrf-token", "")
+        if not secrets.compare_digest(given.encode(), who.csrf.encode()):
+            raise ApiError(403, "the header X-CSRF-Token is missing or wrong; GET /api/v1/me tells it")
+
+
+def _from_here(request: Request) -> bool:
+    """Tell whether an open server was asked by its own name.
+
+    A page elsewhere may point its name at 127.0.0.1.
+    """
+    return is_loopback(request.url.hostname or "")
+
+
+VIEWER, ENGINEER, ADMIN = (Depends(allowed(role)) for role in people.ROLES)

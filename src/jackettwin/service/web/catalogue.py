@@ -1,0 +1,170 @@
+"""Assets as the API and the command line speak of them."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sqlalchemy import Connection
+
+from jackettwin.errors import InputError
+from jackettwin.service.intake.file_access import only_files_in
+from jackettwin.service.web.schemas import AssetOut, VersionOut
+from jackettwin.service.work import engine
+from jackettwin.service.work.consequences import ask_known
+from jackettwin.store import assets, journal, people, records, results, work
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
+
+_PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,99}")
+"""What a part of a file's name may be: no client reaches our file system by it."""
+
+
+def add_text_version(
+    connection: Connection,
+    service: Place,
+    name: str,
+    twin: str,
+    files: Mapping[str, str],
+    by: str,
+    comment: str = "",
+) -> assets.Version:
+    """Add a version of a twin given as text; see :func:`add_version`."""
+    contents = {engine.TWIN_FILE: twin.encode(), **{path: text.encode() for path, text in files.items()}}
+    return add_version(connection, service, name, contents, by, comment)
+
+
+def add_version(
+    connection: Connection,
+    service: Place,
+    name: str,
+    contents: Mapping[str, bytes],
+    by: str,
+    comment: str = "",
+) -> assets.Version:
+    """Check a twin and add it as a version; records that are there are observed by it when there is time.
+
+    Raises
+    ------
+    InputError
+        If the twin cannot be read, or a file's name could lead out of its folder.
+    """
+    for path in contents:
+        if not all(_PART.fullmatch(part) for part in path.split("/")):
+            raise InputError(
+                "a file cannot be called so",
+                field="files",
+                value=path[:100],
+                allowed="relative paths of letters, digits, ., _ and -",
+                remedy="rename it, here and in the twin file",
+            )
+    model_hash, settings_hash = _identity(contents)
+    version = assets.add_version(
+        connection,
+        name,
+        contents,
+        model_hash=model_hash,
+        settings_hash=settings_hash,
+        by=by,
+        now=service.now(),
+        comment=comment,
+    )
+    (service.settings.inbox / name).mkdir(parents=True, exist_ok=True)
+    for record in records.all_with_samples(connection, name):
+        work.enqueue(connection, version, record.record_id, service.now())
+    if results.state_hashes(connection, name, model_hash):
+        ask_known(connection, service, version)  # the same model, asked under another law
+    people.note_down(connection, by, "asset version", f"{name}/{version.version}", "ok", service.now())
+    journal.tell(connection, "asset", name, {"version": version.version}, service.now())
+    return version
+
+
+def adopt(connection: Connection, service: Place, name: str, version: int, by: str) -> None:
+    """Make a version the one whose answers count, and ask what its days say of the supports.
+
+    Raises
+    ------
+    InputError
+        If there is no such version.
+    """
+    assets.adopt(connection, name, version)
+    ask_known(connection, service, assets.found_version(connection, name, version))
+    people.note_down(connection, by, "adopt", f"{name}/{version}", "ok", service.now())
+    journal.tell(connection, "asset", name, {"version": version, "adopted": True}, service.now())
+
+
+def archive(connection: Connection, service: Place, name: str, by: str, *, undo: bool = False) -> None:
+    """Archive an asset, or bring it back: it takes nothing more; what it knew stays, and can be asked for.
+
+    What was taken of it before is still observed, when no other asset's record waits.
+
+    Raises
+    ------
+    InputError
+        If there is no such asset.
+    """
+    assets.archive(connection, name, None if undo else service.now())
+    work.reorder(connection, name, 0 if undo else work.GONE)
+    people.note_down(connection, by, "unarchive" if undo else "archive", name, "ok", service.now())
+    journal.tell(connection, "asset", name, {"archived": not undo}, service.now())
+
+
+def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
+    with tempfile.TemporaryDirectory(prefix="jackettwin-") as folder:
+        for path, content in contents.items():
+            target = Path(folder) / path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
+        try:
+            with only_files_in(Path(folder)):
+                return engine.identity(engine.load_twin.__wrapped__(Path(folder)).model)
+        except InputError as error:
+            error.file = engine.TWIN_FILE
+            raise
+
+
+def overview(connection: Connection, name: str | None = None, *, archived: bool = False) -> list[AssetOut]:
+    """Return the assets, the archived ones, or one, with status, by the same few queries however many."""
+    counts, said = records.count_by_status(connection, name), results.count_findings(connection, name)
+    unseen = results.unacknowledged_alarms(connection, name)
+    return [
+        _asset_out(row, counts.get(row.name, {}), said.get(row.name, {}), unseen.get(row.name, 0))
+        for row in assets.summaries(connection, name, archived=archived)
+    ]
+
+
+def one(connection: Connection, name: str) -> AssetOut:
+    """Return an asset with its status."""
+    return overview(connection, name)[0]
+
+
+def versions_out(connection: Connection, asset: str) -> list[VersionOut]:
+    """Return every version of an asset as the API speaks of it, oldest first."""
+    seen, adopted = results.count_observations(connection, asset), assets.found_version(connection, asset)
+    return [
+        VersionOut(
+            **{name: getattr(version, name) for name in VersionOut.model_fields if hasattr(version, name)},
+            adopted=version.version == adopted.version,
+            observations=seen.get(version.model_hash, 0),
+        )
+        for version in assets.all_versions(connection, asset)
+    ]
+
+
+def version_out(connection: Connection, version: assets.Version) -> VersionOut:
+    """Return a version as the API speaks of it."""
+    return next(v for v in versions_out(connection, version.asset) if v.version == version.version)
+
+
+def _asset_out(row: assets.Summary, counts: dict[str, int], said: dict[str, int], unseen: int) -> AssetOut:
+    if row.last_record_utc is None:
+        status = "no data"
+    elif unseen:
+        status = "alarm"
+    else:
+        status = "warning" if counts.get("set_aside") or counts.get("refused") else "ok"
+    return AssetOut(**vars(row), records=counts, findings=said, status=status)  # type: ignore[arg-type]

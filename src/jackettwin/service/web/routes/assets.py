@@ -1,0 +1,154 @@
+"""Assets and the versions of their twins."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, File, Form, Path, Query, UploadFile
+
+from jackettwin.service import conditions
+from jackettwin.service.web import auth, catalogue, uploads
+from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.routes.common import (
+    Asker,
+    AssetName,
+    Parts,
+    Told,
+    Transaction,
+    Writes,
+    known_asset,
+    known_version,
+    living_asset,
+    waits,
+)
+from jackettwin.service.web.schemas import (
+    AssetOut,
+    ConditionsIn,
+    NewAsset,
+    NewVersion,
+    Page,
+    Taken,
+    VersionOut,
+)
+from jackettwin.store import assets
+
+router = APIRouter(tags=["assets"], route_class=Transaction)
+
+
+@router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
+def list_assets(connection: Told, archived: bool = False) -> Page[AssetOut]:
+    """List the assets, or the archived ones, with their status, last data and findings."""
+    return Page(items=catalogue.overview(connection, archived=archived))
+
+
+@router.post(
+    "/assets", status_code=201, dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 409, 422)
+)
+def add_asset(body: NewAsset, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
+    """Add an asset with its twin file and the files that this one names."""
+    if body.name in assets.asset_names(connection):
+        raise ApiError(409, "there is such an asset already", field="name", value=body.name)
+    catalogue.add_text_version(connection, parts, body.name, body.twin, body.files, who.name, body.comment)
+    return catalogue.one(connection, body.name)
+
+
+@router.get("/assets/{asset}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def get_asset(asset: AssetName, connection: Told) -> AssetOut:
+    """Return one asset."""
+    known_asset(connection, asset)
+    return catalogue.one(connection, asset)
+
+
+@router.delete("/assets/{asset}", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
+def archive_asset(
+    asset: AssetName,
+    confirm: Annotated[str, Query(description="The asset's name once more.", examples=["demo"])],
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> AssetOut:
+    """Archive an asset: it takes nothing more and leaves the lists; all that is known of it stays."""
+    known_asset(connection, asset)
+    if confirm != asset:
+        raise ApiError(422, "this is another name", field="confirm", value=confirm, allowed=asset)
+    catalogue.archive(connection, parts, asset, who.name)
+    return catalogue.one(connection, asset)
+
+
+@router.post("/assets/{asset}/unarchive", dependencies=[auth.ADMIN], responses=answers(401, 403, 404, 422))
+def unarchive_asset(asset: AssetName, who: Asker, parts: Parts, connection: Writes) -> AssetOut:
+    """Bring an archived asset back."""
+    known_asset(connection, asset)
+    catalogue.archive(connection, parts, asset, who.name, undo=True)
+    return catalogue.one(connection, asset)
+
+
+@router.put("/assets/{asset}", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 409, 422))
+def put_asset(asset: AssetName, body: NewVersion, who: Asker, parts: Parts, connection: Writes) -> VersionOut:
+    """Add a version; records are observed by it too, and it counts once it is adopted."""
+    living_asset(connection, asset)
+    version = catalogue.add_text_version(
+        connection, parts, asset, body.twin, body.files, who.name, body.comment
+    )
+    return catalogue.version_out(connection, version)
+
+
+@router.get("/assets/{asset}/versions", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def versions(asset: AssetName, connection: Told) -> Page[VersionOut]:
+    """List the versions of an asset's twin, oldest first."""
+    known_asset(connection, asset)
+    return Page(items=catalogue.versions_out(connection, asset))
+
+
+@router.post(
+    "/assets/{asset}/versions/{version}/adopt",
+    dependencies=[auth.ENGINEER],
+    responses=answers(401, 403, 404, 422),
+)
+def adopt(
+    asset: AssetName,
+    version: Annotated[int, Path(ge=1, le=1_000_000)],
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> VersionOut:
+    """Make a version the one whose answers count."""
+    found = known_version(connection, asset, version)
+    catalogue.adopt(connection, parts, asset, version, who.name)
+    return catalogue.version_out(connection, found)
+
+
+@router.post(
+    "/assets/{asset}/conditions",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 409, 422),
+)
+def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connection: Writes) -> Taken:
+    """Add conditions of the site through time; records that they belong to are observed again with them."""
+    living_asset(connection, asset)
+    for name, values in body.values.items():
+        if len(values) != len(body.time_utc):
+            raise ApiError(422, "times and values differ in number", field=f"values.{name}")
+    given = {name: dict(zip(body.time_utc, values, strict=True)) for name, values in body.values.items()}
+    count, again = conditions.add(connection, parts, asset, given)
+    return Taken(count=count, observed_again=again)
+
+
+@router.post(
+    "/assets/{asset}/conditions.csv",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 409, 413, 422, 503),
+)
+@waits
+def add_table(
+    asset: AssetName,
+    parts: Parts,
+    file: Annotated[
+        UploadFile, File(description="Ten-minute statistics: a line of names, a column of times.")
+    ],
+    zone: Annotated[str, Form(max_length=64, description="Of clocks that do not say theirs.")] = "UTC",
+    end_stamped: Annotated[bool, Form(description="Whether a row bears the end of its interval.")] = False,
+) -> Taken:
+    """Add a table of conditions as a SCADA system exports it."""
+    uploads.refuse_unfit(parts, asset)
+    return uploads.take_conditions(parts, asset, file.file, zone, end_stamped)

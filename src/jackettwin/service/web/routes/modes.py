@@ -1,0 +1,145 @@
+"""What the twin says: modes, state, findings, alarms."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Response
+
+from jackettwin.service.web import answers as said, auth, signals
+from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.routes.common import (
+    Asker,
+    AssetName,
+    Parts,
+    Told,
+    Transaction,
+    Writes,
+    known_asset,
+    known_version,
+)
+from jackettwin.service.web.schemas import (
+    Acknowledgement,
+    AlarmOut,
+    BudgetOut,
+    ComparisonOut,
+    FindingOut,
+    ModeOut,
+    Page,
+    TwinOut,
+)
+from jackettwin.store import journal, people, results
+
+router = APIRouter(tags=["answers"], route_class=Transaction)
+
+Cursor = Annotated[str | None, Query(max_length=500)]
+Limit = Annotated[int, Query(ge=1, le=10_000)]
+AnyVersion = Annotated[int | None, Query(ge=1, le=1_000_000, description="Default: the adopted one.")]
+When = Annotated[datetime | None, Query(description="The state as it was then; default: now.")]
+
+
+@router.get("/assets/{asset}/modes", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def modes(
+    asset: AssetName,
+    connection: Told,
+    label: Annotated[str | None, Query(max_length=64)] = None,
+    since: Annotated[datetime | None, Query(alias="from")] = None,
+    until: Annotated[datetime | None, Query(alias="to")] = None,
+    cursor: Cursor = None,
+    limit: Limit = 1000,
+) -> Page[ModeOut]:
+    """List the modes of every record, in the order in which they were found."""
+    version = known_asset(connection, asset)
+    window = (signals.with_zone(since, "from"), signals.with_zone(until, "to"))
+    return said.modes(connection, version, label, *window, cursor, limit)
+
+
+@router.get("/assets/{asset}/twin", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def twin(
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+) -> TwinOut:
+    """Return what the twin knows at a time: mean modes and parameters with their intervals."""
+    asked = known_version(connection, asset, version)
+    return said.twin(connection, parts, asked, signals.with_zone(at, "at"))
+
+
+@router.get("/assets/{asset}/comparison", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def comparison(
+    asset: AssetName,
+    version: Annotated[int, Query(ge=1, le=1_000_000)],
+    parts: Parts,
+    connection: Told,
+) -> ComparisonOut:
+    """Return what another version of the twin knows of the same records beside the adopted one."""
+    adopted, other = known_asset(connection, asset), known_version(connection, asset, version)
+    return said.compared(connection, parts, adopted, other)
+
+
+@router.get("/assets/{asset}/damping-budget", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def damping_budget(
+    asset: AssetName, parts: Parts, connection: Told, at: When = None, version: AnyVersion = None
+) -> Page[BudgetOut]:
+    """Return whose damping it is, mode by mode; empty for a time in the past, which nobody updated to."""
+    asked = known_version(connection, asset, version)
+    found = said.twin(connection, parts, asked, signals.with_zone(at, "at"))
+    return Page(items=found.parameters.get("budget", []))
+
+
+@router.get("/assets/{asset}/life", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def life(asset: AssetName, connection: Told) -> Page[dict[str, object]]:
+    """Return the life at every joint; empty until the twin computes fatigue."""
+    known_asset(connection, asset)
+    return Page(items=[])
+
+
+@router.get("/assets/{asset}/findings", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def findings(
+    asset: AssetName,
+    connection: Told,
+    severity: Literal["info", "warning", "alarm"] | None = None,
+    cursor: Cursor = None,
+    limit: Limit = 100,
+) -> Page[FindingOut]:
+    """List what was worth saying, newest first."""
+    return said.findings(connection, known_asset(connection, asset), severity, cursor, limit)
+
+
+@router.get("/assets/{asset}/alarms", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def alarms(asset: AssetName, connection: Told, cursor: Cursor = None, limit: Limit = 100) -> Page[AlarmOut]:
+    """List the findings that ask for a person, newest first, and who took note."""
+    return said.alarms(connection, known_asset(connection, asset), cursor, limit)
+
+
+@router.post(
+    "/alarms/{alarm_id}/acknowledge", dependencies=[auth.ENGINEER], responses=answers(400, 401, 403, 404, 422)
+)
+def acknowledge(
+    alarm_id: Annotated[int, said.RowNumber],
+    body: Acknowledgement,
+    who: Asker,
+    parts: Parts,
+    connection: Writes,
+) -> AlarmOut:
+    """Note that somebody took note of an alarm."""
+    row = results.find_finding(connection, alarm_id)
+    if row is None or row["severity"] != "alarm":
+        raise ApiError(404, "no such alarm", field="alarm_id", value=str(alarm_id))
+    results.acknowledge(connection, row, who.name, body.comment, parts.now())
+    people.note_down(connection, who.name, "acknowledge", results.alarm_key(row), "ok", parts.now())
+    journal.tell(
+        connection, "finding", row["asset"], {"id": alarm_id, "acknowledged_by": who.name}, parts.now()
+    )
+    return said.alarm_out(row, results.acknowledgements_of(connection, row["asset"]))
+
+
+@router.get(
+    "/export.parquet",
+    tags=["answers"],
+    dependencies=[auth.VIEWER],
+    response_class=Response,
+    responses={200: {"content": {"application/vnd.apache.parquet": {}}}, **answers(401, 422)},
+)
+def export(connection: Told, table: Literal["modes", "findings", "records"] = "modes") -> Response:
+    """Return a whole table as Parquet."""
+    return Response(said.as_parquet(connection, table), media_type="application/vnd.apache.parquet")

@@ -1,0 +1,171 @@
+"""Records: in, listed, looked at."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, File, Form, Header, Query, Response, UploadFile
+
+from jackettwin.service.web import auth, signals, uploads
+from jackettwin.service.web.problems import ApiError, answers
+from jackettwin.service.web.routes.common import (
+    Asker,
+    AssetName,
+    Parts,
+    Reads,
+    RecordId,
+    Told,
+    Transaction,
+    Writes,
+    known_asset,
+    known_record,
+    waits,
+)
+from jackettwin.service.web.schemas import (
+    Acknowledgement,
+    Page,
+    PicksIn,
+    RecordAccepted,
+    RecordOut,
+    Signal,
+    Spectra,
+    StabilisationOut,
+)
+from jackettwin.service.work import consequences
+from jackettwin.store import people, records
+
+router = APIRouter(tags=["records"], route_class=Transaction)
+
+Status = Literal["received", "observing", "observed", "refused", "set_aside"]
+Limit = Annotated[int, Query(ge=1, le=1000)]
+
+
+@router.post(
+    "/assets/{asset}/records",
+    status_code=202,
+    dependencies=[auth.ENGINEER],
+    responses={
+        200: {"description": "This content is known.", "model": RecordAccepted},
+        **answers(400, 401, 403, 404, 409, 413, 422, 503, 507),
+    },
+)
+@waits
+def add_record(
+    asset: AssetName,
+    parts: Parts,
+    response: Response,
+    file: Annotated[UploadFile, File(description="A record in any format that is read.")],
+    description: Annotated[str | None, Form(description="What would lie beside it, as JSON.")] = None,
+) -> RecordAccepted:
+    """Take a record: it is read now and observed soon."""
+    uploads.refuse_unfit(parts, asset)
+    taken = uploads.take(parts, asset, file.filename or "record", file.file, description)
+    if not taken.new:
+        response.status_code = 200
+    parts.wake()
+    return RecordAccepted(record_id=taken.record_id, job_id=taken.job_id, records=taken.records)
+
+
+@router.get("/assets/{asset}/records", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def list_records(
+    asset: AssetName,
+    connection: Told,
+    since: Annotated[datetime | None, Query(alias="from")] = None,
+    until: Annotated[datetime | None, Query(alias="to")] = None,
+    status: Status | None = None,
+    cursor: Annotated[str | None, Query(max_length=500)] = None,
+    limit: Limit = 100,
+) -> Page[RecordOut]:
+    """List the records of an asset, latest first."""
+    known_asset(connection, asset)
+    found, more = records.list_records(
+        connection,
+        asset,
+        since=signals.with_zone(since, "from"),
+        until=signals.with_zone(until, "to"),
+        status=status,
+        cursor=cursor,
+        limit=limit,
+    )
+    return Page(items=[signals.record_out(r) for r in found], next_cursor=more)
+
+
+@router.get("/records/{record_id}", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+def get_record(record_id: RecordId, connection: Told) -> RecordOut:
+    """Return a record and how far it got."""
+    return signals.record_out(known_record(connection, record_id))
+
+
+@router.get(
+    "/records/{record_id}/signal",
+    dependencies=[auth.VIEWER],
+    response_model=Signal,
+    responses={
+        200: {"content": {"application/vnd.apache.arrow.stream": {}}},
+        **answers(401, 404, 422),
+    },
+)
+@waits
+def signal(
+    record_id: RecordId,
+    parts: Parts,
+    connection: Reads,
+    channels: Annotated[list[str] | None, Query(max_length=100)] = None,
+    since: Annotated[float, Query(alias="from", ge=0.0, le=1e9)] = 0.0,
+    until: Annotated[float | None, Query(alias="to", gt=0.0, le=1e9)] = None,
+    points: Annotated[int, Query(ge=1, le=10_000)] = 1000,
+    accept: Annotated[str, Header()] = "application/json",
+) -> Any:
+    """Return the extremes of each bin of time [s after the start], as JSON or Arrow."""
+    record = signals.samples(parts, known_record(connection, record_id))
+    found = signals.extremes(record, channels, since, until, points)
+    if "application/vnd.apache.arrow.stream" in accept:
+        return Response(signals.as_arrow(found), media_type="application/vnd.apache.arrow.stream")
+    return found
+
+
+@router.get("/records/{record_id}/spectrum", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
+@waits
+def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
+    """Return the power spectral densities of a record's channels."""
+    return signals.spectra(signals.samples(parts, known_record(connection, record_id)))
+
+
+@router.get(
+    "/records/{record_id}/stabilisation", dependencies=[auth.VIEWER], responses=answers(401, 404, 422, 503)
+)
+@waits
+def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> StabilisationOut:
+    """Return the poles of every model order, computed anew by a worker."""
+    return uploads.stabilisation(connection, parts, known_record(connection, record_id))
+
+
+@router.put(
+    "/records/{record_id}/picks",
+    status_code=202,
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 422),
+)
+def picks(record_id: RecordId, body: PicksIn, who: Asker, parts: Parts, connection: Writes) -> RecordAccepted:
+    """Choose the poles of a record by hand; it is identified again, and who chose when is kept."""
+    record = known_record(connection, record_id)
+    if record.waveform is None:
+        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+    job_id = uploads.pick(connection, parts, record, body, who.name)
+    return RecordAccepted(record_id=record_id, job_id=job_id)
+
+
+@router.post(
+    "/records/{record_id}/set-aside",
+    dependencies=[auth.ENGINEER],
+    responses=answers(400, 401, 403, 404, 422),
+)
+def set_aside(
+    record_id: RecordId, body: Acknowledgement, who: Asker, parts: Parts, connection: Writes
+) -> RecordOut:
+    """Take back what a record gave rise to, on a person's word; trying its job again brings it back."""
+    asset = known_record(connection, record_id).asset
+    consequences.set_aside(connection, parts, asset, record_id, f"{body.comment} ({who.name})")
+    people.note_down(connection, who.name, "set aside", f"{asset}/{record_id}", "ok", parts.now())
+    return signals.record_out(known_record(connection, record_id))

@@ -1,0 +1,109 @@
+"""Samples for the eye: extremes of bins, spectra."""
+
+from __future__ import annotations
+
+import io
+from datetime import UTC, datetime
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pyarrow as pa
+from scipy.signal import welch
+
+from jackettwin.errors import InputError
+from jackettwin.service.web.problems import ApiError
+from jackettwin.service.web.schemas import RecordOut, Signal, Spectra
+from jackettwin.store import read_waveform
+from jackettwin.store.records import StoredRecord
+
+if TYPE_CHECKING:
+    from jackettwin.records import Record
+    from jackettwin.service.context import Service
+
+_SEGMENT_S = 60.0
+"""Length of a segment of the spectra: 1/60 Hz shows a mode of 0.2 Hz."""
+
+
+def with_zone(time: datetime | None, field: str) -> datetime | None:
+    """Return a time that has a zone; UTC must be said, it is not assumed.
+
+    Raises
+    ------
+    InputError
+        If it has none.
+    """
+    if time is not None and time.tzinfo is None:
+        raise InputError(
+            "a time without a zone", field=field, value=time.isoformat(), remedy="write 2025-01-31T12:00:00Z"
+        )
+    if time is not None and not 1900 <= time.year <= 9000:
+        raise InputError("a time out of range", field=field, value=time.isoformat(), allowed="1900 to 9000")
+    return None if time is None else time.astimezone(UTC)
+
+
+def record_out(record: StoredRecord) -> RecordOut:
+    """Return a record as the API speaks of it."""
+    known = {name: getattr(record, name) for name in RecordOut.model_fields if hasattr(record, name)}
+    return RecordOut(**known, raw_kept=record.waveform is not None)
+
+
+def samples(service: Service, record: StoredRecord) -> Record:
+    """Return the samples of a record; answers 404 if they are not kept any more."""
+    path = None if record.waveform is None else service.settings.store / record.waveform
+    if path is None or not path.exists():
+        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+    return read_waveform(path)
+
+
+def extremes(
+    record: Record, names: list[str] | None, since: float, until: float | None, points: int
+) -> Signal:
+    """Return minimum and maximum of each of ``points`` bins between two times [s after the start]."""
+    chosen = record if names is None else record.select(names)
+    first = min(int(since * record.sample_rate_hz), chosen.data.shape[1])
+    data = chosen.data[:, first : None if until is None else ceil(until * record.sample_rate_hz)]
+    size = max(ceil(data.shape[1] / points), 1)
+    edges = np.arange(0, data.shape[1], size)
+    if edges.size:
+        low, high = np.fmin.reduceat(data, edges, axis=1), np.fmax.reduceat(data, edges, axis=1)
+    else:
+        low = high = np.empty((data.shape[0], 0))
+    assert record.start_utc is not None
+    return Signal(
+        sample_rate_hz=record.sample_rate_hz,
+        start_utc=record.start_utc,
+        time_s=((first + edges) / record.sample_rate_hz).tolist(),
+        channels={
+            channel.name: {"min": _listed(a), "max": _listed(b)}
+            for channel, a, b in zip(chosen.channels, low, high, strict=True)
+        },
+    )
+
+
+def as_arrow(signal: Signal) -> bytes:
+    """Return extremes as an Arrow stream: ``time_s`` and for each channel ``NAME.min`` and ``NAME.max``."""
+    columns: dict[str, list[float | None]] = {"time_s": list(signal.time_s)}
+    for name, bins in signal.channels.items():
+        columns |= {f"{name}.min": bins["min"], f"{name}.max": bins["max"]}
+    table = pa.table(columns)
+    sink = io.BytesIO()
+    with pa.ipc.new_stream(sink, table.schema) as writer:
+        writer.write_table(table)
+    return sink.getvalue()
+
+
+def spectra(record: Record) -> Spectra:
+    """Return the power spectral densities of a record by Welch's method, gaps left at zero."""
+    n = min(int(_SEGMENT_S * record.sample_rate_hz), record.data.shape[1])
+    filled = np.nan_to_num(record.data - np.nanmean(record.data, axis=1, keepdims=True))
+    frequency, density = welch(filled, record.sample_rate_hz, nperseg=n)
+    return Spectra(
+        frequency_hz=frequency.tolist(),
+        channels={c.name: row.tolist() for c, row in zip(record.channels, density, strict=True)},
+        units={c.name: f"({c.unit})^2/Hz" for c in record.channels},
+    )
+
+
+def _listed(values: np.ndarray) -> list[float | None]:
+    return [float(v) if np.isfinite(v) else None for v in values]

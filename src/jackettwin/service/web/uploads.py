@@ -1,0 +1,124 @@
+"""Records that arrive over HTTP, and work that is asked for over it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, BinaryIO
+
+from sqlalchemy import Connection
+
+from jackettwin.errors import InputError
+from jackettwin.service import conditions
+from jackettwin.service.intake.bundles import twin_folder
+from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
+from jackettwin.service.web.problems import ApiError, disk_full
+from jackettwin.service.web.routes.common import living_asset
+from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
+from jackettwin.service.work import engine
+from jackettwin.service.work.tasks import read_conditions
+from jackettwin.store import assets, journal, people, reading, records, work, writing
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Service
+
+_PIECE = 1 << 20
+_ROOM_BYTES = 256 * 2**20
+"""Room that must be left on the disk after an upload: the database needs it to finish what it began."""
+
+
+def refuse_unfit(service: Service, asset: str) -> None:
+    """Answer 404 if there is no such asset, 409 if it is archived."""
+    with reading(service.database) as connection:
+        living_asset(connection, asset)
+
+
+def take(service: Service, asset: str, name: str, stream: BinaryIO, description: str | None) -> Accepted:
+    """Read an upload and keep its record; nothing of it is left behind if that fails."""
+    if description is not None:
+        _check(description)
+    if service.free_bytes() < _ROOM_BYTES:
+        raise disk_full()
+    path = spooled(
+        service.settings.spool,
+        name,
+        _limited(stream, service.settings.upload_limit_bytes),
+        None if description is None else description.encode(),
+    )
+    try:
+        taken = take_file(service, parse_here(service), asset, path, name[:255])
+    finally:
+        discard(path)
+    if taken.problem is not None:
+        raise ApiError(422, **taken.problem)
+    return taken
+
+
+def pick(
+    connection: Connection, service: Service, record: records.StoredRecord, body: PicksIn, who: str
+) -> int:
+    """Keep poles that were chosen by hand, and queue the record to be identified with them."""
+    chosen = {"poles": [p.model_dump() for p in body.picks], "by": who, "time_utc": service.now().isoformat()}
+    records.set_picks(connection, record.asset, record.record_id, chosen if body.picks else None)
+    people.note_down(connection, who, "picks", f"{record.asset}/{record.record_id}", "ok", service.now())
+    number = 0
+    for version in assets.all_versions(connection, record.asset):
+        number = work.enqueue(connection, version, record.record_id, service.now(), priority=20)
+        work.renew(connection, number, service.now())
+    told = {"record_id": record.record_id, "status": record.status, "picks": len(body.picks)}
+    journal.tell(connection, "record", record.asset, told, service.now())
+    return number
+
+
+def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, end_stamped: bool) -> Taken:
+    """Read a table of conditions in a worker and keep it."""
+    path = spooled(
+        service.settings.spool, "table.csv", _limited(stream, service.settings.upload_limit_bytes), None
+    )
+    try:
+        asked = partial(read_conditions, zone=zone, end_stamped=end_stamped)
+        future = service.compute.submit(asked, str(path), priority=100)
+        values = service.compute.result(future, service.settings.parse_limit_s)
+    except TimeoutError:
+        raise ApiError(422, "the table could not be read in time", field="file") from None
+    finally:
+        discard(path)
+    if isinstance(values, InputError):
+        raise values
+    with writing(service.database) as connection:
+        count, again = conditions.add(connection, service, asset, values)
+    service.wake()
+    return Taken(count=count, observed_again=again)
+
+
+def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> StabilisationOut:
+    """Return the poles of every model order of a record."""
+    if record.waveform is None:
+        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+    folder = twin_folder(connection, service, record.asset)
+    waveform = str(service.settings.store / record.waveform)
+    future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
+    try:
+        return StabilisationOut(**service.compute.result(future, service.settings.observe_limit_s))
+    except TimeoutError:
+        raise ApiError(503, "the identification takes too long") from None
+
+
+def _limited(stream: BinaryIO, most: int) -> Iterator[bytes]:
+    size = 0
+    while piece := stream.read(_PIECE):
+        size += len(piece)
+        if size > most:
+            raise ApiError(413, "the file is too large", field="file", allowed=f"up to {most} bytes")
+        yield piece
+
+
+def _check(description: str) -> None:
+    try:
+        if not isinstance(json.loads(description), dict):
+            raise ValueError("not an object")
+    except (ValueError, RecursionError) as error:
+        raise ApiError(
+            422, "the description is not a JSON object", field="description", value=str(error)[:100]
+        ) from None

@@ -1,0 +1,193 @@
+"""Workers.
+
+A Dask cluster of this machine or somebody's scheduler; slow and dying tasks are told apart from wrong input.
+A task's time counts from when a worker begins with it: neither waiting for a worker nor its start count.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import secrets
+import signal
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from threading import Lock
+from typing import Any
+
+import dask
+from distributed import Client, Future, LocalCluster
+from distributed.core import Status
+
+from jackettwin.errors import InputError
+from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.work.task_status import NoWorker, begun
+
+log = logging.getLogger(__name__)
+
+_NICE = 5
+"""Of workers of our own: readers are answered first, records are observed with what is left of the cores.
+
+Stated absolutely, since Dask runs it twice."""
+_START = (
+    f"import os, jackettwin.service.work.engine, jackettwin.service.work.tasks\n"
+    f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
+)
+"""What a worker of our own does before it takes a task: a record does not wait for libraries."""
+_DASK = {
+    "distributed.worker.memory.target": False,
+    "distributed.worker.memory.spill": False,
+    "distributed.worker.memory.pause": False,
+    "distributed.worker.memory.terminate": 0.95,
+    "distributed.scheduler.allowed-failures": 0,
+    "distributed.scheduler.work-stealing": True,
+    "distributed.admin.tick.limit": "60s",
+    "distributed.worker.daemon": True,
+    "distributed.deploy.lost-worker-timeout": "1h",
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.log-length": 100,
+    "distributed.admin.low-level-log-length": 10,
+    "distributed.worker.preload": [_START],
+    "distributed.nanny.pre-spawn-environ.MALLOC_ARENA_MAX": 1,
+}
+"""A worker over its memory is ended, not paused.
+
+A task that ended a worker comes back to us at once, and counts a try. A free worker takes what waits at a
+busy one: an upload does not wait for a posterior. The timeout of a lost worker is when Dask ends whoever took
+its place, if that one is just starting: after its own 15 s that happened. Dask's profiler and monitor
+keep what every thread did for an hour, and its logs the last thousand messages of every connection with all
+that was sent: off, and short.
+"""
+
+_REMEMBERED = 10_000
+"""Tasks of which it is known that they began: far more than there are at once."""
+
+
+class Compute:
+    """Where records are read and observed: never in the server's own process."""
+
+    def __init__(self, settings: ServiceSettings) -> None:
+        dask.config.set(_DASK)
+        self._lock = Lock()
+        self._wanted = settings.workers
+        self._topic, self._began = f"begun-{secrets.token_hex(8)}", dict[str, float]()
+        self._cluster: LocalCluster | None = None
+        if settings.scheduler is None:
+            self._cluster = LocalCluster(
+                n_workers=0,  # they come while the server answers already
+                threads_per_worker=1,
+                processes=True,
+                memory_limit=settings.worker_memory_bytes,
+                dashboard_address="127.0.0.1:0",
+                host="127.0.0.1",
+                silence_logs=logging.ERROR,
+            )
+            self._cluster.scale(settings.workers)
+        try:
+            self.client = Client(self._cluster or settings.scheduler, set_as_default=False, timeout="30s")
+        except (OSError, ValueError):
+            raise InputError(
+                "no scheduler of Dask answers there",
+                field="scheduler",
+                value=settings.scheduler,
+                allowed="tcp://HOST:PORT",
+                remedy="see that `dask scheduler` runs there and may be reached",
+            ) from None
+        self.client.subscribe_topic(self._topic, self._note)
+        self._ever, self._ended = set[str](), 0
+
+    @property
+    def workers(self) -> int:
+        """How many workers there are now."""
+        return len(self._addresses())
+
+    @property
+    def restarts(self) -> int:
+        """How many workers were replaced: our own, whatever they ended of; of others', those we ended."""
+        return self._ended if self._cluster is None else max(len(self._ever) - self._wanted, 0)
+
+    def _addresses(self) -> set[str]:
+        """Where workers are; one that is started anew is elsewhere."""
+        return set(self.client.scheduler_info(n_workers=-1).get("workers", {}))
+
+    def mend(self) -> None:
+        """Start workers of our own that are gone for good.
+
+        Dask starts a worker that died anew, but gives one up that dies, or takes long, while it starts.
+        """
+        if self._cluster is not None:
+            self._ever |= self._addresses()
+            self._cluster.loop.add_callback(self._replace_lost, self._cluster)
+
+    def _replace_lost(self, cluster: LocalCluster) -> None:
+        for name, nanny in list(cluster.workers.items()):
+            if nanny.status in (Status.closed, Status.failed):
+                del cluster.workers[name]
+        cluster.scale(self._wanted)
+
+    def submit(self, task: Callable[..., Any], *args: Any, priority: int = 0) -> Future:
+        """Start a task; urgent ones overtake.
+
+        Its key begins with its name, by which Dask knows how long such tasks take and where to put the next.
+        """
+        name = getattr(task, "func", task).__name__
+        key = f"{name}-{secrets.token_hex(16)}"
+        return self.client.submit(begun, self._topic, task, *args, key=key, priority=priority, retries=0)
+
+    def _note(self, event: tuple[float, str]) -> None:
+        self._began[event[1]] = time.monotonic()
+        while len(self._began) > _REMEMBERED:
+            del self._began[next(iter(self._began))]
+
+    def has_begun(self, future: Future, ago_s: float = 0.0) -> bool:
+        """Tell whether a worker began with a task, and so long ago."""
+        began = self._began.get(future.key)
+        return began is not None and time.monotonic() - began >= ago_s
+
+    def result(self, future: Future, limit_s: float) -> Any:
+        """Return the result of a task that may take so long once it has begun, or end it.
+
+        Raises
+        ------
+        NoWorker
+            If no worker came to it within the same time.
+        TimeoutError
+            If it takes longer.
+        """
+        left = limit_s
+        while True:
+            try:
+                return future.result(timeout=left)
+            except TimeoutError:
+                if future.done():  # it is the task's own
+                    raise
+                began = self._began.get(future.key)
+                if began is None:
+                    future.cancel()
+                    raise NoWorker from None
+                left = began + limit_s - time.monotonic()
+                if left <= 0.0:
+                    self.end(future)
+                    raise
+
+    def end(self, future: Future) -> None:
+        """Give a task up that takes too long: its worker is started anew, with whatever it holds."""
+        with self._lock, suppress(Exception):
+            busy = [address for address, keys in self.client.processing().items() if future.key in keys]
+            future.cancel()
+            self._ended += len(busy)
+            if self._cluster is None:
+                self.client.restart_workers(busy, timeout=30, raise_for_error=False)
+            else:  # a nanny starts a worker anew that died, sooner than one that it must end itself
+                for nanny in self._cluster.workers.values():
+                    if nanny.worker_address in busy:
+                        os.kill(nanny.pid, signal.SIGKILL)
+
+    def close(self) -> None:
+        """Stop; what runs is dropped and will be leased again."""
+        with suppress(Exception):
+            self.client.close(timeout=5)
+        if self._cluster is not None:
+            with suppress(Exception):
+                self._cluster.close(timeout=5)

@@ -1,0 +1,274 @@
+"""What follows from a result, in the same transaction.
+
+Modes, findings, the state of the day and of those after.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import Connection, select
+
+from jackettwin.service.intake.bundles import twin_folder
+from jackettwin.service.intake.files import living
+from jackettwin.service.work import engine
+from jackettwin.service.work.tasks import Outcome, Question, Task
+from jackettwin.store import assets, journal, people, records, results, streams, tables, work
+from jackettwin.store.results import StoredObservation, StoredState
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place, Service
+
+
+NEWEST = 24
+"""Observations that the page on a turbine shows one by one; what it says is of all."""
+
+
+def task_of(connection: Connection, service: Place, job: work.Job) -> Task:
+    """Return what a worker must know to do a piece of work; the twin's files are laid out for it."""
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is None or record.waveform is None:
+        raise LookupError(f"record {job.record_id} of {job.asset} has no samples")
+    end = record.start_utc + timedelta(seconds=record.duration_s)
+    site = streams.conditions_between(connection, job.asset, record.start_utc, end)
+    return Task(
+        waveform=str(service.settings.store / record.waveform),
+        twin_folder=str(twin_folder(connection, service, job.asset, job.version)),
+        asset=job.asset,
+        version=job.version,
+        conditions={**site, **record.conditions},
+        picks=record.picks,
+    )
+
+
+def observing(connection: Connection, service: Service, job: work.Job) -> None:
+    """Say that a record is being observed, unless it has been by the adopted version."""
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is not None and record.status == "received":
+        records.set_status(connection, job.asset, job.record_id, "observing")
+        journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "leased"}, service.now())
+
+
+def question_of(connection: Connection, service: Place, job: work.Job, *, every_day: bool) -> Question:
+    """Return what a worker must know to say what a turbine's state says of its supports.
+
+    It is sent the days after those that it has the sums of, or every day if it asked for them.
+    """
+    key = (job.asset, job.model_hash)
+    identities = results.state_hashes(connection, *key)
+    kept = results.find_kept(connection, job.asset, job.version)
+    after = None if every_day else engine.days_unsummed(kept.get("past"), identities)
+    if after is None:
+        kept = {"judged": kept.get("judged")}
+    return Question(
+        job.asset,
+        job.version,
+        str(twin_folder(connection, service, job.asset, job.version)),
+        identities,
+        {state.day: state.document for state in results.states_until(connection, *key, after=after)},
+        tuple(seen.document for seen in results.newest_observations(connection, *key, NEWEST)),
+        results.observed_time(connection, *key),
+        kept,
+        results.identity_of(identities),
+    )
+
+
+def keep_known(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+    """Keep what a turbine's days say of the supports, and of a change."""
+    now = service.now()
+    if not work.finish(connection, job, service.server_id, "done", now):
+        return
+    document = json.loads(outcome.document or "{}")
+    results.put_knowledge(connection, job.asset, job.version, document, outcome.page, now)
+    journal.tell(connection, "state", job.asset, {"known": document["known"]["status"]}, now)
+    if outcome.of != results.identity_of(results.state_hashes(connection, job.asset, job.model_hash)):
+        ask_known(connection, service, assets.found_version(connection, job.asset, job.version))
+    adopted = assets.found_version(connection, job.asset)
+    if job.version != adopted.version and job.model_hash == adopted.model_hash:
+        return  # what watching says of these days is the adopted version's to say
+    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": ""}
+    rows = [
+        _finding_row(f, key, datetime.fromisoformat(f["time_utc"]), f["day"], "watch")
+        for f in outcome.findings
+    ]
+    for new in results.put_watched(connection, job.asset, job.model_hash, rows):
+        if new["severity"] != "info":
+            said = {name: new[name] for name in ("code", "severity", "subject", "params", "text")}
+            journal.tell(connection, "finding", job.asset, said, now)
+
+
+def ask_known(connection: Connection, service: Place, version: assets.Version) -> None:
+    """Queue the question what the state says now, behind everything that is observed.
+
+    It is asked again after an answer that is on its way, if that one knows less.
+    """
+    named = replace(version, settings_hash=f"version {version.version}")  # laws and priors are its settings
+    number = work.enqueue(connection, named, "", service.now(), kind=work.KNOW, priority=-10)
+    work.try_again(connection, number, service.now())
+
+
+def keep(connection: Connection, service: Service, job: work.Job, outcome: Outcome) -> None:
+    """Keep the outcome of a piece of work and everything that follows from it.
+
+    Nothing, if it is not ours any more.
+    """
+    now, me = service.now(), service.server_id
+    adopted = assets.found_version(connection, job.asset)
+    if outcome.document is None:
+        if work.finish(connection, job, me, "failed", now, outcome.problem):
+            _end_open(connection, job, "refused", outcome.problem or {}, now)
+        return
+    lock(connection, job.asset)
+    if not work.finish(connection, job, me, "done", now):
+        return
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is None or record.status == "set_aside":
+        return
+    key = {"asset": job.asset, "model_hash": job.model_hash, "record_id": job.record_id}
+    again = results.find_observation(connection, job.asset, job.record_id, job.model_hash) is not None
+    observation = StoredObservation(
+        settings_hash=job.settings_hash,
+        start_utc=record.start_utc,
+        code_version=job.code_version,
+        document=outcome.document,
+        **key,
+    )
+    day = f"{record.start_utc:%Y-%m-%d}"
+    results.put_observation(
+        connection,
+        observation,
+        [
+            {**mode, **key, "model_version": job.version, "time_utc": record.start_utc}
+            for mode in outcome.modes
+        ],
+        [_finding_row(f, key, record.start_utc, day, "observe") for f in outcome.findings],
+    )
+    records.set_status(connection, job.asset, job.record_id, "observed")
+    fold(connection, service, job.asset, job.version, observation, anew=again)
+    journal.tell(
+        connection,
+        "observation",
+        job.asset,
+        {
+            "record_id": job.record_id,
+            "version": job.version,
+            "modes": len(outcome.modes),
+            "adopted": adopted.version,
+        },
+        now,
+    )
+    for finding in [f for f in outcome.findings if f["severity"] != "info"]:
+        journal.tell(connection, "finding", job.asset, {**finding, "record_id": job.record_id}, now)
+    for version in living(connection, job.asset, adopted):
+        if version.model_hash == job.model_hash:
+            ask_known(connection, service, version)
+    journal.tell(connection, "state", job.asset, {"day": day, "version": job.version}, now)
+
+
+def failed(connection: Connection, service: Service, job: work.Job, reason: str) -> None:
+    """Put work back that its worker did not survive, or set its record aside after the last try."""
+    problem = {"detail": reason, **_TRY_AGAIN}
+    state = work.put_back(connection, job, service.server_id, problem)
+    if state == "set_aside" and job.kind != work.KNOW:
+        _end(connection, job.asset, job.record_id, state, problem, service.now())
+
+
+_TRY_AGAIN = {"field": "record", "remedy": "try again with POST /jobs/{id}/retry"}
+
+
+def cancel(connection: Connection, service: Place, job: work.Job, by: str) -> bool:
+    """Cancel work that is not done, and set its record aside if the adopted version has not observed it."""
+    if not work.cancel(connection, job.id, service.now()):
+        return False
+    people.note_down(connection, by, "cancel", str(job.id), "ok", service.now())
+    journal.tell(connection, "job", job.asset, {"job_id": job.id, "state": "cancelled"}, service.now())
+    if job.version == assets.found_version(connection, job.asset).version:
+        problem = {"detail": f"cancelled by {by}", **_TRY_AGAIN}
+        _end_open(connection, job, "set_aside", problem, service.now())
+    return True
+
+
+def set_aside(connection: Connection, service: Place, asset: str, record_id: str, why: str) -> None:
+    """Take back what a record gave rise to: another one holds its samples and more, or a person says so."""
+    lock(connection, asset)
+    for job in work.jobs_of(connection, asset, record_id):
+        work.cancel(connection, job.id, service.now())
+    for version in assets.all_versions(connection, asset):
+        gone = results.find_observation(connection, asset, record_id, version.model_hash)
+        if gone is not None:
+            results.drop_observation(connection, asset, version.model_hash, record_id)
+            fold(connection, service, asset, version.version, gone, anew=True)
+            ask_known(connection, service, version)
+    _end(connection, asset, record_id, "set_aside", {"detail": why, **_TRY_AGAIN}, service.now())
+
+
+def fold(
+    connection: Connection,
+    service: Place,
+    asset: str,
+    version: int,
+    changed: StoredObservation,
+    *,
+    anew: bool = False,
+) -> None:
+    """Bring the state of a day up to date.
+
+    A day is a sum over its records that does not depend on their order. A record that is new to it is added;
+    one that was observed again, or taken out, makes the day be summed anew.
+    """
+    day, model_hash = f"{changed.start_utc:%Y-%m-%d}", changed.model_hash
+    stored = None if anew else results.find_state(connection, asset, model_hash, day)
+    if stored is None:
+        start = datetime.fromisoformat(day).replace(tzinfo=UTC)
+        todo = list(
+            results.observations_between(connection, asset, model_hash, start, start + timedelta(days=1))
+        )
+        results.drop_state(connection, asset, model_hash, day)
+    else:
+        todo = [changed]
+    if not todo:
+        return
+    model = engine.load_twin(twin_folder(connection, service, asset, version)).model
+    folded = engine.advance_day(model, day, stored.document if stored else None, [o.document for o in todo])
+    results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
+    key = {"asset": asset, "model_hash": model_hash}
+    rows = [
+        _finding_row(
+            finding, {**key, "record_id": observation.record_id}, observation.start_utc, day, "advance"
+        )
+        for observation, found in zip(todo, folded.findings, strict=True)
+        for finding in found
+    ]
+    results.put_findings(connection, rows)
+
+
+def lock(connection: Connection, asset: str) -> None:
+    """Hold an asset until the transaction ends: two servers fold one after the other."""
+    connection.execute(select(tables.assets.c.name).where(tables.assets.c.name == asset).with_for_update())
+
+
+def _end_open(
+    connection: Connection, job: work.Job, status: str, problem: Mapping[str, Any], now: datetime
+) -> None:
+    """Say why a record that is not observed yet will not be."""
+    record = records.find_record(connection, job.asset, job.record_id)
+    if record is not None and record.status in ("received", "observing"):
+        _end(connection, job.asset, job.record_id, status, problem, now)
+
+
+def _end(
+    connection: Connection, asset: str, record_id: str, status: str, problem: Mapping[str, Any], now: datetime
+) -> None:
+    records.set_status(connection, asset, record_id, status, problem)
+    told = {"record_id": record_id, "status": status, "detail": problem.get("detail", "")}
+    journal.tell(connection, "record", asset, told, now)
+
+
+def _finding_row(
+    finding: Mapping[str, Any], key: Mapping[str, Any], time: datetime, day: str, origin: str
+) -> dict[str, Any]:
+    return {**finding, **key, "time_utc": time, "day": day, "origin": origin}

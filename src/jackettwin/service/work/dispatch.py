@@ -1,0 +1,251 @@
+"""The heart of a server.
+
+Leases work, has it done, keeps results with their consequences, takes over from the dead.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import Connection
+from sqlalchemy.exc import SQLAlchemyError
+
+from jackettwin.service.work import consequences
+from jackettwin.service.work.task_status import LOST_WORKER
+from jackettwin.service.work.tasks import Outcome, Question, Task, know, observe_stored
+from jackettwin.store import reading, work, writing
+from jackettwin.version import __version__
+
+if TYPE_CHECKING:
+    from distributed import Future
+
+    from jackettwin.service.context import Service
+
+log = logging.getLogger(__name__)
+
+_BEAT_S = 2.0
+DEAD_AFTER_S = 15.0
+"""A server whose beat stood still for so long, by the stopwatch of another, is dead."""
+_TURN_S = 0.25
+_RESTS = 3.0
+"""What a state says of the supports may take a quarter of one worker, however many turbines there are."""
+_AHEAD = 2
+"""Tasks a worker has before it, so that none waits for the next lease."""
+
+
+@dataclass
+class _Running:
+    job: work.Job
+    future: Future
+    since: float
+
+
+class Dispatcher(Thread):
+    """A thread that turns until it is told to stop.
+
+    Whatever it was doing then is leased again by the next.
+    """
+
+    def __init__(self, service: Service) -> None:
+        super().__init__(name="dispatcher", daemon=True)
+        self.service = service
+        self.wake = Event()
+        self._stop_asked = Event()
+        self._running: dict[int, _Running] = {}
+        self._seen: dict[str, tuple[int, float]] = {}
+        self._last_beat = -_BEAT_S
+        self._rest_until = 0.0
+
+    def run(self) -> None:
+        """Turn; a database that is away for a while is waited for."""
+        waited = 0.0
+        while not self._stop_asked.is_set():
+            try:
+                self._turn()
+                waited = 0.0
+            except (SQLAlchemyError, OSError) as error:
+                waited = min(waited + 1.0, 10.0)
+                log.warning("dispatcher waits %g s: %s", waited, str(error).splitlines()[0])
+                self._stop_asked.wait(waited)
+            except Exception:
+                log.exception("dispatcher goes on after a fault of ours")
+                self._stop_asked.wait(1.0)
+            self.wake.wait(_TURN_S)
+            self.wake.clear()
+
+    def stop(self) -> None:
+        """Stop, and leave the list of servers so that others take over at once."""
+        self._stop_asked.set()
+        self.wake.set()
+        if self.is_alive():
+            self.join(timeout=10.0)
+        try:
+            with writing(self.service.database) as connection:
+                work.bury(connection, self.service.server_id)
+        except SQLAlchemyError:
+            log.warning("could not leave the list of servers; others notice by the beat")
+
+    def _turn(self) -> None:
+        self._beat()
+        self._collect()
+        self._end_overrun()
+        self._lease()
+        for chore in self.service.chores:
+            chore()
+
+    def _beat(self) -> None:
+        """Count our beat up, bury who is dead, come back if we were buried ourselves."""
+        if time.monotonic() - self._last_beat < _BEAT_S:
+            return
+        self._last_beat = time.monotonic()
+        self.service.compute.mend()
+        me, now = self.service.server_id, self.service.now()
+        with writing(self.service.database) as connection:
+            if not work.beat(connection, me):
+                about = {"version": __version__, "pid": os.getpid(), "machine": _MACHINE}
+                work.join(connection, me, about, now)
+            beats = work.beats(connection)
+            for server in [name for name in beats if name != me and self._dead(name, *beats[name])]:
+                freed = work.bury(connection, server, beats[server][0])
+                log.warning("server %s is dead, %d pieces of work go back to the queue", server, len(freed))
+            work.take_back_orphans(connection, me, self._running)
+
+    def _dead(self, server: str, count: int, about: Mapping[str, Any]) -> bool:
+        """Tell whether a server's process is gone from this machine, or its beat stands still."""
+        if _MACHINE and about.get("machine") == _MACHINE and not _runs(about["pid"]):
+            return True
+        known, since = self._seen.get(server, (None, 0.0))
+        if known != count:
+            self._seen[server] = (count, time.monotonic())
+            return False
+        return time.monotonic() - since > DEAD_AFTER_S
+
+    def _lease(self) -> None:
+        free = _AHEAD * max(self.service.compute.workers, 1) - len(self._running)
+        if free <= 0:
+            return
+        kind = self._next_kind()
+        if kind is None:
+            return
+        with writing(self.service.database) as connection:
+            most = free if kind == work.OBSERVE else 1
+            jobs = work.lease(connection, self.service.server_id, most, self.service.now(), kind=kind)
+            for job in jobs if kind == work.OBSERVE else ():
+                consequences.observing(connection, self.service, job)
+        for job in jobs:
+            self._start(job)
+
+    def _start(self, job: work.Job, *, every_day: bool = False) -> None:
+        """Have a worker do a piece of work, unless what it needs is not there any more."""
+        try:
+            with reading(self.service.database) as connection:  # years of days: no writer waits
+                function, argument = self._task(connection, job, every_day)
+        except LookupError as gone:
+            with writing(self.service.database) as connection:
+                consequences.keep(connection, self.service, job, Outcome(None, problem={"detail": str(gone)}))
+            return
+        future = self.service.compute.submit(function, argument, priority=job.priority)
+        future.add_done_callback(lambda _: self.wake.set())
+        self._running[job.id] = _Running(job, future, time.monotonic())
+
+    def _next_kind(self) -> str | None:
+        """Return what to lease: records first, those of archived assets last of all.
+
+        What a state says is asked only when it was rested for long enough.
+        """
+        with reading(self.service.database) as connection:
+            if work.any_queued(connection, work.OBSERVE):
+                return work.OBSERVE
+            asking = any(running.job.kind == work.KNOW for running in self._running.values())
+            rests = asking or time.monotonic() < self._rest_until
+            if not rests and work.any_queued(connection, work.KNOW):
+                return work.KNOW
+            return work.OBSERVE if work.any_queued(connection, work.OBSERVE, gone=True) else None
+
+    def _task(
+        self, connection: Connection, job: work.Job, every_day: bool
+    ) -> tuple[Callable[..., Outcome | None], Task | Question]:
+        if job.kind == work.KNOW:
+            return know, consequences.question_of(connection, self.service, job, every_day=every_day)
+        return observe_stored, consequences.task_of(connection, self.service, job)
+
+    def _collect(self) -> None:
+        for number, running in list(self._running.items()):
+            if running.future.done():
+                enough = self._keep(running)
+                del self._running[number]
+                if not enough:
+                    self._start(running.job, every_day=True)
+                elif running.job.kind == work.KNOW:
+                    took = time.monotonic() - running.since
+                    self._rest_until = time.monotonic() + _RESTS * took
+
+    def _keep(self, running: _Running) -> bool:
+        """Keep what came of a piece of work; False if its worker must have every day to do it."""
+        if running.future.status == "finished":
+            outcome: Outcome | None = running.future.result()
+            if outcome is None:
+                return False
+            with writing(self.service.database) as connection:
+                asked = running.job.kind == work.KNOW
+                keep = consequences.keep_known if asked else consequences.keep
+                keep(connection, self.service, running.job, outcome)
+            return True
+        reason, tried = _reason(running.future), self.service.compute.has_begun(running.future)
+        with writing(self.service.database) as connection:
+            if tried:
+                consequences.failed(connection, self.service, running.job, reason)
+            else:  # it waited at a worker that died of another task
+                work.release(connection, running.job, self.service.server_id)
+        return True
+
+    def _end_overrun(self) -> None:
+        limit = self.service.settings.observe_limit_s
+        for running in list(self._running.values()):
+            if self.service.compute.has_begun(running.future, limit) and not running.future.done():
+                reason = f"took longer than {limit:g} s"
+                self.service.compute.end(running.future)
+                with writing(self.service.database) as connection:
+                    consequences.failed(connection, self.service, running.job, reason)
+                del self._running[running.job.id]
+
+
+def _runs(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass  # of another user
+    return True
+
+
+def _machine() -> str:
+    """Return what two servers share if the number of a process means the same to both; empty if unknown."""
+    try:
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip()
+        return f"{boot} {os.readlink('/proc/self/ns/pid')}"
+    except OSError:
+        return ""
+
+
+_MACHINE = _machine()
+
+
+def _reason(future: Future) -> str:
+    """Return in a sentence why a task has no result."""
+    try:
+        error = future.exception(timeout=1)
+    except Exception as lost:
+        error = lost
+    name = type(error).__name__
+    if name in LOST_WORKER:
+        return "the worker that observed it ended, out of memory or killed"
+    return f"{name}: {error}"[:500]

@@ -1,0 +1,237 @@
+"""The seam to the engine: documents in, documents out.
+
+Nothing below it knows of a store, nothing above it of a model.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from jackettwin.findings import Finding
+from jackettwin.identification.picks import Pick
+from jackettwin.records import Channel
+from jackettwin.store import read_waveform
+from jackettwin.twin import (
+    OBSERVATION,
+    TwinConfig,
+    TwinModel,
+    TwinState,
+    advance,
+    empty_state,
+    observe,
+    read_twin,
+    twin_model,
+)
+from jackettwin.twin.codec import StoredSchema, digest
+from jackettwin.twin.exact_sums import average
+from jackettwin.twin.state import ALL, Day
+
+TWIN_FILE = "twin.yaml"
+DAY = StoredSchema("twin_day", Day)
+"""How the state of one day is kept."""
+
+
+@dataclass(frozen=True)
+class FoldedDay:
+    """The state of a day as a document, how many records it holds, and what each new one gave rise to."""
+
+    document: str
+    n_records: int
+    findings: tuple[tuple[dict[str, Any], ...], ...]
+
+
+class Twin(NamedTuple):
+    """What a version of a twin says, and the model that it builds."""
+
+    config: TwinConfig
+    model: TwinModel
+
+
+@lru_cache(maxsize=256)
+def load_twin(folder: Path) -> Twin:
+    """Return a twin whose files stand in a folder, kept: a version never changes."""
+    config = read_twin(folder / TWIN_FILE, records_follow=True)
+    return Twin(config, twin_model(config))
+
+
+def identity(model: TwinModel) -> tuple[str, str]:
+    """Return the hashes of a model and of the settings it observes with."""
+    settings = model.settings_hash("")
+    return digest([model.model_hash, settings]), settings
+
+
+def channels(config: TwinConfig) -> dict[str, Channel]:
+    """Return what a twin says of its channels, {name: channel}."""
+    return {
+        s.channel: Channel(s.channel, height_m=s.height_m, node=s.node, direction=s.direction)
+        for s in config.sensors
+    }
+
+
+def observed(
+    model: TwinModel, waveform: Path, conditions: Mapping[str, Any], picks: Sequence[Mapping[str, Any]] = ()
+) -> tuple[str, tuple[dict[str, Any], ...], tuple[dict[str, Any], ...]]:
+    """Return the observation of a stored record as a document, its modes and its findings as rows.
+
+    ``picks`` are poles that a person chose instead of the automatic selection.
+    """
+    if picks:
+        model = model.with_picks(tuple(Pick(float(p["frequency_hz"]), p.get("order")) for p in picks))
+    record = read_waveform(waveform)
+    record = replace(record, conditions={**conditions, **record.conditions})
+    seen = observe(record, model)
+    rows = []
+    for mode, known in zip(seen.identification.modes, seen.recognised, strict=True):
+        low, high = mode.damping_ratio_interval_95 or (None, None)
+        rows.append(
+            {
+                "label": "" if known is None else known.label,
+                "frequency_hz": mode.frequency_hz,
+                "frequency_std_hz": mode.frequency_std_hz,
+                "damping_ratio": mode.damping_ratio,
+                "damping_ratio_std": mode.damping_ratio_std,
+                "damping_ratio_low_95": low,
+                "damping_ratio_high_95": high,
+                "status": str(mode.status)[:255],
+            }
+        )
+    document = json.dumps(OBSERVATION.dump(seen), ensure_ascii=False, separators=(",", ":"))
+    return document, tuple(rows), tuple(finding_row(f) for f in seen.findings)
+
+
+def advance_day(model: TwinModel, day: str, stored: str | None, observations: Sequence[str]) -> FoldedDay:
+    """Return the state of a day that knows some more observations of it."""
+    days = {} if stored is None else {day: DAY.load(json.loads(stored))}
+    state = replace(empty_state(model), days=days)
+    found = []
+    for document in observations:
+        state, findings = advance(state, OBSERVATION.load(json.loads(document)))
+        found.append(tuple(finding_row(f) for f in findings if f.code != "record_late"))
+    known = state.days[day]
+    text = json.dumps(DAY.dump(known), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
+    return FoldedDay(text, len(known.records), tuple(found))
+
+
+def finding_row(finding: Finding) -> dict[str, Any]:
+    """Return a finding as it is stored."""
+    row = finding.document
+    del row["repaired"]  # stored findings have no place for it
+    return row
+
+
+@dataclass(frozen=True)
+class Sums:
+    """What some days say together, without the days themselves: it does not grow with their number."""
+
+    state: TwinState
+    records: int = 0
+    first_utc: datetime | None = None
+    last_utc: datetime | None = None
+
+
+def no_days(model: TwinModel) -> Sums:
+    """Return what no day says."""
+    return Sums(empty_state(model))
+
+
+def with_day(
+    sums: Sums, day: str, document: str, chosen: Callable[[str], bool] = lambda operation: True
+) -> Sums:
+    """Return what some days and one more say together, of its records in some states of operation."""
+    new = DAY.load(json.loads(document)).of_operations(chosen)
+    state = replace(sums.state.with_day(day, new), days={})
+    times = [t for t in (sums.first_utc, sums.last_utc, new.first, new.last) if t is not None]
+    first, last = (min(times), max(times)) if times else (None, None)
+    return Sums(state, sums.records + len(new.records), first, last)
+
+
+@dataclass(frozen=True)
+class Past:
+    """What all days but the last one, which still grows, say together: kept from question to question.
+
+    ``through`` is the last of them, ``of`` their identity.
+    """
+
+    sums: Sums
+    through: str
+    of: str
+
+
+PAST = StoredSchema("twin_past", Past)
+"""How sums of past days are kept."""
+
+
+def days_unsummed(past: Mapping[str, Any] | None, identities: Mapping[str, str]) -> str | None:
+    """Return the day after which days are not in sums that are kept; None if these do not hold any more."""
+    if past is None or past["through"] >= max(identities, default=""):
+        return None
+    return past["through"] if past["of"] == _identity(identities, past["through"]) else None
+
+
+def _identity(identities: Mapping[str, str], through: str) -> str:
+    return digest([item for item in identities.items() if item[0] <= through])
+
+
+def summed(
+    twin: Twin, past: Mapping[str, Any] | None, identities: Mapping[str, str], documents: Mapping[str, str]
+) -> tuple[Sums, Mapping[str, Any] | None]:
+    """Return what the records of all days say that may update the supports, and what to keep of it.
+
+    ``documents`` are those of the days that are not in ``past``, or of all days without it.
+    """
+    known = None if past is None else PAST.load(past)
+    sums, through = (no_days(twin.model), "") if known is None else (known.sums, known.through)
+    *before, last = [day for day in identities if day > through]
+    for day in before:
+        sums = with_day(sums, day, documents[day], twin.config.operation.may_update)
+    if before:
+        past = PAST.dump(Past(sums, before[-1], _identity(identities, before[-1])))
+    return with_day(sums, last, documents[last], twin.config.operation.may_update), past
+
+
+def knowledge(model: TwinModel, sums: Sums) -> dict[str, Any]:
+    """Return what some days say: the mean of every mode with its standard deviations, from when to when."""
+    total = sums.state.totals.get(ALL)
+    modes = []
+    for number, seen in sorted(total.modes.items()) if total is not None else ():
+        mean = average(seen)
+        modes.append(
+            {
+                "mode": number,
+                "label": model.labels[number - 1] if number <= len(model.labels) else "",
+                "frequency_hz": mean.frequency_hz,
+                "frequency_std_hz": mean.frequency_hz * mean.log_std[0],
+                "damping_ratio": mean.damping_ratio,
+                "damping_ratio_std": mean.damping_ratio * mean.log_std[1],
+                "records": seen.sums.n,
+            }
+        )
+    return {
+        "records": sums.records,
+        "first_utc": sums.first_utc,
+        "last_utc": sums.last_utc,
+        "modes": modes,
+        "parameters": {},
+        "status": "ok" if modes else "no mode of the model has been seen",
+    }
+
+
+def stabilisation(folder: str, waveform: str) -> dict[str, Any]:
+    """Return the poles of every model order of a stored record."""
+    from jackettwin.twin.observe import examined
+
+    record = read_waveform(Path(waveform))
+    poles = examined(record, load_twin(Path(folder)).model).identification.stabilisation
+    return {
+        "order": poles.order.tolist(),
+        "frequency_hz": poles.frequency_hz.tolist(),
+        "damping_ratio": poles.damping_ratio.tolist(),
+        "stable": poles.stable.tolist(),
+        "mode": poles.cluster.tolist(),
+    }

@@ -1,0 +1,1 @@
+"""The motion of an asset through a scenario."""

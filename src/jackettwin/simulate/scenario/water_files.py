@@ -1,0 +1,226 @@
+"""``water`` of a scenario: coefficients of members, marine growth, what is flooded."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from jackettwin.errors import InputError, located
+from jackettwin.files import Schema
+from jackettwin.files.limits import ForceCoefficient, Height
+from jackettwin.loads.members.coefficients import (
+    GROWTH_KG_M3,
+    SEA_WATER_KG_M3,
+    Coefficients,
+    GrowthBand,
+    Strip,
+    StripTable,
+    require_members,
+)
+from jackettwin.loads.members.ends import EndCoefficients
+from jackettwin.loads.members.hydrodyn_deck import read_hydrodyn
+from jackettwin.loads.members.water import Water
+from jackettwin.structure import Structure
+
+_GAP_M = 5.0
+"""How far above the bed feet may end, as those of piles that stick out do."""
+Growth = Annotated[float, Field(ge=500.0, le=5000.0)]
+"""Density of marine growth [kg/m³]."""
+
+
+class GrowthSchema(Schema):
+    """Marine growth: a band of one thickness, or one height of a table; heights from still water."""
+
+    top_z_m: Height | None = None
+    bottom_z_m: Height | None = None
+    z_m: Height | None = None
+    thickness_m: Annotated[float, Field(ge=0.0, le=2.0)]
+    density: Growth | None = None
+
+
+class StripSchema(Schema):
+    """C_D, C_a and C_p where they differ from the others."""
+
+    drag: ForceCoefficient | None = None
+    added_mass: ForceCoefficient | None = None
+    pressure: ForceCoefficient | None = None
+
+
+class HeightSchema(StripSchema):
+    """Coefficients at one height from still water, ``with_growth`` those of a covered member."""
+
+    z_m: Height
+    with_growth: StripSchema | None = None
+
+
+class TableSchema(Schema):
+    """Coefficients over the height, of some members or parts or of all."""
+
+    members: list[str] = []
+    at: list[HeightSchema] = Field(min_length=1)
+
+
+class EndsSchema(Schema):
+    """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
+
+    pressure: ForceCoefficient = 0.0
+    added_mass: ForceCoefficient = 0.0
+    drag: ForceCoefficient = 0.0
+
+
+class WaterSchema(Schema):
+    """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
+
+    depth_m: Annotated[float, Field(ge=1.0, le=1000.0)] | None = None
+    density: Annotated[float, Field(ge=500.0, le=2000.0)] = SEA_WATER_KG_M3
+    drag: ForceCoefficient = 1.0
+    added_mass: ForceCoefficient = 1.0
+    pressure: ForceCoefficient = 1.0
+    with_growth: StripSchema = StripSchema()
+    coefficients: list[TableSchema] = []
+    marine_growth: list[GrowthSchema] = []
+    growth_density: Growth = GROWTH_KG_M3
+    flooded: bool | list[str] = []
+    ends: EndsSchema = EndsSchema()
+    hydrodyn: str | None = None
+    """A HydroDyn input file that says all of this, but depth, density and ``adds_mass``."""
+    adds_mass: bool | None = None
+
+
+class Members(NamedTuple):
+    """What members are in the water: coefficients, also of their ends, what is flooded.
+
+    ``adds_mass`` tells whether growth and water go into the mass, or the structure's holds them already.
+    """
+
+    coefficients: Coefficients
+    ends: EndCoefficients
+    water: Water
+    adds_mass: bool
+
+
+def water_members(w: WaterSchema, structure: Structure, folder: Path) -> Members:
+    """Return what ``water`` says of members; a HydroDyn file is sought in ``folder``.
+
+    Raises
+    ------
+    InputError
+        If members or parts are not the structure's, or a HydroDyn file is given beside its own content.
+    """
+    if w.hydrodyn is None:
+        ends = EndCoefficients(w.ends.pressure, w.ends.added_mass, w.ends.drag)
+        coefficients, flooded = _coefficients(w, structure), _flooded(w, structure)
+    else:
+        twice = sorted(w.model_fields_set - {"hydrodyn", "depth_m", "density", "adds_mass"})
+        if twice:
+            raise InputError(
+                "given by the HydroDyn file already",
+                field=f"water.{twice[0]}",
+                remedy="leave one of them out",
+            )
+        with located(field="water.hydrodyn"):
+            coefficients, ends, flooded = read_hydrodyn(
+                folder / w.hydrodyn, structure, density_kg_m3=w.density
+            )
+    adds = bool(coefficients.growth or flooded) if w.adds_mass is None else w.adds_mass
+    return Members(coefficients, ends, Water(flooded), adds)
+
+
+def _coefficients(w: WaterSchema, structure: Structure) -> Coefficients:
+    """Return the coefficients of members and the growth on them."""
+    names = [(m.name, m.part) for m in structure.members]
+    require_members((m for t in w.coefficients for m in t.members), names, "water.coefficients.members")
+    bare = Strip(w.drag, w.added_mass, w.pressure)
+    grown = _strip(w.with_growth, bare)
+    with located(field="water.marine_growth"):
+        growth = _growth(w)
+    with located(field="water.coefficients"):
+        tables = tuple(_table(table, bare, grown) for table in w.coefficients)
+    return Coefficients(w.drag, w.added_mass, w.pressure, growth, grown, tables, w.density)
+
+
+def _flooded(w: WaterSchema, structure: Structure) -> tuple[str, ...]:
+    if isinstance(w.flooded, bool):
+        below = {m.name for m in structure.members if m.part not in ("tower", "piles")}
+        return tuple(sorted(below)) if w.flooded else ()
+    require_members(w.flooded, [(m.name, m.part) for m in structure.members], "water.flooded")
+    return tuple(w.flooded)
+
+
+def _strip(given: StripSchema | None, default: Strip) -> Strip:
+    def one(name: str) -> float:
+        value = None if given is None else getattr(given, name)
+        return getattr(default, name) if value is None else float(value)
+
+    return Strip(one("drag"), one("added_mass"), one("pressure"))
+
+
+def _table(table: TableSchema, bare: Strip, grown: Strip) -> StripTable:
+    """Return a table; what a height does not say is as without growth there, or as elsewhere."""
+    at = [_strip(row, bare) for row in table.at]
+    covered = [_strip(row.with_growth, _strip(row, grown)) for row in table.at]
+    return StripTable(tuple(row.z_m for row in table.at), tuple(at), tuple(covered), tuple(table.members))
+
+
+def _growth(w: WaterSchema) -> tuple[GrowthBand, ...]:
+    """Return bands, from bands or from a table of heights."""
+    tabulated = [g for g in w.marine_growth if g.z_m is not None]
+    if not tabulated:
+        return tuple(_band(g, g.density or w.growth_density) for g in w.marine_growth)
+    if len(tabulated) < max(len(w.marine_growth), 2) or any(
+        g.top_z_m is not None or g.bottom_z_m is not None for g in tabulated
+    ):
+        raise InputError(
+            "a table of growth needs z_m at every height, two at least",
+            field="z_m",
+            value=[g.z_m for g in w.marine_growth],
+            remedy="give z_m and thickness_m everywhere, or top_z_m, bottom_z_m and thickness_m",
+        )
+    falling = sorted(tabulated, key=lambda g: -(g.z_m or 0.0))
+    return tuple(
+        GrowthBand(
+            upper.z_m or 0.0,
+            lower.z_m or 0.0,
+            upper.thickness_m,
+            lower.thickness_m,
+            upper.density or w.growth_density,
+            lower.density or w.growth_density,
+        )
+        for upper, lower in pairwise(falling)
+    )
+
+
+def _band(g: GrowthSchema, density: float) -> GrowthBand:
+    if g.top_z_m is None or g.bottom_z_m is None:
+        raise InputError(
+            "growth without its heights",
+            field="top_z_m" if g.top_z_m is None else "bottom_z_m",
+            remedy="give top_z_m and bottom_z_m, or z_m at every height of a table",
+        )
+    return GrowthBand(g.top_z_m, g.bottom_z_m, g.thickness_m, density_kg_m3=density)
+
+
+def depth_of(w: WaterSchema, structure: Structure) -> float:
+    """Return the depth [m] as stated; else down to the lowest foot."""
+    feet = structure.reaction_nodes or tuple(structure.nodes)
+    reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
+    if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
+        return w.depth_m
+    if w.depth_m is not None:
+        raise InputError(
+            "the structure does not reach the bed",
+            field="water.depth_m",
+            value=w.depth_m,
+            allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
+            remedy="state the depth of this structure or its sea_level_z_m, or leave the depth out",
+        )
+    if not reach > 0.0:
+        raise InputError(
+            "water depth is not known",
+            field="water.depth_m",
+            remedy="state it, or sea_level_z_m in the structure's file",
+        )
+    return reach

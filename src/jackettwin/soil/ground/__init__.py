@@ -1,0 +1,1 @@
+"""Layered ground and its reaction curves."""

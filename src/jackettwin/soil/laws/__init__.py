@@ -1,0 +1,1 @@
+"""Viscoelastic support laws."""

@@ -1,0 +1,254 @@
+"""The support laws that can be updated: one class each, and the table they are looked up in.
+
+A law of its own is a class here with its parameters and their bounds, the law it builds, its row of numbers
+with the derivatives, and an entry in ``FAMILIES``. Updating, the command line's short forms and the report
+find all they say of it there.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError, did_you_mean
+from jackettwin.soil.laws.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
+from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil.laws.viscoelastic import (
+    MAXWELL_3_BRANCHES,
+    MAXWELL_3_TILT,
+    Law,
+    Springpot,
+    kelvin_voigt,
+    maxwell_3,
+    maxwell_3_scale,
+    maxwell_3_times,
+    zener,
+)
+
+# Bounds of the thesis, (8.6)–(8.10).
+_K = (1e7, 1e14, "N/m")
+_C = (1e4, 1e14, "N·s/m")
+
+
+class Family(ABC):
+    """A law with free parameters.
+
+    Attributes
+    ----------
+    name : str
+        In files and on the command line.
+    words : str
+        What it is, for a reader who does not know the name.
+    parameters : tuple of Parameter
+        The first is its stiffness.
+    needs_frequency : bool
+        Whether stiffness and loss are stated at a reference frequency.
+    relaxes : bool
+        Whether a structure on it has real poles; a springpot's relaxation is a continuum.
+    """
+
+    name: ClassVar[str]
+    words: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    needs_frequency: ClassVar[bool] = False
+    relaxes: ClassVar[bool] = True
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of its parameters."""
+        return tuple(p.name for p in self.parameters)
+
+    @abstractmethod
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law at values of its parameters, stated at ``reference_hz``.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range.
+        """
+
+    @abstractmethod
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return the numbers of many laws at once, and their derivatives by ln θ.
+
+        Parameters
+        ----------
+        values : (n, n_parameters)
+
+        Returns
+        -------
+        (n, width) as in :mod:`jackettwin.soil.laws.coefficients`, and (n, width, n_parameters)
+        """
+
+    def __reduce__(self) -> tuple[Callable[[str], Family], tuple[str]]:
+        """A law crosses processes by its name: every process has the same laws."""
+        return family, (self.name,)
+
+
+class KelvinVoigt(Family):
+    """D = k + c s, thesis (4.5)."""
+
+    name = "kelvin-voigt"
+    words = "a spring beside a dashpot"
+    parameters = (Parameter("k", *_K, words="stiffness"), Parameter("c", *_C, words="dashpot"))
+
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law."""
+        return kelvin_voigt(float(values[0]), float(values[1]))
+
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return rows and slopes, as the base class says."""
+        rows, slopes = _empty(values, branches=0)
+        rows[:, K0], rows[:, C] = values.T
+        slopes[:, K0, 0], slopes[:, C, 1] = values.T
+        return rows, slopes
+
+
+class Zener(Family):
+    """D = k0 + k1 τ s/(1 + τ s) with τ = c/k1, thesis (4.7) and (7.5)."""
+
+    name = "zener"
+    words = "a spring beside a spring and dashpot in series"
+    parameters = (
+        Parameter("k0", *_K, words="static stiffness"),
+        Parameter("c", *_C, words="dashpot"),
+        Parameter("k1", *_K, words="stiffness of the damping branch"),
+    )
+
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law."""
+        return zener(float(values[0]), float(values[1]), float(values[2]))
+
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return rows and slopes, as the base class says."""
+        rows, slopes = _empty(values, branches=1)
+        k0, c, k1 = values.T
+        tau = c / k1
+        rows[:, K0], rows[:, BRANCHES], rows[:, BRANCHES + 1] = k0, k1, tau
+        slopes[:, K0, 0], slopes[:, BRANCHES, 2] = k0, k1
+        slopes[:, BRANCHES + 1, 1], slopes[:, BRANCHES + 1, 2] = tau, -tau
+        return rows, slopes
+
+
+class ThreeBranches(Family):
+    """Three Maxwell branches of fixed shape beside a spring: a loss factor that frequency hardly changes."""
+
+    name = "maxwell-3"
+    words = "a loss factor that hardly depends on frequency, as soil's does"
+    parameters = (
+        Parameter("k", *_K, words="stiffness"),
+        Parameter("loss_factor", 1e-4, 0.6, "-", words="loss factor"),
+    )
+    needs_frequency = True
+
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law."""
+        return maxwell_3(float(values[0]), float(values[1]), reference_hz)
+
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return rows and slopes, as the base class says."""
+        rows, slopes = _empty(values, branches=3)
+        k, eta = values.T
+        s, response, w = maxwell_3_scale(eta)
+        # η times derivatives by η; those of the weights first
+        dw = MAXWELL_3_TILT * np.multiply.outer(eta, np.arange(3.0))
+        d_response = (w * dw) @ MAXWELL_3_BRANCHES
+        ds = s * (1.0 - (d_response.imag - eta * (response.real + d_response.real)) * s / eta)
+        # k0 = k/(1 + sR), k_j = s w_j k0
+        shrink = 1.0 / (1.0 + s * response.real)
+        dk0 = -(ds * response.real + s * d_response.real) * shrink
+        k0 = k * shrink
+        rows[:, K0] = k0
+        rows[:, BRANCHES::2] = (s * k0)[:, None] * w
+        rows[:, BRANCHES + 1 :: 2] = maxwell_3_times(reference_hz)
+        slopes[:, K0, 0], slopes[:, BRANCHES::2, 0] = k0, rows[:, BRANCHES::2]
+        slopes[:, K0, 1] = k0 * dk0
+        slopes[:, BRANCHES::2, 1] = rows[:, BRANCHES::2] * ((ds / s + dk0)[:, None] + dw)
+        return rows, slopes
+
+
+class FractionalElement(Family):
+    """D = k (s/ω₀)^α, a springpot."""
+
+    name = "springpot"
+    words = "one element between spring and dashpot"
+    parameters = (
+        Parameter("k", *_K, words="stiffness"),
+        Parameter("alpha", 1e-4, 0.5, "-", words="springpot exponent"),
+    )
+    needs_frequency = True
+    relaxes = False
+
+    def build(self, values: FloatArray, reference_hz: float) -> Law:
+        """Return the law."""
+        return Springpot(float(values[0]), float(values[1]), 2.0 * pi * reference_hz)
+
+    def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
+        """Return rows and slopes, as the base class says."""
+        rows, slopes = _empty(values, branches=0)
+        rows[:, K_ALPHA], rows[:, ALPHA] = values.T
+        rows[:, OMEGA0] = 2.0 * pi * reference_hz
+        slopes[:, K_ALPHA, 0], slopes[:, ALPHA, 1] = values.T
+        return rows, slopes
+
+
+def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray]:
+    rows = np.zeros((len(values), BRANCHES + 2 * branches))
+    rows[:, OMEGA0] = 1.0
+    return rows, np.zeros((*rows.shape, values.shape[1]))
+
+
+FAMILIES: Mapping[str, Family] = {
+    known.name: known for known in (KelvinVoigt(), Zener(), ThreeBranches(), FractionalElement())
+}
+DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")
+"""The first is the default: soil loses about as much at every frequency, and this law does, too."""
+
+
+def family(name: str, *, field: str | None = None) -> Family:
+    """Look a law up, asked for by a field or an option.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown.
+    """
+    if name not in FAMILIES:
+        raise InputError(
+            "unknown law",
+            field=field,
+            value=name,
+            allowed=", ".join(FAMILIES),
+            remedy=did_you_mean(name, FAMILIES),
+        )
+    return FAMILIES[name]
+
+
+_PARAMETERS = {p.name: p.words for law in FAMILIES.values() for p in law.parameters}
+_ROTORS = {f"c_{axis}": f"rotor's {axis.replace('_', '-')} dashpot" for axis in ("fore_aft", "side_side")}
+
+
+def parameter_words(name: str) -> str:
+    """Return the name of a parameter of the ground, or of a rotor's dashpot, as text.
+
+    >>> parameter_words("loss_factor_vertical"), parameter_words("k0_foot_1_vertical"), parameter_words("c")
+    ('vertical loss factor', 'static stiffness of foot 1 vertical', 'dashpot')
+    >>> parameter_words("c_fore_aft")
+    "rotor's fore-aft dashpot"
+    """
+    if name in _ROTORS:
+        return _ROTORS[name]
+    name, _, state = name.partition("@")
+    base = next(
+        (b for b in sorted(_PARAMETERS, key=len, reverse=True) if name == b or name.startswith(f"{b}_")), ""
+    )
+    rest = name[len(base) + 1 :].replace("_", " ") if base else ""
+    said = _PARAMETERS.get(base, name.replace("_", " "))
+    said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
+    return f"{said} ({state})" if state else said

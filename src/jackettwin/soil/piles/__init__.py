@@ -1,0 +1,1 @@
+"""Piles: head stiffness, capacity, damping."""

@@ -1,0 +1,126 @@
+"""What a pile does to the foot it carries: the 6×6 impedance of its head, exact and lumped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.errors import InputError
+from jackettwin.soil.laws.viscoelastic import Law, Prony
+from jackettwin.soil.piles.piles import Pile, PileSprings, pile_beams
+from jackettwin.soil.support import ELASTIC, Spring, Support
+from jackettwin.structure import Structure, assemble
+
+
+@dataclass(frozen=True)
+class PileMatrices:
+    """A free pile with its head's six DOFs first: steel, mass, soil springs (unit law), dashpots, sparse."""
+
+    steel: sp.csc_array
+    mass: sp.csc_array
+    soil: sp.csc_array
+    dashpots: sp.csc_array
+
+
+def pile_matrices(pile: Pile, springs: PileSprings, *, dashpots: PileSprings | None = None) -> PileMatrices:
+    """Return the matrices of one pile, from the same beams as every other member.
+
+    ``dashpots`` are the ground's own [N·s/m], beside what the law says of its springs: radiation.
+    """
+    below, members = pile_beams("head", (0.0, 0.0, 0.0), pile, springs.node_depth)
+    free = assemble(Structure("pile", {"head": (0.0, 0.0, 0.0), **below}, tuple(members)))
+    soil = _at_nodes(springs)
+    lost = sp.csc_array(soil.shape) if dashpots is None else _at_nodes(dashpots)
+    return PileMatrices(free.stiffness, free.mass, soil, lost)
+
+
+def _at_nodes(springs: PileSprings) -> sp.csc_array:
+    zero = np.zeros_like(springs.lateral)
+    nodal = np.stack([springs.lateral, springs.lateral, springs.axial, zero, zero, springs.torsional], axis=1)
+    return sp.csc_array(sp.diags_array(nodal.ravel()))
+
+
+def head_impedance(
+    pile: Pile,
+    springs: PileSprings,
+    s: ComplexArray | complex,
+    *,
+    law: Law = ELASTIC,
+    dashpots: PileSprings | None = None,
+) -> ComplexArray:
+    """Return the head's dynamic stiffness K*(s) of a pile, (n_s, 6, 6); s = iω [rad/s].
+
+    The pile's other DOFs are eliminated exactly at each s: K* = F_hh − F_hi F_ii⁻¹ F_ih with
+    F = K + D(s) S + sC + s² M.
+    """
+    m = pile_matrices(pile, springs, dashpots=dashpots)
+    values = np.atleast_1d(np.asarray(s, dtype=np.complex128))
+    result = np.empty((values.size, 6, 6), dtype=np.complex128)
+    for i, value in enumerate(values):
+        soil = complex(law.stiffness(value)) * m.soil + value * m.dashpots
+        F = sp.csc_array(m.steel + soil + value**2 * m.mass)
+        result[i] = F[:6, :6].toarray() - F[:6, 6:] @ spla.splu(sp.csc_matrix(F[6:, 6:])).solve(
+            F[6:, :6].toarray()
+        )
+    return 0.5 * (result + result.transpose(0, 2, 1))
+
+
+@dataclass(frozen=True)
+class PileHead:
+    """A pile lumped at its head: K* ≈ steel + D(s)·soil + s·dashpots + s²·mass, each 6×6."""
+
+    steel: FloatArray
+    soil: FloatArray
+    mass: FloatArray
+    dashpots: FloatArray
+    law: Law = ELASTIC
+
+    def impedance(self, s: ComplexArray | complex) -> ComplexArray:
+        """Return the lumped K*(s), (n_s, 6, 6)."""
+        s = np.atleast_1d(np.asarray(s, dtype=np.complex128))[:, None, None]
+        soil = self.law.stiffness(s) * self.soil + s * self.dashpots
+        return np.asarray(self.steel + soil + s**2 * self.mass)
+
+
+def lumped_head(
+    pile: Pile, springs: PileSprings, *, law: Law = ELASTIC, dashpots: PileSprings | None = None
+) -> PileHead:
+    """Return a pile reduced to its head by its static shapes (Guyan).
+
+    Rayleigh's principle makes K* right to second order in D(s) − 1 and in (ω/ω_p)², ω_p the pile's own first
+    frequency with its head held: well above the structure's modes for any driven pile.
+    """
+    m = pile_matrices(pile, springs, dashpots=dashpots)
+    static = sp.csc_array(m.steel + m.soil)
+    inner = -spla.splu(sp.csc_matrix(static[6:, 6:])).solve(static[6:, :6].toarray())
+    T = np.vstack([np.eye(6), inner])
+
+    def reduced(matrix: sp.csc_array) -> FloatArray:
+        full = T.T @ (matrix @ T)
+        return np.asarray(0.5 * (full + full.T))
+
+    return PileHead(reduced(m.steel), reduced(m.soil), reduced(m.mass), reduced(m.dashpots), law)
+
+
+def on_pile_heads(structure: Structure, head: PileHead) -> Support:
+    """Return a lumped pile under every reaction node: springs, law and mass at the feet.
+
+    Raises
+    ------
+    InputError
+        If the structure has no reaction nodes.
+    """
+    if not structure.reactions:
+        raise InputError("the structure has no reaction nodes to put piles under", field="reaction_nodes")
+    springs = []
+    for foot in structure.reaction_nodes:
+        springs += [Spring(foot, head.steel), Spring(foot, head.soil, head.law)]
+        if head.dashpots.any():
+            springs.append(Spring(foot, head.dashpots, Prony(c=1.0)))
+    return Support(
+        springs=tuple(springs), masses=tuple((foot, head.mass) for foot in structure.reaction_nodes)
+    )

@@ -1,0 +1,11 @@
+from .database import (
+    open_database as open_database,
+    reading as reading,
+    sqlite_url as sqlite_url,
+    writing as writing,
+)
+from .waveforms import (
+    read_waveform as read_waveform,
+    waveform_path as waveform_path,
+    write_waveform as write_waveform,
+)

@@ -1,0 +1,383 @@
+"""A run's result as plain JSON data: the keys users script against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.identification.comparison import Comparison
+from jackettwin.identification.picks import plain_picks
+from jackettwin.identification.status import ModeStatus
+from jackettwin.intervals import interval_90
+from jackettwin.study.mode_matches import held_document
+from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult
+from jackettwin.study.truth import truth_document
+from jackettwin.twin.examine import Examination
+from jackettwin.twin.observation import Observation
+from jackettwin.updating import Update, law_probability
+from jackettwin.updating.budget import SOURCES, beyond_literature
+from jackettwin.updating.posterior.scatter import leg_scatter
+from jackettwin.updating.update import Uncertainty
+from jackettwin.version import __version__
+
+
+def run_document(result: TwinResult, *, report: str | None) -> dict[str, Any]:
+    """Return the document of ``jackettwin run``."""
+    return {
+        "name": result.name,
+        "modes": [_measured(m) for m in result.measured],
+        "real_poles": [_relaxation(r) for r in result.relaxations],
+        "updates": [update_document(result, i) for i in range(len(result.updates))],
+        "law_probability": law_probability(result.updates),
+        "identification": [
+            _recognised(seen, result.labels, None if i or result.shown is None else result.shown.comparison)
+            for i, seen in enumerate(result.observations)
+        ],
+        "unpaired_modes": [
+            mode_document(e, None) | {"held_against": held_document(e, held, result.labels)}
+            for e, held in result.unpaired
+        ],
+        "assumptions": list(result.assumptions),
+        "warnings": list(result.warnings),
+        "truth": truth_document(result),
+        "report": report,
+        "code_version": __version__,
+    }
+
+
+def _recognised(seen: Observation, labels: tuple[str, ...], compared: Comparison | None) -> dict[str, Any]:
+    """Return a record's document with what each mode is in the model, and was held against."""
+    document = identification_document(seen.identification, seen.quality, seen.conditions, compared)
+    modes = zip(document["modes"], seen.identification.modes, seen.labels, seen.held, strict=True)
+    for plain, mode, label, held in modes:
+        plain["label"] = label or None
+        plain["held_against"] = held_document(mode, held, labels)
+    return document
+
+
+def update_document(result: TwinResult, index: int) -> dict[str, Any]:
+    """Return the document of one law of ``jackettwin update``."""
+    u = result.updates[index]
+    names = [p.name for p in u.problem.parameters]
+    known = u.uncertainty
+    return {
+        "law": u.law,
+        "parameters": _parameters(u),
+        "modes": _compared(result.measured, u),
+        "real_poles": _compared_relaxations(result.relaxations, u),
+        "solutions": [
+            {
+                "parameters": dict(zip(names, map(float, s.theta), strict=True)),
+                "cost": s.cost,
+                "locked_damper": s.locked_damper,
+                "locks_within_extent": s.locks_within,
+                "modes": list(u.problem.states[0].residuals.modes),
+                "frequency_hz": s.frequency_hz,
+                "undamped_frequency_hz": s.undamped_hz,
+                "damping_ratio": s.damping_ratio,
+                "real_pole_rate_rad_s": s.rates,
+                "at_bound": list(s.at_bound),
+                "starts_that_ended_here": s.found,
+                "extent": dict(zip(names, s.extent.tolist(), strict=True)),
+            }
+            for s in u.solutions
+        ],
+        "completeness": {
+            "statement": u.search.statement,
+            "starts": u.search.starts,
+            "missed_share_95": u.search.missed_share_95,
+            "settled": u.search.spent is None,
+        },
+        "identifiability": dict.fromkeys(names)
+        if known is None
+        else {v.name: v.verdict for v in known.verdicts},
+        "log_evidence": _log_evidence(known),
+        **({} if known is None else _uncertainty(u, known)),
+        "damping_budget": _budget(result.measured, u),
+        "real_poles_rad_s": u.modes.damped.real_poles,
+        "reference_frequency_hz": u.model.reference_hz,
+        "unexplained_damping": [
+            {
+                "label": e.label,
+                "measured_damping_ratio": e.measured,
+                "measured_damping_ratio_std": e.measured_std,
+                "support_damping_ratio": e.support,
+                "rotor_damping_ratio": e.rotor,
+                "excess": e.excess,
+                "explained": e.explained,
+                "carried_by": "rotor" if e.carried else None,
+            }
+            for e in result.excess[index]
+        ],
+    }
+
+
+def _measured(m: MeasuredMode) -> dict[str, Any]:
+    return {
+        "mode": m.mode,
+        "label": m.label,
+        "frequency_hz": m.frequency_hz,
+        "frequency_std_hz": m.frequency_std_hz,
+        "damping_ratio": m.damping_ratio,
+        "damping_ratio_std": m.damping_ratio_std,
+        "frequency_damping_correlation": m.correlation,
+        "mac": m.mac,
+        "fits_frequency": m.fits_frequency,
+        "fits_damping": m.fits_damping,
+    }
+
+
+def _relaxation(r: MeasuredRelaxation) -> dict[str, Any]:
+    return {
+        "name": r.name,
+        "rate_rad_s": r.rate_rad_s,
+        "rate_std_rad_s": r.rate_std_rad_s,
+        "time_constant_s": 1.0 / r.rate_rad_s,
+        "records": r.records,
+        "mode_shape": _shape(r.shape, list(r.channels)) or None,
+    }
+
+
+def _compared_relaxations(measured: tuple[MeasuredRelaxation, ...], u: Update) -> list[dict[str, Any]]:
+    """Return each measured real pole beside the model's nearest, best and in the posterior."""
+    known = u.uncertainty
+    return [
+        {
+            "name": r.name,
+            "measured_rate_rad_s": r.rate_rad_s,
+            "measured_rate_std_rad_s": r.rate_std_rad_s,
+            "rate_rad_s": float(rate),
+            "posterior": None if known is None else _quantiles(known.predictive.rates[r.name]),
+        }
+        for r, rate in zip(measured, u.best.rates, strict=True)
+    ]
+
+
+def _parameters(u: Update) -> dict[str, dict[str, Any]]:
+    """Return each parameter's value at the best solution, and what is known of it."""
+    known = u.uncertainty
+    return {
+        p.name: {
+            "value": float(value),
+            "std": None if known is None else float(value * known.log_std[i]),
+            "interval_90": None if known is None else known.interval_90[i].tolist(),
+            "median": None if known is None else float(known.median[i]),
+            "log_std": None if known is None else float(known.log_std[i]),
+            "laplace_log_std": None if known is None else float(known.laplace_log_std[i]),
+            "prior_log_std": float(u.problem.prior.std[i]),
+            "bounds": [p.low, p.high],
+            "unit": p.unit,
+        }
+        for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True))
+    }
+
+
+def _log_evidence(known: Uncertainty | None) -> float | None:
+    """Return ln Z, None if the posterior's runs do not agree on it."""
+    posterior = None if known is None else known.posterior
+    return posterior.log_evidence if posterior is not None and posterior.evidence_known else None
+
+
+def _uncertainty(u: Update, known: Uncertainty) -> dict[str, Any]:
+    """Return what the posterior says beside the parameters."""
+    posterior, q = known.posterior, known.predictive
+    names = [p.name for p in u.problem.parameters]
+    return {
+        "log_evidence_std": None if posterior is None else posterior.log_evidence_std,
+        "posterior": {
+            "status": known.status,
+            "intervals_from": "laplace" if posterior is None else "posterior",
+            "draws": len(known.log_theta),
+            "rhat": None if posterior is None else _named(names, posterior.convergence.rhat),
+            "ess_bulk": None if posterior is None else _named(names, posterior.convergence.ess_bulk),
+            "ess_tail": None if posterior is None else _named(names, posterior.convergence.ess_tail),
+        },
+        "identifiability_detail": {
+            v.name: {
+                "verdict": v.verdict,
+                "decided_by": v.decided_by,
+                "interval_factor": v.interval_factor,
+                "posterior_over_prior_std": v.ratio,
+                "before": v.verdict_before,
+                "expected_posterior_over_prior_std": v.ratio_before,
+                "reason": v.reason,
+            }
+            for v in known.verdicts
+        },
+        "predictions": [
+            {
+                "mode": mode,
+                "frequency_hz": _quantiles(q.frequency_hz[:, i]),
+                "undamped_frequency_hz": _quantiles(q.undamped_hz[:, i]),
+                "damping_ratio": _quantiles(q.damping_ratio[:, i]),
+            }
+            for i, mode in enumerate(q.modes)
+        ],
+        "support": {name: _quantiles(values) for name, values in q.support.items()},
+        "leg_scatter": {
+            s.name: {**_quantiles(s.draws), "prior_interval_90": list(s.before)}
+            for s in leg_scatter(u.problem.prior, known.log_theta)
+        },
+        "profile_likelihood": {
+            p.name: {"values": p.values.tolist(), "cost": p.cost.tolist()} for p in known.profiles
+        },
+    }
+
+
+def _named(names: list[str], values: FloatArray) -> dict[str, float]:
+    return dict(zip(names, values.tolist(), strict=True))
+
+
+def _quantiles(draws: FloatArray) -> dict[str, Any]:
+    """Return median and 90 % interval, null where no draw has the mode."""
+    low, middle, high = interval_90(draws) or (None, None, None)
+    return {"median": middle, "interval_90": None if middle is None else [low, high]}
+
+
+def _budget(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
+    """Return each mode's damping ratio by source; where no drag is modelled, water's part is not known."""
+    b = u.budget
+
+    def by_source(values: FloatArray | None, i: int) -> dict[str, Any] | None:
+        if values is None:
+            return None
+        return dict.fromkeys(SOURCES) | dict(zip(SOURCES, values[i].tolist(), strict=False))
+
+    return [
+        {
+            "label": m.label,
+            "damping_ratio": by_source(b.damping_ratio, i),
+            "damping_ratio_interval_90": by_source(b.damping_ratio_interval_90, i),
+            "beyond_literature": beyond_literature(
+                m.label, dict(zip(SOURCES, map(float, b.damping_ratio[i]), strict=False))
+            ),
+            "share": by_source(b.share, i),
+            "share_interval_90": by_source(b.share_interval_90, i),
+        }
+        for i, m in enumerate(measured)
+    ]
+
+
+def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, Any]]:
+    return [
+        {
+            "mode": m.mode,
+            "label": m.label,
+            "measured_frequency_hz": m.frequency_hz,
+            "frequency_hz": float(f),
+            "undamped_frequency_hz": float(undamped),
+            "measured_damping_ratio": m.damping_ratio,
+            "damping_ratio": float(zeta),
+        }
+        for m, f, undamped, zeta in zip(
+            measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio, strict=True
+        )
+    ]
+
+
+def observation_document(seen: Examination) -> dict[str, Any]:
+    """Return the document of one record of ``jackettwin identify``."""
+    return identification_document(
+        seen.identification, seen.quality.summary(), seen.record.conditions, seen.comparison
+    )
+
+
+def identification_document(
+    found: Identification,
+    quality: Mapping[str, Any],
+    conditions: Mapping[str, Any],
+    compared: Comparison | None = None,
+) -> dict[str, Any]:
+    """Return the modes of one record, what was rejected, the settings used and the record's quality."""
+    names = [channel.name for channel in found.channels]
+    s = found.settings
+    return {
+        "records": list(found.records),
+        "modes": [mode_document(m, names) for m in found.modes],
+        "rejected": [
+            {
+                "frequency_hz": r.frequency_hz,
+                "damping_ratio": r.damping_ratio,
+                "reason": r.reason,
+                "status": r.status.value,
+            }
+            for r in found.rejected
+        ],
+        "settings": {
+            "lowest_frequency_hz": s.lowest_frequency_hz,
+            "highest_frequency_hz": s.highest_frequency_hz,
+            "sample_rate_hz": s.sample_rate_hz,
+            "block_rows": s.block_rows,
+            "lag_window_s": s.lag_window_s,
+            "orders": list(s.orders),
+        },
+        "real_poles": [
+            {
+                "rate_rad_s": pole.rate_rad_s,
+                "rate_std_rad_s": pole.rate_std_rad_s,
+                "rate_interval_95": pole.rate_interval_95,
+                "time_constant_s": pole.time_constant_s,
+                "order_share": pole.order_share,
+                "mode_shape": _shape(pole.mode_shape, names),
+            }
+            for pole in found.real_poles
+        ],
+        "picks": plain_picks(found.picks),
+        "duration_s": found.duration_s,
+        "quality": dict(quality),
+        "warnings": list(found.warnings),
+        "findings": [finding.document for finding in found.findings],
+        "notes": list(found.notes),
+        **({} if compared is None else {"methods": comparison_document(compared)}),
+        "conditions": dict(conditions),
+    }
+
+
+def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any]:
+    """Return one identified mode; shapes as [real, imaginary] a channel."""
+    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
+    document: dict[str, Any] = {
+        "frequency_hz": m.frequency_hz,
+        "frequency_std_hz": m.frequency_std_hz,
+        "damping_ratio": m.damping_ratio if known else None,
+        "damping_ratio_std": m.damping_ratio_std if known else None,
+        "frequency_interval_95": m.frequency_interval_95,
+        "damping_ratio_interval_95": interval if known else None,
+        "damping_ratio_at_most": None if known or interval is None else interval[1],
+        "mpc": m.mpc,
+        "method": m.method,
+        "status": m.status.value,
+        "status_reason": m.status_reason,
+        "status_codes": [finding.code for finding in m.reasons],
+        "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
+        "least_relative_std": {
+            "damping_ratio_long_data": m.damping_ratio_cov_limit,
+            "frequency_cramer_rao": None if m.cramer_rao_log_std is None else float(m.cramer_rao_log_std[0]),
+            "damping_ratio_cramer_rao": None
+            if m.cramer_rao_log_std is None
+            else float(m.cramer_rao_log_std[1]),
+        },
+    }
+    if channels is not None:
+        document["mode_shape"] = _shape(m.mode_shape, channels)
+        raw = m.mode_shape_unaligned
+        document["mode_shape_unaligned"] = None if raw is None else _shape(raw, channels)
+    return document
+
+
+def _shape(shape: ComplexArray, channels: list[str]) -> dict[str, list[float]]:
+    return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}
+
+
+def comparison_document(compared: Comparison) -> dict[str, Any]:
+    """Return what every method has for each mode of the reference, null where it has none."""
+    names = [channel.name for channel in compared.reference.channels]
+    return {
+        "modes": {
+            method: [None if m is None else mode_document(m, names) for m in modes]
+            for method, modes in compared.modes.items()
+        },
+        "refused": dict(compared.refused),
+    }

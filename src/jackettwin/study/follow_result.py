@@ -1,0 +1,133 @@
+"""A twin followed through time: its state, what is known after each day, and whether it drifts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.soil.laws.families import parameter_words
+from jackettwin.twin.codec import StoredSchema
+from jackettwin.twin.state import TwinState
+from jackettwin.updating.drift import Drift
+
+FEWEST_DAYS = 3
+"""Days with data before a drift is looked for."""
+STIFFNESS = "N/m"
+"""Unit of the parameters that may drift."""
+SECONDS_A_DAY = 86400.0
+_BLIND = 100.0
+"""Per cent a day: where no smaller drift would be seen, nothing can be said of any."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What all records up to the end of a day say of the parameters.
+
+    Attributes
+    ----------
+    date : str
+        UTC, ISO.
+    time_utc : datetime
+        The middle of the day's records.
+    records : int
+        Of the day.
+    evidence : str
+        Identity of the state it was estimated from: another one makes it out of date.
+    median : {parameter: value}
+    interval_90 : {parameter: (low, high)}
+    status : str
+        ``"ok"``, or why there is no posterior; then median and interval are Laplace's.
+    """
+
+    date: str
+    time_utc: datetime
+    records: int
+    evidence: str
+    median: Mapping[str, float]
+    interval_90: Mapping[str, tuple[float, float]]
+    status: str = "ok"
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A twin followed through time: what the next day starts from.
+
+    Attributes
+    ----------
+    law : str
+    reference_hz : float
+        The first frequency on pinned feet: it tells a changed structure.
+    wind_m_s : float or None
+        That nacelle dashpots are stated at.
+    units : {parameter: unit}
+    days : in the order of time
+    drift : Drift or None
+        Of all stiffness together, from the first day on; None before the third day.
+    state : TwinState
+        Of all records.
+    warnings : sentences
+    """
+
+    name: str
+    law: str
+    reference_hz: float
+    wind_m_s: float | None
+    units: Mapping[str, str]
+    days: tuple[Known, ...]
+    drift: Drift | None
+    state: TwinState
+    warnings: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        last = "" if not self.days else ", ".join(f"{k} {v:.3g}" for k, v in self.days[-1].median.items())
+        return f"Followed({self.name!r}, {self.law}, {len(self.days)} days; last: {last})"
+
+    @property
+    def moments(self) -> str:
+        """What is followed from one to the next: ``day``, or ``record``."""
+        return "record" if any("T" in day.date for day in self.days) else "day"
+
+    @property
+    def stiffness(self) -> tuple[str, ...]:
+        """Names of the stiffness parameters: those that may drift."""
+        return tuple(name for name, unit in self.units.items() if unit == STIFFNESS)
+
+    @property
+    def days_since_first(self) -> FloatArray:
+        """Times of the days [d], (n_days,)."""
+        return since_first([day.time_utc for day in self.days])
+
+    @property
+    def statement(self) -> str:
+        """What is known of a drift, in a sentence."""
+        if self.drift is None:
+            return f"Too early to speak of a drift: {FEWEST_DAYS} days with data are needed."
+        slope, low, high = 100.0 * np.expm1([self.drift.slope_per_day, *self.drift.interval_90])
+        what, most = " and ".join(map(parameter_words, self.stiffness)), max(abs(low), abs(high))
+        over = f"{round(self.days_since_first[-1], 1):g} days"
+        if not self.drift.detected and most > _BLIND:
+            return (
+                f"Too early to speak of a drift of {what}: in {over} not even a doubling a day would be seen."
+            )
+        found = "No drift found" if not self.drift.detected else "Rising" if low > 0.0 else "Falling"
+        change = "changes" if len(self.stiffness) == 1 else "change"
+        said = (
+            f"{found}: {what} {change} by {slope:+.2g} % a day, 90 % interval {low:+.2g} to {high:+.2g} %, "
+            f"over {over}."
+        )
+        return (
+            said if self.drift.detected else f"{said} A drift of more than {most:.2g} % a day would be seen."
+        )
+
+
+def since_first(times: Sequence[datetime]) -> FloatArray:
+    """Return times after the first [d], (n_times,)."""
+    return np.array([(time - times[0]).total_seconds() / SECONDS_A_DAY for time in times])
+
+
+FOLLOWED = StoredSchema("followed", Followed)
+"""``followed.json``."""

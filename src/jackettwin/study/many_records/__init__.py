@@ -1,0 +1,1 @@
+"""Many records identified: grouped, fused, written."""

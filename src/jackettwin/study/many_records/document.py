@@ -1,0 +1,100 @@
+"""Many identified records as plain JSON data; what grows with their number is made as it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from jackettwin.files import Streamed
+from jackettwin.identification import FusedIdentification, FusedMode
+from jackettwin.identification.many_records.convergence import convergence
+from jackettwin.identification.picks import plain_picks
+from jackettwin.study.document import identification_document
+from jackettwin.study.many_records.groups import RecordGroup
+from jackettwin.study.many_records.identify import Batch
+from jackettwin.study.many_records.summary import Together
+
+
+def many_document(batch: Batch, together: Together) -> dict[str, Any]:
+    """Return the document of ``jackettwin identify`` for several records: fused, by group, one by one.
+
+    ``records``, ``rejected``, ``quality`` and ``picks`` are ``Streamed``.
+    """
+    return {
+        "modes": [] if together.fused is None else _modes(together.fused),
+        "groups": [_group_document(group) for group in together.groups],
+        "records": Streamed(lambda: _records(batch)),
+        "rejected": Streamed(lambda: _rejected(batch)),
+        "quality": Streamed(
+            lambda: (
+                {"record": one.identification.records[0], "score": one.quality.get("score")} for one in batch
+            )
+        ),
+        "picks": Streamed(lambda: (pick for one in batch for pick in plain_picks(one.identification.picks))),
+        "failed": [asdict(one) for one in batch.failed],
+        "records_identified": len(batch),
+        "duration_s": together.duration_s,
+        "warnings": [*map(str, batch.findings), *together.warnings],
+    }
+
+
+def _modes(fused: FusedIdentification) -> list[dict[str, Any]]:
+    names = [channel.name for channel in fused.channels]
+    return [
+        {
+            **fused_mode_document(mode, names),
+            "convergence": [asdict(step) for step in convergence(mode)],
+        }
+        for mode in fused.modes
+    ]
+
+
+def _records(batch: Batch) -> Iterator[dict[str, Any]]:
+    for one in batch:
+        yield identification_document(one.identification, one.quality, one.conditions)
+
+
+def _rejected(batch: Batch) -> Iterator[dict[str, Any]]:
+    for one in batch:
+        for r in one.identification.rejected:
+            yield {
+                "record": one.identification.records[0],
+                "frequency_hz": r.frequency_hz,
+                "damping_ratio": r.damping_ratio,
+                "reason": r.reason,
+                "status": r.status.value,
+            }
+
+
+def fused_mode_document(mode: FusedMode, channels: Sequence[str]) -> dict[str, Any]:
+    """Return one fused mode; the scatter is that between records beyond their own uncertainty."""
+    return {
+        "frequency_hz": mode.frequency_hz,
+        "frequency_std_hz": mode.frequency_std_hz,
+        "damping_ratio": mode.damping_ratio,
+        "damping_ratio_std": mode.damping_ratio_std,
+        "frequency_interval_95": mode.frequency_interval_95,
+        "damping_ratio_interval_95": mode.damping_ratio_interval_95,
+        "relative_scatter_frequency": mode.scatter_frequency,
+        "relative_scatter_damping_ratio": mode.scatter_damping_ratio,
+        "records_with_mode": len(mode.sightings),
+        "mode_shape": {
+            name: [float(v.real), float(v.imag)]
+            for name, v in zip(channels, mode.mode_shape, strict=True)
+            if v == v
+        },
+    }
+
+
+def _group_document(group: RecordGroup) -> dict[str, Any]:
+    fused: FusedIdentification = group.fused
+    names = [channel.name for channel in fused.channels]
+    return {
+        "wind_speed_m_s": group.wind_speed_m_s,
+        "yaw_deg": group.yaw_deg,
+        "state": group.state,
+        "records": list(fused.records),
+        "duration_s": fused.duration_s,
+        "modes": [fused_mode_document(mode, names) for mode in fused.modes],
+    }

@@ -1,0 +1,41 @@
+"""What many records say together: followed once, fused over all of them and by group."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jackettwin.errors import InputError
+from jackettwin.identification import FusedIdentification
+from jackettwin.identification.many_records.fusion import fused_records
+from jackettwin.identification.many_records.tracking import follow
+from jackettwin.study.many_records.groups import RecordGroup, group_key, grouped
+from jackettwin.study.many_records.identify import Batch
+
+
+@dataclass(frozen=True)
+class Together:
+    """Records of a batch, fused.
+
+    Attributes
+    ----------
+    fused : FusedIdentification or None
+        None if the records share no sensors: then each stands for itself, and ``warnings`` say so.
+    groups : of like wind speed, yaw and state
+    duration_s : of all records
+    """
+
+    fused: FusedIdentification | None
+    groups: tuple[RecordGroup, ...]
+    warnings: tuple[str, ...]
+    duration_s: float
+
+
+def fuse_batch(batch: Batch) -> Together:
+    """Return what the records of a batch say together, each read once."""
+    try:
+        followed = follow((one.identification, group_key(one.conditions)) for one in batch)
+    except InputError as error:
+        alone = sum(one.identification.duration_s for one in batch)
+        return Together(None, (), (f"not fused: {error}",), alone)
+    fused = fused_records(followed)
+    return Together(fused, grouped(followed), fused.warnings, fused.duration_s)

@@ -1,0 +1,191 @@
+"""What was assumed and what to beware of, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import hypot
+from typing import Any
+
+from jackettwin.study.measure import Measured
+from jackettwin.study.mode_matches import unpaired_finding
+from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
+from jackettwin.twin.config import TwinConfig
+from jackettwin.updating import Update
+
+
+def assumptions(
+    config: TwinConfig,
+    measured: tuple[MeasuredMode, ...],
+    relaxations: tuple[MeasuredRelaxation, ...],
+    wind: float | None,
+) -> tuple[str, ...]:
+    """Return what the run took for granted; dashpots are stated at the wind [m/s]."""
+    s = config.structure
+    theory = {"euler-bernoulli": "Euler–Bernoulli", "timoshenko": "Timoshenko"}[config.beam or s.beam]
+    rotary = s.rotary_inertia if config.rotary_inertia is None else config.rotary_inertia
+    lines = [
+        f"{theory} beams, {'with' if rotary or theory == 'Timoshenko' else 'without'} rotary inertia; "
+        + ("gravity's P-Δ stiffness is on." if config.gravity else "no gravity stiffness."),
+        f"Steel damping: Rayleigh, {100 * config.rayleigh_ratio:.3g} % at its minimum, on the structure only."
+        if config.rayleigh_ratio
+        else "The steel is undamped.",
+        f"The support law {_acts_on(config)} of {len(s.reactions)} reaction nodes (tie: {config.tie}).",
+        "Modes are numbered by their order on pinned feet and followed by mass-weighted MAC.",
+        f"Fitted: {', '.join(filter(None, [*map(_fitted, measured), *map(_relaxed, relaxations)]))}.",
+    ]
+    if relaxations and config.update.rate_error:
+        lines.append(f"Model error of relaxations: {100 * config.update.rate_error:.3g} % on the rate.")
+    for e in (e for e in config.update.model_errors if e.modes):
+        lines.append(
+            f"Model error of modes {', '.join(map(str, e.modes))}: {100 * e.frequency:.3g} % on frequency, "
+            f"{100 * e.damping:.3g} % on damping."
+        )
+    if config.update.dashpots:
+        shape = "with the pattern of its blades" if config.update.rotor else "on the tower top"
+        where = "" if wind is None else f", stated at a wind of {wind:.3g} m/s and proportional to it"
+        lines.append(f"The rotor is parked: dashpots {', '.join(config.update.dashpots)} {shape}{where}.")
+    if config.update.water:
+        lines.append(
+            f"Factors on the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
+            "mean sea for all records; radiation damping is left out."
+        )
+    if len(config.records) > 1:
+        lines.append(
+            f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "
+            "scatter."
+        )
+    return tuple(lines)
+
+
+def _acts_on(config: TwinConfig) -> str:
+    return "acts on the three translations" if config.heads is None else "scales the 6×6 pile heads"
+
+
+def _fitted(m: MeasuredMode) -> str:
+    what = [word for word, flag in (("f", m.fits_frequency), ("ζ", m.fits_damping)) if flag]
+    return f"{m.label} ({' and '.join(what)})" if what else ""
+
+
+def _relaxed(r: MeasuredRelaxation) -> str:
+    return f"{r.name} (relaxation at {r.rate_rad_s:.3g} rad/s)"
+
+
+def without_relaxation(laws: tuple[str, ...]) -> tuple[str, ...]:
+    """Return why laws were left out of an update to real poles."""
+    return tuple(f"{law}: left out, a structure on it has no real poles." for law in laws)
+
+
+def cautions(
+    config: TwinConfig,
+    found: Measured | None,
+    measured: tuple[MeasuredMode, ...],
+    updates: tuple[Update, ...],
+    labels: tuple[str, ...] = (),
+) -> tuple[str, ...]:
+    """Return what the reader should beware of; ``labels`` are those of the model's numbered modes."""
+    lines = []
+    if config.assigned:
+        ours = [m for m in measured if m.mode in config.assigned]
+        pairs = ", ".join(f"{m.frequency_hz:.4g} Hz is {m.label} (mode {m.mode})" for m in ours)
+        lines.append(f"Frequencies without a name were taken for the nearest modes: {pairs}.")
+    if found is not None:
+        lines += [f"left out: {one.problem}" for one in found.failed]
+        lines += [str(finding) for finding in found.findings]
+        lines += [*_of_records(found), *_strangers(found, labels, every=not updates)]
+        lines += _wind_without_rotor(config, found, measured)
+    lines += [*_unweighted(config, measured, updates), *_rotor_without_wind(config, updates)]
+    for u in updates:
+        if u.best.locked_damper:
+            lines.append(
+                f"{u.law}: every solution locks a damper; its undamped structure is more than 5 % off."
+            )
+        if u.best.at_bound:
+            lines.append(f"{u.law}: {', '.join(u.best.at_bound)} ended on a bound.")
+        lines += [
+            f"{u.law}: {m.label} misses its frequency by {100 * (f / m.frequency_hz - 1.0):+.1f} %"
+            f"{'.' if m.fits_frequency else '; it was not fitted: the measured one may be another.'}"
+            for m, f in zip(measured, u.modes.frequency_hz, strict=True)
+            if m.frequency_hz is not None and _misses(config, m, float(f))
+        ]
+    return tuple(lines)
+
+
+def _of_records(found: Measured) -> list[str]:
+    """Return what was found of the records, each sentence once with all that it holds of."""
+    places: dict[str, list[str]] = {}
+    for seen in found.observations:
+        said = [(_place(seen.name, f), f["text"]) for f in seen.quality.get("findings", ())]
+        said += [(seen.name, text) for text in seen.identification.warnings]
+        said += [(seen.name, str(f)) for f in seen.findings if f.code == "sensor_against_model"]
+        for place, text in said:
+            places.setdefault(text, []).append(place)
+    return [f"{', '.join(dict.fromkeys(where))}: {text}" for text, where in places.items()]
+
+
+def _place(record: str, finding: Mapping[str, Any]) -> str:
+    """Return where a finding was made: a record, or a channel of it."""
+    return f"{record}, {finding['subject']}" if finding["subject"] else record
+
+
+def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[MeasuredMode, ...]) -> list[str]:
+    winds = [one.wind_m_s for one in found.observations if one.wind_m_s]
+    fitted = [m.label for m in measured if m.fits_damping]
+    if config.update.dashpots or not winds or not fitted:
+        return []
+    return [
+        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: what it "
+        f"damps in {', '.join(fitted)} is booked on the supports, whose damping is then an upper value. "
+        "Give update.rotor or update.dashpots."
+    ]
+
+
+def _unweighted(
+    config: TwinConfig, measured: tuple[MeasuredMode, ...], updates: tuple[Update, ...]
+) -> list[str]:
+    """Say that a few missing standard deviations took the weight, and all intervals, from the other data."""
+    if config.update.weighting != "auto" or all(u.problem.weighted for u in updates):
+        return []
+    stds = [(f"f{m.mode}", m.frequency_std_hz) for m in measured if m.fits_frequency]
+    stds += [(f"ζ{m.mode}", m.damping_ratio_std) for m in measured if m.fits_damping]
+    stds += [(f"real pole {r.rate_rad_s:.3g} 1/s", r.rate_std_rad_s) for r in config.relaxations]
+    without = [name for name, std in stds if std is None]
+    if not without or len(without) == len(stds):
+        return []
+    return [
+        f"{', '.join(without)} without a standard deviation: all data count by their relative error alone, "
+        "damping as much as frequency, and there are no intervals. State it, or update.model_error."
+    ]
+
+
+def _rotor_without_wind(config: TwinConfig, updates: tuple[Update, ...]) -> list[str]:
+    known = all(u.problem.parameters[i].median is not None for u in updates for i in _dashpots(config, u))
+    if config.update.rotor is None or known:
+        return []
+    return [
+        "The wind is not known, so that the rotor's geometry gives the dashpots' pattern and no prior. "
+        "Give update.wind_speed_m_s."
+    ]
+
+
+def _dashpots(config: TwinConfig, u: Update) -> list[int]:
+    return [i for i, p in enumerate(u.problem.parameters) if p.name in config.update.dashpots]
+
+
+def _strangers(found: Measured, labels: tuple[str, ...], *, every: bool) -> list[str]:
+    """Return a line for each mode that is ``ok``, or for every one, without a counterpart in the model."""
+    reasons = (
+        (one.name, unpaired_finding(mode, against, labels))
+        for one in found.observations
+        for mode, against in zip(one.identification.modes, one.held, strict=False)
+        if every or mode.status == "ok"
+    )
+    return [f"{name}: no counterpart in the model for {why}" for name, why in reasons if why is not None]
+
+
+def _misses(config: TwinConfig, m: MeasuredMode, f: float) -> bool:
+    """Return whether a fitted frequency is off by 1 % and three standard deviations, any by a tenth."""
+    if m.frequency_hz is None:
+        return False
+    std = hypot(m.frequency_std_hz or 0.0, config.update.model_error(m.mode).frequency * m.frequency_hz)
+    least = 0.01 if m.fits_frequency else 0.1
+    return abs(f - m.frequency_hz) > max(3.0 * std, least * m.frequency_hz)

@@ -1,0 +1,191 @@
+"""A twin's question for one law: its supports' parameters against what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.errors import InputError, located
+from jackettwin.soil import Support, family, read_support
+from jackettwin.structure import Assembly
+from jackettwin.study.relaxations import placed, relaxation_targets
+from jackettwin.study.result import MeasuredRelaxation
+from jackettwin.study.rotor import RotorDamping, States
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.state import ALL, TwinState
+from jackettwin.twin.water import in_the_records_sea, water_effects
+from jackettwin.updating import Problem, Residuals, SupportModel, joint, support_model
+from jackettwin.updating.data.relaxations import RelaxationTarget
+from jackettwin.updating.data.shapes import ShapeTarget
+from jackettwin.updating.joint import Growth
+from jackettwin.updating.nuisance_parameters import NuisanceParameters
+
+
+@dataclass(frozen=True)
+class UpdateEvidence:
+    """What every law is fitted to.
+
+    Attributes
+    ----------
+    assembly : Assembly
+    state : TwinState or None
+        What the records say; None if the twin file gives targets.
+    states : {operating state: residuals and factors of the parameters}
+    rotor : RotorDamping
+    relaxations : tuple of MeasuredRelaxation
+    """
+
+    assembly: Assembly
+    state: TwinState | None
+    states: States
+    rotor: RotorDamping
+    relaxations: tuple[MeasuredRelaxation, ...] = ()
+
+
+def law_problem(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Problem:
+    """Return the residuals of all operating states against the parameters of one law.
+
+    Raises
+    ------
+    InputError
+        If bounds, priors, ties or pile heads do not fit the law.
+    """
+    return model_problem(config, evidence, law_model(config, evidence, law))
+
+
+def model_problem(config: TwinConfig, evidence: UpdateEvidence, model: SupportModel) -> Problem:
+    """Return the residuals of all operating states against the parameters of a model."""
+    relaxations = relaxation_targets(
+        config,
+        model,
+        evidence.relaxations,
+        sensors=() if evidence.state is None else placed(evidence.state),
+        relative=any(residuals.relative for residuals, _ in evidence.states.values()),
+    )
+    shapes = measured_shapes(config, model, evidence)
+    return tied_problem(config, model, evidence.states, shapes=shapes, relaxations=relaxations)
+
+
+def tied_problem(
+    config: TwinConfig,
+    model: SupportModel,
+    states: States,
+    *,
+    shapes: tuple[ShapeTarget, ...] = (),
+    relaxations: tuple[RelaxationTarget, ...] = (),
+    errors: Mapping[str, float] | None = None,
+    growth: Growth | None = None,
+) -> Problem:
+    """Return the problem of a model in some states, its legs tied as the twin says."""
+    law = {p.name + side for p in model.family.parameters for side in ("", *model.tie_groups.sides)}
+    with located(file=config.path):
+        return joint(
+            model,
+            states,
+            shapes=shapes,
+            relaxations=relaxations,
+            shared=tuple(name for name in config.shared if name in law),
+            scatter={name: scale for name, scale in config.scatter.items() if name in law},
+            errors=errors,
+            growth=growth,
+        )
+
+
+def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> SupportModel:
+    """Return the structure on supports of one law, its parameters bounded and informed as the twin says.
+
+    Raises
+    ------
+    InputError
+        If bounds, priors, ties or pile heads do not fit the law.
+    """
+    chosen, given, states = family(law), config.update, evidence.states
+    said = {name: (prior.median, prior.log_std) for name, prior in given.priors.items()}
+    with located(file=config.path):
+        waves = None if evidence.state is None else evidence.state.totals[ALL].conditions.waves
+        water = water_effects(in_the_records_sea(config.water, waves), evidence.assembly, given.water)
+    nuisance = NuisanceParameters(
+        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water
+    )
+    own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
+    relative = any(residuals.relative for residuals, _ in states.values())
+    try:
+        return support_model(
+            evidence.assembly,
+            family=chosen,
+            rayleigh=config.rayleigh,
+            tie=config.tie,
+            bounds=_of_law(given.bounds, own),
+            priors=_of_law({**evidence.rotor.priors, **said}, own),
+            highest_mode=max(mode for residuals, _ in states.values() for mode in residuals.modes),
+            fastest_rate=max((r.rate_rad_s for r in evidence.relaxations), default=0.0),
+            nuisance=nuisance,
+            heads=_heads(config),
+            head_priors=not relative,
+        )
+    except InputError as error:
+        raise error.at(file=config.path, field=_place(error)) from None
+
+
+def _place(error: InputError) -> str | None:
+    """Return the block of the twin file that the field of an error of the model stands in."""
+    block = (error.field or "").partition(".")[0]
+    return {"bounds": "update", "priors": "update", "mode": "targets"}.get(block)
+
+
+def _heads(config: TwinConfig) -> Support | None:
+    """Return the pile heads that the laws scale."""
+    if config.heads is None:
+        return None
+    with located(file=config.path, field="support.stiffness"):
+        source = None if config.heads == "own" else config.heads
+        return read_support(source, config.structure, folder=config.path.parent)
+
+
+def measured_shapes(
+    config: TwinConfig, model: SupportModel, evidence: UpdateEvidence
+) -> tuple[ShapeTarget, ...]:
+    """Return the shape of each fitted mode where it is most like the model's; none without ``mac_std``."""
+    state = evidence.state
+    first, _ = next(iter(evidence.states.values()))
+    if state is None:
+        return _given_shapes(config, model, first)
+    if config.update.mac_std is None or first.relative:
+        return ()
+    std = config.update.mac_std
+    best = {mode: state.clearest[str(mode)] for mode in first.modes if str(mode) in state.clearest}
+    return tuple(
+        ShapeTarget.seen(model, mode, one.frequency_hz, one.sensors, one.shape, std)
+        for mode, one in best.items()
+    )
+
+
+def _given_shapes(config: TwinConfig, model: SupportModel, data: Residuals) -> tuple[ShapeTarget, ...]:
+    """Return the shapes of the targets that are fitted."""
+    if config.update.mac_std is None:
+        return ()
+    if data.relative:
+        raise InputError(
+            "shapes count beside data with standard deviations, not beside relative errors",
+            file=config.path,
+            field="update.mac_std",
+            value=config.update.mac_std,
+            remedy="give every target its standard deviation, or leave shapes out",
+        )
+    places = {sensor.channel: sensor for sensor in config.sensors}
+    shapes = []
+    for t in data.used:
+        given = config.shapes.get(t.mode, {})
+        if given and t.frequency_hz is not None:
+            sensors, values = tuple(places[name] for name in given), np.array(list(given.values()))
+            with located(file=config.path):
+                seen = ShapeTarget.seen(model, t.mode, t.frequency_hz, sensors, values, config.update.mac_std)
+            shapes.append(seen)
+    return tuple(shapes)
+
+
+def _of_law(given: Mapping[str, tuple[float, float]], names: set[str]) -> dict[str, tuple[float, float]]:
+    """Return what is given for these parameters, with or without a tie's suffix: laws share one file."""
+    return {k: v for k, v in given.items() if any(k == n or k.startswith(f"{n}_") for n in names)}

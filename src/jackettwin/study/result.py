@@ -1,0 +1,199 @@
+"""What one run of the twin produced: everything the report shows, nothing it would have to compute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from jackettwin.arrays import ComplexArray
+from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.records import Record
+from jackettwin.response import Sensor, UndampedModes
+from jackettwin.structure import Assembly
+from jackettwin.twin.examine import Examination
+from jackettwin.twin.observation import Observation
+from jackettwin.updating import Update
+from jackettwin.updating.data.pairing import Held
+
+
+@dataclass(frozen=True)
+class MeasuredMode:
+    """A measured mode paired with a mode of the model.
+
+    Attributes
+    ----------
+    mode : int
+        Number on pinned supports, from 1.
+    label : str
+        ``fore_aft_1``, ``side_side_2``, ``torsion_1`` …
+    estimate : ModalEstimate or None
+        What was identified; None if the value was given as a target.
+    mac : float or None
+        Between the measured shape and the model's at the sensors.
+    fits_frequency, fits_damping : bool
+        Whether the value took part in the update.
+    correlation : float
+        Of the logarithms of frequency and damping ratio.
+    """
+
+    mode: int
+    label: str
+    frequency_hz: float | None
+    frequency_std_hz: float | None
+    damping_ratio: float | None
+    damping_ratio_std: float | None
+    estimate: ModalEstimate | None
+    mac: float | None
+    fits_frequency: bool
+    fits_damping: bool
+    correlation: float = 0.0
+
+
+@dataclass(frozen=True)
+class MeasuredRelaxation:
+    """A measured real pole, exp(−at).
+
+    Attributes
+    ----------
+    name : str
+        ``a1``, ``a2``, … by rate.
+    rate_rad_s : float
+    rate_std_rad_s : float or None
+    channels : at which its shape is known
+    shape : (n_channels,) complex, empty if it is not known
+    records : int
+        In how many records it was found; 0 if it was given as a target.
+    """
+
+    name: str
+    rate_rad_s: float
+    rate_std_rad_s: float | None
+    channels: tuple[str, ...]
+    shape: ComplexArray
+    records: int
+
+
+@dataclass(frozen=True)
+class DampingExcess:
+    """Measured damping of a mode beside what the steel and the updated support give it.
+
+    Attributes
+    ----------
+    support : float
+        The steel's, the soil's and the water's part of the model's ratio.
+    rotor : float
+        The part of the nacelle's dashpots; 0 without them.
+    """
+
+    label: str
+    measured: float
+    measured_std: float | None
+    support: float
+    rotor: float = 0.0
+
+    @property
+    def excess(self) -> float:
+        """What no support explains; negative if the steel's damping is too high."""
+        return self.measured - self.support
+
+    @property
+    def explained(self) -> bool:
+        """Whether the support explains the measured ratio: within two standard deviations, or 5 %."""
+        return abs(self.excess) <= self._allowance
+
+    @property
+    def carried(self) -> bool:
+        """Whether the rotor's dashpots carry what the support does not explain."""
+        return not self.explained and abs(self.excess - self.rotor) <= self._allowance
+
+    @property
+    def _allowance(self) -> float:
+        return 0.05 * self.measured if self.measured_std is None else 2.0 * self.measured_std
+
+
+@dataclass(frozen=True, repr=False)
+class TwinResult:
+    """Everything one run produced.
+
+    Attributes
+    ----------
+    numbered, labels
+        Undamped modes on pinned supports and what to call them.
+    observations : tuple of Observation
+        One a record.
+    shown : Examination or None
+        Of the first record, for figures: its quality, the repaired record, poles and spectra.
+    measured : tuple of MeasuredMode
+        In the order of mode numbers.
+    updates : tuple of Update
+        One a law; each covers the modes of ``measured``.
+    excess : tuple of tuple of DampingExcess
+        For each update, every mode with measured damping.
+    assumptions, warnings : tuple of str
+        Sentences for the report.
+    relaxations : tuple of MeasuredRelaxation
+        Real poles that the supports were updated to, too, by rate.
+    rotor_speed_hz : (lowest, highest) or None
+        Of the rotor in operation, where the twin says it or its rotor does.
+    blades : int
+    in_all : (number, seconds), optional
+        Of all records that were measured and of their durations, if ``observations`` are some of them.
+    """
+
+    name: str
+    assembly: Assembly
+    sensors: tuple[Sensor, ...]
+    numbered: UndampedModes
+    labels: tuple[str, ...]
+    observations: tuple[Observation, ...]
+    shown: Examination | None
+    measured: tuple[MeasuredMode, ...]
+    updates: tuple[Update, ...]
+    excess: tuple[tuple[DampingExcess, ...], ...]
+    assumptions: tuple[str, ...]
+    warnings: tuple[str, ...]
+    relaxations: tuple[MeasuredRelaxation, ...] = ()
+    rotor_speed_hz: tuple[float, float] | None = None
+    blades: int = 3
+    in_all: tuple[int, float] | None = None
+
+    def __repr__(self) -> str:
+        modes = ", ".join(f"{m.label} {m.frequency_hz or float('nan'):.4g} Hz" for m in self.measured)
+        laws = ", ".join(u.law for u in self.updates)
+        return (
+            f"TwinResult({self.name!r}, {len(self.observations)} records, measured: {modes or 'nothing'}; "
+            f"updated under {laws or 'no law'})"
+        )
+
+    @property
+    def extent(self) -> tuple[int, float]:
+        """How many records were measured, and how long they are together [s]."""
+        return self.in_all or (len(self.observations), sum(seen.duration_s for seen in self.observations))
+
+    @property
+    def record(self) -> Record | None:
+        """The first record, repaired."""
+        return None if self.shown is None else self.shown.record
+
+    @property
+    def names(self) -> tuple[tuple[str, ...], ...]:
+        """For each record, the label of each identified mode; empty without a counterpart in the model."""
+        return tuple(seen.labels for seen in self.observations)
+
+    @property
+    def identifications(self) -> tuple[Identification, ...]:
+        """What was identified, one a record; only that of the first has poles and spectra."""
+        found = tuple(seen.identification for seen in self.observations)
+        if self.shown is None or not found:
+            return found[1:]
+        # with what the model says of its modes
+        return (replace(self.shown.identification, modes=found[0].modes), *found[1:])
+
+    @property
+    def unpaired(self) -> tuple[tuple[ModalEstimate, Held], ...]:
+        """Identified modes the model has no counterpart for, and what they were held against."""
+        return tuple(
+            (mode, against)
+            for seen in self.observations
+            for mode, against in zip(seen.identification.modes, seen.held, strict=False)
+            if against.verdict != "paired"
+        )

@@ -1,0 +1,202 @@
+"""The main job: records to modes to updated supports."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Literal
+
+import numpy as np
+
+from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
+from jackettwin.study.fit_cache import fitted, with_kept_posterior
+from jackettwin.study.fit_data import recorded_modes, residuals, target_modes, updating
+from jackettwin.study.measure import Measured, measure
+from jackettwin.study.narrative import assumptions, cautions, without_relaxation
+from jackettwin.study.problem import UpdateEvidence, law_problem
+from jackettwin.study.relaxations import measured_relaxations, relaxing
+from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
+from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
+from jackettwin.twin.cache import NOT_KEPT, Keep
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.model import TwinModel, twin_model
+from jackettwin.twin.state import TwinState
+from jackettwin.updating import Update
+from jackettwin.updating.law_choice import likely
+
+Posteriors = Literal["all", "likely"]
+log = logging.getLogger(__name__)
+_MOST_REASONS = 20
+"""Lines that say why nothing that was identified is a mode of the model."""
+
+
+def run_twin(
+    config: TwinConfig,
+    *,
+    laws: tuple[str, ...] | None = None,
+    compare: bool = False,
+    posteriors: Posteriors = "all",
+    workers: int = 1,
+    progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
+) -> TwinResult:
+    """Identify the records of a twin (or take its targets) and update its supports under each law.
+
+    Parameters
+    ----------
+    laws : tuple of str, optional
+        Instead of the twin file's.
+    compare : bool
+        Identify the first record by every method, to set side by side.
+    posteriors : {"all", "likely"}
+        Whether every law's posterior is sampled, or that of the law to recommend: the others are fitted.
+    workers : int
+        Processes that identify records.
+    progress : Progress
+        Told what is being done, once a step; ``count_steps`` says how many there are.
+    keep : Keep
+        Keeps what was identified and fitted for the next run.
+
+    Raises
+    ------
+    InputError
+        If records, sensors or targets do not fit the structure.
+        Or are out of the supports' reach.
+    """
+    progress("assemble the structure")
+    model = twin_model(config)
+    found = (
+        measure(config, model, compare=compare, workers=workers, progress=progress, keep=keep)
+        if config.records
+        else None
+    )
+    return updated_twin(config, model, found, laws=laws, posteriors=posteriors, progress=progress, keep=keep)
+
+
+def updated_twin(
+    config: TwinConfig,
+    model: TwinModel,
+    found: Measured | None,
+    *,
+    laws: tuple[str, ...] | None = None,
+    posteriors: Posteriors = "all",
+    progress: Progress = SILENT,
+    keep: Keep = NOT_KEPT,
+) -> TwinResult:
+    """Return a twin updated to what its records show, or to its targets if there are none.
+
+    Raises
+    ------
+    InputError
+        If what was measured does not fit the structure, or is out of the supports' reach.
+    """
+    assembly, numbered, labels = model.structure, model.modes, model.labels
+    state = None if found is None else updating(config, found.state)
+    measured = (
+        target_modes(config, labels, pinned_hz=numbered.frequency_hz)
+        if found is None or state is None
+        else _recorded(config, found, state, labels)
+    )
+    relaxations = measured_relaxations(config, state)
+    wind = mean_wind(config, state)
+    states = operating_states(config, measured, state, residuals(config, measured, relaxations), wind)
+    evidence = UpdateEvidence(
+        assembly, state, states, rotor_damping(config, assembly, numbered, wind), relaxations
+    )
+    wanted = laws or config.update.laws
+    shown, updates = tuple(m.mode for m in measured), []
+    for law in relaxing(config, wanted) if relaxations else wanted:
+        progress(f"update {law}")
+        problem = law_problem(config, evidence, law)
+        with _said_where(config):
+            updates.append(
+                fitted(
+                    problem,
+                    shown,
+                    config.update,
+                    sampled=posteriors == "all",
+                    progress=progress,
+                    keep=keep,
+                )
+            )
+    if posteriors == "likely":
+        updates = _with_one_posterior(config, updates, progress, keep)
+    speed, blades = rotor_speed_hz(config)
+    left_out = tuple(law for law in wanted if law not in [u.law for u in updates])
+    return TwinResult(
+        name=config.name,
+        assembly=assembly,
+        sensors=() if found is None else found.sensors,
+        numbered=numbered,
+        labels=labels,
+        observations=() if found is None else found.observations,
+        shown=None if found is None else found.shown,
+        measured=measured,
+        updates=tuple(updates),
+        excess=tuple(_excess(measured, result) for result in updates),
+        assumptions=assumptions(config, measured, relaxations, wind),
+        warnings=(*without_relaxation(left_out), *cautions(config, found, measured, tuple(updates), labels)),
+        relaxations=relaxations,
+        rotor_speed_hz=speed,
+        blades=blades,
+        in_all=None if found is None else found.in_all,
+    )
+
+
+def _recorded(
+    config: TwinConfig, found: Measured, state: TwinState, labels: tuple[str, ...]
+) -> tuple[MeasuredMode, ...]:
+    """Return the modes of the records; where none is the model's, the log has what the records show."""
+    try:
+        return recorded_modes(config, state, labels, found.clearest)
+    except InputError:
+        for line in cautions(config, found, (), (), labels)[:_MOST_REASONS]:
+            log.warning(line)
+        if any(one.identification.modes for one in found.observations):
+            raise
+        raise InputError(
+            "no record shows any mode",
+            file=config.path,
+            field="records",
+            value=[path.name for path in config.records],
+            remedy="look at their spectra (`jackettwin identify RECORD --report PAGE`); see that the sensors "
+            "are connected and finer than the motion, and measure in more wind or for longer",
+        ) from None
+
+
+def count_steps(config: TwinConfig, laws: tuple[str, ...] | None = None) -> int:
+    """Return how many steps ``run_twin`` announces."""
+    return 1 + len(config.records) + len(laws or config.update.laws)
+
+
+@contextmanager
+def _said_where(config: TwinConfig) -> Iterator[None]:
+    """Name the place in the twin file of data that no support reaches."""
+    try:
+        yield
+    except InputError as error:
+        source = "records" if config.records else "targets"
+        raise error.at(file=config.path, field=None if error.field else source) from None
+
+
+def _with_one_posterior(
+    config: TwinConfig, updates: list[Update], progress: Progress, keep: Keep
+) -> list[Update]:
+    """Return the updates, the likely one with its posterior."""
+    chosen = likely(updates)
+    return [
+        with_kept_posterior(u, config.update, progress=progress, keep=keep) if u is chosen else u
+        for u in updates
+    ]
+
+
+def _excess(measured: tuple[MeasuredMode, ...], result: Update) -> tuple[DampingExcess, ...]:
+    return tuple(
+        DampingExcess(
+            m.label, m.damping_ratio, m.damping_ratio_std, float(steel + soil + sum(water)), float(rotor)
+        )
+        for m, (steel, soil, rotor, *water) in zip(measured, result.budget.damping_ratio, strict=True)
+        if m.damping_ratio is not None and not np.isnan(steel)
+    )

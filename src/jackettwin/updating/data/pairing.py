@@ -1,0 +1,162 @@
+"""Which measured mode is which mode of the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import scipy.linalg as la
+from scipy.optimize import linear_sum_assignment
+
+from jackettwin.arrays import ComplexArray, FloatArray, IntArray
+from jackettwin.identification import ModalEstimate, mac
+from jackettwin.response.modes.tracking import near_degenerate
+
+Verdict = Literal["paired", "shape", "frequency", "taken"]
+
+FREQUENCY_WIDTH = 0.15
+"""How far (standard deviation of ln f) a measured mode may lie from the model's."""
+MIXING = 0.06
+"""Modes closer than this (relative) mix in a measured shape: half-power bands, 2ζf, of 1 to 3 % overlap."""
+LEAST_MAC = 0.8
+"""A shape less like the model's is no match: true pairs of OpenFAST records reach 0.87 and more,
+false ones (another direction, a blade mode) 0.73 and less."""
+LEAST_VISIBLE = 0.1
+"""A mode that moves the sensors less than this share of the most visible one cannot have been measured."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """What a measured mode was held against: the mode of the model that is most like it.
+
+    Attributes
+    ----------
+    mode : int
+        Of the model, from 0.
+    frequency_hz : float
+        Of the model's.
+    difference : float
+        Measured frequency over the model's, less one.
+    mac : float
+        Share of the measured shape in the model's (or in the plane of its close pair).
+    verdict : {"paired", "shape", "frequency", "taken"}
+        Paired, or why not: another shape, another frequency, or another measured mode is more like it.
+    """
+
+    mode: int
+    frequency_hz: float
+    difference: float
+    mac: float
+    verdict: Verdict
+
+
+def pair(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> dict[int, tuple[int, float]]:
+    """Return {model mode (from 0): (index of the estimate, subspace MAC)}.
+
+    Two bending modes a few percent apart mix in any measured shape, the more the weaker one is excited, so
+    close model modes that the sensors see are compared as a subspace: its MAC is the share of the measured
+    shape that lies in it (the MAC if it is one mode).
+    The score is this times a Gaussian of ln f, with a little of the single MAC to say which is which; the
+    assignment maximises its sum, so that two measured modes never share a model mode.
+
+    Parameters
+    ----------
+    estimates : measured modes
+    frequency_hz : (n_modes,) of the model, in any order; NaN for a mode that cannot be compared
+    shapes : (n_channels, n_modes) mass-normalised, at the sensors, in the channels' order
+    """
+    return {held.mode: (i, held.mac) for i, held in _paired(estimates, frequency_hz, shapes).items()}
+
+
+def pairing_score(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> float:
+    """Return how like a model the measured modes are: the score of ``pair`` summed over the pairs."""
+    found = _paired(estimates, frequency_hz, shapes)
+    return float(sum(h.mac * _nearness(np.log1p(h.difference)) for h in found.values()))
+
+
+def held_against(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> tuple[Held, ...]:
+    """Return for each measured mode its counterpart, else the mode most like it and why it is none.
+
+    Parameters
+    ----------
+    estimates, frequency_hz, shapes
+        As those of ``pair``.
+    """
+    if not estimates or not np.isfinite(frequency_hz).any():
+        return ()
+    visible, _, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
+    paired = _paired(estimates, frequency_hz, shapes)
+    # in logarithms: the nearness of what is far off would underflow
+    likely = np.log(np.maximum(subspace_mac, 1e-12)) - 0.5 * (apart / FREQUENCY_WIDTH) ** 2
+    held = []
+    for i, k in enumerate(np.argmax(likely, axis=1)):
+        far, unlike = abs(apart[i, k]) > 2.0 * FREQUENCY_WIDTH, subspace_mac[i, k] < LEAST_MAC
+        verdict: Verdict = "shape" if unlike else "frequency" if far else "taken"
+        mode, share = int(visible[k]), float(subspace_mac[i, k])
+        other = Held(mode, float(frequency_hz[mode]), float(np.expm1(apart[i, k])), share, verdict)
+        held.append(paired.get(i, other))
+    return tuple(held)
+
+
+def _paired(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> dict[int, Held]:
+    """Return the counterpart of each measured mode that has one, by index."""
+    if not estimates or not np.isfinite(frequency_hz).any():
+        return {}
+    visible, single, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
+    rows, columns = linear_sum_assignment(-(subspace_mac + 0.1 * single) * _nearness(apart))
+    return {
+        int(i): Held(
+            int(visible[k]),
+            float(frequency_hz[visible[k]]),
+            float(np.expm1(apart[i, k])),
+            float(subspace_mac[i, k]),
+            "paired",
+        )
+        for i, k in zip(rows, columns, strict=True)
+        if subspace_mac[i, k] >= LEAST_MAC and abs(apart[i, k]) <= 2.0 * FREQUENCY_WIDTH
+    }
+
+
+def _nearness(apart: Any) -> Any:
+    return np.exp(-0.5 * (apart / FREQUENCY_WIDTH) ** 2)
+
+
+def subspace_mac_nearby(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> FloatArray:
+    """Return for each measured mode its best subspace MAC with modes of the model near it; 0 if none is near.
+
+    Parameters
+    ----------
+    estimates, frequency_hz, shapes
+        As those of ``pair``.
+    """
+    _, _, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
+    best: FloatArray = np.where(np.abs(apart) <= 2.0 * FREQUENCY_WIDTH, subspace_mac, 0.0).max(axis=1)
+    return best
+
+
+def _compared(
+    estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Return the visible modes by frequency; per estimate and visible mode, MAC, subspace MAC and Δ ln f."""
+    measured = np.array([e.mode_shape / np.linalg.norm(e.mode_shape) for e in estimates])
+    size = np.where(np.isfinite(frequency_hz), np.linalg.norm(shapes, axis=0), 0.0)
+    visible = np.flatnonzero(size >= LEAST_VISIBLE * size.max())
+    visible = visible[np.argsort(frequency_hz[visible], kind="stable")]
+    single = np.array([[mac(x, shape) for shape in shapes[:, visible].T] for x in measured])
+    subspace_mac = np.empty_like(single)
+    for group in near_degenerate(frequency_hz[visible], MIXING):
+        basis = la.orth(shapes[:, visible[group]])
+        subspace_mac[:, group] = (np.abs(measured.conj() @ basis) ** 2).sum(axis=1)[:, None]
+    apart = np.log(np.array([e.frequency_hz for e in estimates])[:, None] / frequency_hz[visible])
+    return visible, single, subspace_mac, apart

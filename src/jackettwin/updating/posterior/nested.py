@@ -1,0 +1,82 @@
+"""Posterior and evidence by nested sampling with dynesty: slower than the swarm, and independent of it."""
+
+from __future__ import annotations
+
+from itertools import count
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
+from jackettwin.updating.posterior.sampling import Posterior, gathered
+from jackettwin.updating.problem import Problem
+
+_DRAWS = 400
+"""Equally weighted draws taken from each run."""
+_SAID_EVERY = 100
+"""Evaluations between two words of progress: some tenths of a second."""
+
+
+def sample_nested(
+    problem: Problem,
+    *,
+    live: int = 200,
+    runs: int = 2,
+    remaining: float = 0.02,
+    seed: int = 0,
+    progress: Progress = SILENT,
+) -> Posterior:
+    """Return the posterior of a problem's parameters from independent runs of dynesty (Speagle 2020).
+
+    Parameters
+    ----------
+    live : int
+        Live points of each run.
+    remaining : float
+        ln Z that may be left in the live points.
+    progress : Progress
+        Told within the present step how often the likelihood was evaluated.
+
+    Raises
+    ------
+    InputError
+        If dynesty is not installed, or the residuals carry no standard deviations.
+    NumericalError
+        If the runs do not agree.
+    """
+    try:
+        from dynesty import NestedSampler
+    except ImportError:
+        raise InputError(
+            "nested sampling needs dynesty",
+            field="update.sampler",
+            value="nested",
+            remedy="pip install 'jackettwin[nested]', or sampler: smc",
+        ) from None
+    if not problem.weighted:
+        raise InputError("no standard deviations, no likelihood", field="targets")
+    near = problem.anchor(0.5 * (problem.prior.low + problem.prior.high))
+
+    evaluations = count(1)
+
+    def log_likelihood(z: FloatArray) -> float:
+        n = next(evaluations)
+        if n % _SAID_EVERY == 0:
+            progress.within(f"nested sampling, {n} evaluations of the likelihood")
+        return float(problem.log_likelihood(z[None], near)[0][0])
+
+    draws, values, evidences = [], [], []
+    for rng in np.random.default_rng(seed).spawn(runs):
+        sampler = NestedSampler(
+            log_likelihood, problem.prior.from_unit, problem.prior.low.size, nlive=live, rstate=rng
+        )
+        sampler.run_nested(dlogz=remaining, print_progress=False)
+        weight = np.exp(sampler.results.logwt - sampler.results.logz[-1])
+        which = rng.choice(weight.size, _DRAWS, p=weight / weight.sum())
+        draws.append(sampler.results.samples[which])
+        values.append(sampler.results.logl[which])
+        evidences.append(sampler.results.logz[-1])
+    z = np.array(draws)
+    poles = [problem.log_likelihood(run, near)[1][0].poles for run in z]
+    return gathered(problem, z=z, poles=np.array(poles), log_l=np.array(values), log_z=np.array(evidences))

@@ -1,0 +1,90 @@
+"""What the posterior says of what nobody measured: other modes, the undamped structure, the supports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.response.condensation.mode_numbers import NumberedModes, numbered_poles
+from jackettwin.soil.laws.coefficients import law_stiffness, static_rows
+from jackettwin.updating.data.relaxations import RelaxationTarget
+from jackettwin.updating.model import SupportModel
+
+_FIRST, _FOURTH = 1, 4
+"""The modes whose frequencies a support's stiffness and loss factor are stated at."""
+
+
+@dataclass(frozen=True)
+class Predictive:
+    """Draws of quantities of interest, NaN where a mode does not exist.
+
+    Attributes
+    ----------
+    modes : mode numbers
+    frequency_hz, damping_ratio, undamped_hz : (n_draws, n_modes)
+    support : {name: (n_draws,)}
+        Of each tie group, as data see it: ``static_stiffness``, ``storage_stiffness`` and ``loss_factor`` at
+        the first pinned frequency, ``stiffness_growth`` and ``loss_factor_growth`` to the fourth's.
+    rates : {name: (n_draws,)}
+        Of measured relaxations [rad/s].
+    """
+
+    modes: tuple[int, ...]
+    frequency_hz: FloatArray
+    damping_ratio: FloatArray
+    undamped_hz: FloatArray
+    support: Mapping[str, FloatArray]
+    rates: Mapping[str, FloatArray]
+
+
+def predict_quantities(
+    model: SupportModel,
+    theta: FloatArray,
+    modes: tuple[int, ...],
+    relaxations: tuple[RelaxationTarget, ...] = (),
+) -> Predictive:
+    """Return the quantities at draws θ (n_draws, n_parameters) of the model's parameters."""
+    damped = _from_first(model, theta, modes, undamped=False)
+    undamped = _from_first(model, theta, modes, undamped=True)
+    size = np.abs(damped.poles)
+    return Predictive(
+        modes,
+        size / (2.0 * pi),
+        -damped.poles.real / size,
+        np.abs(undamped.poles) / (2.0 * pi),
+        support_quantities(model, theta),
+        {r.name: r.nearest(model, theta).rate for r in relaxations},
+    )
+
+
+def support_quantities(model: SupportModel, theta: FloatArray) -> dict[str, FloatArray]:
+    """Return the supports as data see them (see :class:`Predictive`)."""
+    pinned = model.condensed.pinned.omega
+    s = np.asarray(1j * pinned[[_FIRST - 1, min(_FOURTH, pinned.size) - 1]], dtype=np.complex128)
+    rows = model.points(theta).plain().rows
+    quantities = {}
+    for g, suffix in enumerate(model.tie_groups.suffixes):
+        D = law_stiffness(rows[:, g, None], s)
+        loss = D.imag / D.real
+        quantities[f"static_stiffness{suffix}"] = static_rows(rows[:, g])[:, 0]
+        quantities[f"storage_stiffness{suffix}"] = D.real[:, 0]
+        quantities[f"loss_factor{suffix}"] = loss[:, 0]
+        quantities[f"stiffness_growth{suffix}"] = D.real[:, 1] / D.real[:, 0]
+        quantities[f"loss_factor_growth{suffix}"] = loss[:, 1] / loss[:, 0]
+    return quantities
+
+
+def _from_first(
+    model: SupportModel, theta: FloatArray, modes: tuple[int, ...], *, undamped: bool
+) -> NumberedModes:
+    """Return the modes of all draws, each started from the first draw's."""
+    points = model.points(theta).plain()
+    start = model.points(theta[:1]).plain()
+    if undamped:
+        points, start = points.undamped(), start.undamped()
+    near = numbered_poles(model.condensed, start, modes)
+    return numbered_poles(model.condensed, points, modes, near=None if np.isnan(near.poles).any() else near)

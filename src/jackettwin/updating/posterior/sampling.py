@@ -1,0 +1,373 @@
+"""Posterior of one law by tempered sequential Monte Carlo, and its evidence.
+
+Particles drawn from the prior go through a ladder of tempered posteriors
+prior · Lᵝ, β from 0 to 1; each rung reweights and resamples them (Del Moral, Doucet & Jasra 2006; Ching &
+Chen 2007) and draws new ones from a mixture of normals, on those that are left and on the posterior's
+hilltops. Its density is known, so that the next rung's weights are exact whatever the mixture (population
+Monte Carlo, Cappé et al. 2004), and a posterior as sharp as years of data make it costs no more rungs than
+that of some days. Where the mixture fits badly, and on the last rung, Markov chains move the particles.
+Several independent islands run side by side: only if they agree is the result called a posterior. Their
+draws give the evidence (:mod:`jackettwin.updating.posterior.evidence`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg as la
+from scipy.spatial import KDTree
+from scipy.special import logsumexp
+
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jackettwin.errors import InputError, NumericalError
+from jackettwin.progress import SILENT, Progress
+from jackettwin.updating.posterior.convergence import Convergence, convergence
+from jackettwin.updating.posterior.evidence import Kernels, bridged_evidence, fitted, root_of
+from jackettwin.updating.posterior.laplace import log_covariance
+from jackettwin.updating.prior import Prior
+from jackettwin.updating.problem import Found, Problem
+from jackettwin.updating.search.descent import bottom
+
+_ESS = 0.5
+"""Each rung of the ladder keeps this share of the particles effective."""
+_REDRAWN = 0.65
+"""Particles drawn anew on a rung are kept if so many times their first number are effective there, or
+``_ESS`` times at the last rung; else the old ones are moved. More than ``_ESS``: the next step is long."""
+_MOVES = 12
+"""Moves of every particle on the last rung, and wherever they are not drawn anew."""
+_KEPT = 3
+"""On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
+_FRESH = 4
+"""So many times as many points are drawn anew as there are particles."""
+_CLIMBS = 12
+"""Descents at most, from draws of the prior that are likelier than their neighbours."""
+_WIDER = (1.0, 1.5, 2.5)
+"""Normals on a hilltop have so many times its standard deviation: tails are heavier."""
+_SCOUTS = 40
+"""So many particles of an island are evaluated first, for the others to start near one of them."""
+_LARGEST_SPREAD = 0.5
+"""Standard deviation of log Z between islands beyond which it is not known."""
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Draws from the posterior of one law.
+
+    Attributes
+    ----------
+    log_theta : (n_draws, n_parameters) equally weighted
+    poles : (n_draws, n_modes) of the target modes in the first state
+    log_likelihood : (n_draws,)
+    log_evidence, log_evidence_std : float
+        Mean over the islands and its standard deviation.
+    evidence_known : bool
+        Whether the islands agree on it.
+    names : of the parameters
+    runs : int
+        Independent ones, each as long, one after the other.
+    convergence : Convergence
+        How well the islands agree.
+    """
+
+    log_theta: FloatArray
+    poles: ComplexArray
+    log_likelihood: FloatArray
+    log_evidence: float
+    log_evidence_std: float
+    convergence: Convergence
+    evidence_known: bool = True
+    names: tuple[str, ...] = ()
+    runs: int = 1
+
+    def __repr__(self) -> str:
+        ends = zip(self.names, self.interval(), strict=False)
+        known = ", ".join(f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in ends)
+        return f"Posterior({len(self.log_theta)} draws; 90 %: {known})"
+
+    def interval(self, level: float = 0.9) -> FloatArray:
+        """Return the central interval of every parameter, (n_parameters, 2)."""
+        tail = 0.5 * (1.0 - level)
+        return np.asarray(np.exp(np.quantile(self.log_theta, [tail, 1.0 - tail], axis=0)).T)
+
+
+@dataclass(frozen=True)
+class _Swarm:
+    """Particles of one island and what is known of them."""
+
+    z: FloatArray
+    log_l: FloatArray
+    log_p: FloatArray
+    found: Found
+
+    def take(self, index: IntArray) -> _Swarm:
+        return _Swarm(
+            self.z[index],
+            self.log_l[index],
+            self.log_p[index],
+            tuple(modes.some(index) for modes in self.found),
+        )
+
+    def where(self, yes: BoolArray, other: _Swarm) -> _Swarm:
+        """Return the swarm with the particles of another where ``yes``."""
+        index = np.where(yes, np.arange(yes.size) + yes.size, np.arange(yes.size))
+        return self.joined(other).take(index)
+
+    def joined(self, other: _Swarm) -> _Swarm:
+        return _Swarm(
+            np.concatenate([self.z, other.z]),
+            np.concatenate([self.log_l, other.log_l]),
+            np.concatenate([self.log_p, other.log_p]),
+            tuple(a.joined(b) for a, b in zip(self.found, other.found, strict=True)),
+        )
+
+
+def sample_posterior(
+    problem: Problem,
+    *,
+    particles: int = 300,
+    islands: int = 4,
+    seed: int = 0,
+    progress: Progress = SILENT,
+) -> Posterior:
+    """Return the posterior of a problem's parameters.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its residuals weighted by standard deviations, not relative.
+    particles, islands : int
+        Particles on each of the independent islands.
+    progress : Progress
+        Told within the present step after each rung of each island's ladder.
+
+    Raises
+    ------
+    InputError
+        If the residuals carry no standard deviations: there is no likelihood.
+    NumericalError
+        If the islands do not agree: there are draws, but they are no posterior.
+    """
+    if not problem.weighted:
+        raise InputError(
+            "no standard deviations, no likelihood",
+            field="targets",
+            remedy="give every target frequency and damping ratio its standard deviation",
+        )
+    *streams, last = np.random.default_rng(seed).spawn(islands + 1)
+    runs = []
+    for i, stream in enumerate(streams, start=1):
+        place = f"posterior, {particles} draws on island {i} of {islands}"
+        runs.append(_island(problem, particles, stream, place, progress))
+    z = np.array([_by_particle([swarm.z for swarm in kept]) for kept in runs])
+    log_l = np.array([_by_particle([swarm.log_l for swarm in kept]) for kept in runs])
+    near = problem.anchor(z.mean(axis=(0, 1)))
+    log_z = bridged_evidence(lambda at: problem.log_likelihood(at, near)[0], problem.prior, z, log_l, last)
+    poles = np.array([_by_particle([swarm.found[0].poles for swarm in kept]) for kept in runs])
+    return gathered(problem, z=z, poles=poles, log_l=log_l, log_z=log_z)
+
+
+def gathered(
+    problem: Problem, *, z: FloatArray, poles: ComplexArray, log_l: FloatArray, log_z: FloatArray
+) -> Posterior:
+    """Return the posterior of independent runs.
+
+    Parameters
+    ----------
+    z : (n_runs, n_draws, n_parameters)
+    poles : (n_runs, n_draws, n_modes)
+    log_l : (n_runs, n_draws)
+    log_z : (n_runs,)
+
+    Raises
+    ------
+    NumericalError
+        If the runs do not agree: there are draws, but they are no posterior.
+    """
+    found, spread = convergence(z), float(log_z.std(ddof=1))
+    if found.problem is not None or not np.isfinite(spread):
+        worst = problem.parameters[int(np.argmax(found.rhat))].name
+        raise NumericalError(
+            f"the posterior did not converge: {found.problem or 'no evidence'} ({worst}), log evidence "
+            f"±{spread:.2f}; more particles may help"
+        )
+    return Posterior(
+        log_theta=z.reshape(-1, z.shape[2]),
+        poles=poles.reshape(-1, poles.shape[2]),
+        log_likelihood=log_l.ravel(),
+        log_evidence=float(logsumexp(log_z) - np.log(log_z.size)),
+        log_evidence_std=spread / np.sqrt(log_z.size),
+        convergence=found,
+        evidence_known=spread <= _LARGEST_SPREAD,
+        names=tuple(p.name for p in problem.parameters),
+        runs=len(z),
+    )
+
+
+def _by_particle(kept: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """Return what was kept of each particle one after the other, as a chain that shows its correlation."""
+    return np.asarray(np.stack(kept, axis=1).reshape(-1, *kept[0].shape[1:]))
+
+
+def _island(
+    problem: Problem, n: int, rng: np.random.Generator, place: str, progress: Progress
+) -> list[_Swarm]:
+    """Return the last swarms of one island."""
+    prior = problem.prior
+    z = prior.draw(n, rng)
+    swarm = _evaluate(problem, prior, z[:_SCOUTS], problem.anchor(z.mean(axis=0)))
+    if n > _SCOUTS:
+        rest = z[_SCOUTS:]
+        swarm = swarm.joined(_evaluate(problem, prior, rest, _nearest(prior, rest, swarm)))
+    beta, log_q, tops = 0.0, swarm.log_p, None
+    while True:
+        scattered = swarm
+        beta = _next_beta(swarm, log_q, beta, _ESS * n)
+        weight = beta * swarm.log_l + swarm.log_p - log_q
+        swarm = swarm.take(_systematic(np.exp(weight - logsumexp(weight)), n, rng))
+        tell = partial(progress.within, f"{place}: {beta:.0%}")
+        tell()
+        if beta == 1.0:
+            return _walk(problem, prior, swarm, beta, rng, tell)
+        tops = tops or _hilltops(problem, scattered)
+        swarm, log_q = _renewed(problem, prior, swarm, beta, rng, tops, tell)
+
+
+def _renewed(
+    problem: Problem,
+    prior: Prior,
+    swarm: _Swarm,
+    beta: float,
+    rng: np.random.Generator,
+    tops: Kernels,
+    tell: Callable[[], None],
+) -> tuple[_Swarm, FloatArray]:
+    """Return other particles of the same tempered posterior, and ln of the density they are drawn from.
+
+    Half of them are drawn around the hilltops of the posterior itself: where they fit, the next step is the
+    last, however sharp it is; and a narrow hill that few particles stand on is not lost.
+    """
+    n = swarm.log_l.size
+    mixture = fitted(swarm.z, prior.std, rng).evenly_with(tops)
+    z = mixture.draw(2 * _FRESH * n, rng)
+    z = z[np.isfinite(prior.log_density(z))][: _FRESH * n]
+    fresh, log_q = _evaluate(problem, prior, z, _nearest(prior, z, swarm)), mixture.log_density(z)
+    here, at_last = (_effective(b * fresh.log_l + fresh.log_p - log_q) for b in (beta, 1.0))
+    if here >= _REDRAWN * n or at_last >= _ESS * n:
+        return fresh, log_q
+    moved = _walk(problem, prior, swarm, beta, rng, tell)[-1]
+    return moved, beta * moved.log_l + moved.log_p
+
+
+def _hilltops(problem: Problem, scattered: _Swarm) -> Kernels:
+    """Return normals around the tops of the posterior that draws from the prior lead to."""
+    centres: list[FloatArray] = []
+    roots: list[FloatArray] = []
+    for i in _tops(scattered):
+        z = bottom(problem, scattered.z[i], tuple(modes.some(np.array([i])) for modes in scattered.found))
+        root = root_of(log_covariance(problem, np.exp(z)))
+        apart = [la.solve_triangular(root, z - centre, lower=True) for centre in centres]
+        if all(x @ x > 1.0 for x in apart):
+            centres += [z] * len(_WIDER)
+            roots += [wider * root for wider in _WIDER]
+    return Kernels(np.array(centres), np.array(roots))
+
+
+def _tops(swarm: _Swarm) -> IntArray:
+    """Return the particles likelier than all their neighbours, the likeliest few of them."""
+    x = swarm.z / np.ptp(swarm.z, axis=0)
+    _, near = KDTree(x).query(x, k=min(2 * x.shape[1] + 1, len(x)))
+    top = np.flatnonzero(swarm.log_l >= swarm.log_l[near].max(axis=1))
+    return np.asarray(top[np.argsort(-swarm.log_l[top])][:_CLIMBS])
+
+
+def _walk(
+    problem: Problem,
+    prior: Prior,
+    swarm: _Swarm,
+    beta: float,
+    rng: np.random.Generator,
+    tell: Callable[[], None],
+) -> list[_Swarm]:
+    """Return the swarm after every few of its moves."""
+    kept = []
+    for move in range(1, _MOVES + 1):
+        swarm = _moved(problem, prior, swarm, beta, rng, wide=move % 4 == 0)
+        tell()
+        if move % _KEPT == 0:
+            kept.append(swarm)
+    return kept
+
+
+def _moved(
+    problem: Problem, prior: Prior, swarm: _Swarm, beta: float, rng: np.random.Generator, *, wide: bool
+) -> _Swarm:
+    """Return the swarm after one move of each half by differences of the other.
+
+    The half that lends the differences stands still, which leaves the joint distribution exactly invariant; a
+    swarm that moves at once by its own differences ends a few per cent too narrow.
+    """
+    order = rng.permutation(swarm.log_l.size)
+    still, moving = (swarm.take(half) for half in np.array_split(order, 2))
+    for _ in range(2):
+        z = _proposal(moving.z, still.z, rng, wide=wide)
+        inside: BoolArray = np.isfinite(prior.log_density(z))
+        z = np.where(inside[:, None], z, moving.z)
+        trial = _evaluate(problem, prior, z, _nearest(prior, z, moving.joined(still)))
+        log_ratio = beta * (trial.log_l - moving.log_l) + trial.log_p - moving.log_p
+        moving = moving.where(inside & (np.log1p(-rng.random(len(z))) < log_ratio), trial)
+        still, moving = moving, still
+    return still.joined(moving).take(np.argsort(order))
+
+
+def _nearest(prior: Prior, z: FloatArray, known: _Swarm) -> Found:
+    """Return for each point the modes of the nearest particle, in shares of the bounds, to start from."""
+    width = prior.high - prior.low
+    _, nearest = KDTree(known.z / width).query(z / width)
+    return tuple(modes.some(np.asarray(nearest)) for modes in known.found)
+
+
+def _evaluate(problem: Problem, prior: Prior, z: FloatArray, near: Found | None) -> _Swarm:
+    log_l, found = problem.log_likelihood(z, near)
+    return _Swarm(z, log_l, prior.log_density(z), found)
+
+
+def _next_beta(swarm: _Swarm, log_q: FloatArray, beta: float, least: float) -> float:
+    """Return the largest β up to 1 that leaves so many particles effective, by bisection."""
+
+    def enough(at: float) -> bool:
+        return _effective(at * swarm.log_l + swarm.log_p - log_q) >= least
+
+    if enough(1.0):
+        return 1.0
+    low, high = beta, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if enough(middle) else (low, middle)
+    return high
+
+
+def _effective(log_weight: FloatArray) -> float:
+    """Return the effective number of particles of unequal weights."""
+    w = np.exp(log_weight - log_weight.max())
+    return float(w.sum() ** 2 / (w @ w))
+
+
+def _systematic(weight: FloatArray, n: int, rng: np.random.Generator) -> IntArray:
+    u = (rng.random() + np.arange(n)) / n
+    return np.minimum(np.searchsorted(np.cumsum(weight), u), weight.size - 1)
+
+
+def _proposal(z: FloatArray, others: FloatArray, rng: np.random.Generator, *, wide: bool) -> FloatArray:
+    """Return differential-evolution steps (ter Braak 2006): they follow the shape of the swarm."""
+    (n, d), m = z.shape, len(others)
+    a = rng.integers(m, size=n)
+    b = (a + rng.integers(1, m, n)) % m
+    # full steps now and then jump between separate hills
+    gamma = 1.0 if wide else 2.38 / np.sqrt(2.0 * d) * rng.uniform(0.2, 1.0)
+    jitter = 0.02 * others.std(axis=0) * rng.standard_normal(z.shape)
+    return np.asarray(z + gamma * (others[a] - others[b]) + jitter)

@@ -1,0 +1,136 @@
+"""Which end points belong together: a cluster is one solution, with its extent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.updating.problem import Problem
+from jackettwin.updating.search.descent import End, constrained
+
+_SAME = 0.02
+"""End points closer than this in every ln θ are one."""
+_STAGES = 10
+"""Steps of the walk from one end point to another."""
+_MOST_STEPS = 10_000
+"""Of all walks of one gathering: a minute. Beyond, end points that may be one are listed apart."""
+_JUMP = 4.0
+"""Followers that move by more than so many steps may have jumped a ridge."""
+_NARROW = 0.05
+"""A solution whose ln θ the cost fixes better than this is a point, not a cluster."""
+
+
+def gather(
+    problem: Problem,
+    ends: list[tuple[End, int]],
+    *,
+    known: list[tuple[End, int]] | None = None,
+    most_steps: int = _MOST_STEPS,
+) -> tuple[list[tuple[End, int]], bool]:
+    """Return one end point a cluster, lowest first, and how many ended in it; and whether all were compared.
+
+    Parameters
+    ----------
+    ends : end points and how many searches each stands for
+    known : clusters gathered before, known to be distinct
+    most_steps : of all walks between them
+    """
+    before = known or []
+    distinct = {id(end) for end, _ in before}
+    kept: list[tuple[End, int]] = []
+    left = most_steps
+    for end, count in sorted([*before, *ends], key=lambda pair: pair[0].cost):
+        for i, (other, others) in enumerate(kept):
+            if id(end) in distinct and id(other) in distinct:
+                continue
+            same = bool(np.abs(end.z - other.z).max() < _SAME)
+            if not same and left > 0:
+                same, steps = linked(problem, other, end)
+                left -= steps
+            if same:
+                kept[i] = (other, others + count)
+                break
+        else:
+            kept.append((end, count))
+    return kept, left > 0
+
+
+def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
+    """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
+
+    One coordinate is stepped, the others follow downhill: first the one in which they lie farthest apart. A
+    walk that descends on its way shows that the higher one was a shoulder, not a minimum.
+    """
+    span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
+    taken = 0
+    for j in np.argsort(-span):
+        if span[j] > 1e-3:
+            level, steps = _walks(problem, high, low, int(j))
+            taken += steps
+            if level:
+                return True, taken
+    return False, taken
+
+
+def _walks(problem: Problem, high: End, low: End, j: int) -> tuple[bool, int]:
+    allowance = problem.allowance(high.cost)
+    here, step = high.z, abs(high.z[j] - low.z[j]) / _STAGES
+    for steps, value in enumerate(np.linspace(high.z[j], low.z[j], _STAGES + 1)[1:], start=1):
+        there, cost = constrained(problem, here, j, float(value))
+        jumped = np.abs(there - here).max() > _JUMP * step
+        if cost > high.cost + allowance or (
+            jumped and not _level(problem, here, there, high.cost + allowance)
+        ):
+            return False, steps
+        if cost < high.cost - allowance:
+            return True, steps
+        here = there
+    return _level(problem, here, low.z, high.cost + allowance), _STAGES
+
+
+def _level(problem: Problem, start: FloatArray, end: FloatArray, ceiling: float) -> bool:
+    """Return whether the cost stays below a ceiling on the straight line between two points."""
+    near = None
+    for t in np.linspace(0.0, 1.0, _STAGES)[1:-1]:
+        r, _, near = problem.evaluate(start + t * (end - start), near)
+        if near is None or float(r @ r) > ceiling:
+            return False
+    return True
+
+
+def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
+    """Return how far each ln θ can go (d, 2), the others following, before the cost rises noticeably.
+
+    With it the points that were reached, of parameters that can go far.
+    """
+    points = []
+    _, J, _ = problem.evaluate(end.z, None)
+    allowance = problem.allowance(end.cost)
+    curvature = J.T @ J
+    spread = np.full(end.z.size, np.inf)
+    if np.linalg.cond(curvature) < 1e12:
+        spread = np.sqrt(allowance * np.diag(np.linalg.inv(curvature)))
+    sides = np.stack([end.z - spread, end.z + spread], axis=1)
+    # with a likelihood the posterior says how far, and better
+    for j in np.flatnonzero(spread > _NARROW) if problem.relative else ():
+        for side, limit in enumerate((problem.prior.low[j], problem.prior.high[j])):
+            point = _reach(problem, end, int(j), float(limit), allowance)
+            points.append(point)
+            sides[j, side] = point[j]
+    return np.clip(sides, problem.prior.low[:, None], problem.prior.high[:, None]), points
+
+
+def _reach(problem: Problem, end: End, j: int, limit: float, allowance: float) -> FloatArray:
+    """Return the point with the farthest value of one ln θ that keeps the cost: walk, halve the step."""
+    here, last = end.z, float(end.z[j])
+    step = (limit - last) / _STAGES
+    for _ in range(3 * _STAGES):
+        if abs(step) < 1e-2 or abs(limit - last) < 1e-9:
+            break
+        value = last + step if abs(step) < abs(limit - last) else limit
+        there, cost = constrained(problem, here, j, value)
+        if cost <= end.cost + allowance:
+            here, last = there, value
+        else:
+            step *= 0.5
+    return here

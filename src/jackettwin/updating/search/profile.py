@@ -1,0 +1,56 @@
+"""Profile likelihoods: the least χ² at each value of one parameter, the others free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.updating.problem import Problem
+from jackettwin.updating.search.descent import constrained
+
+_REFINEMENTS = 4
+_NEAR, _STEP = 8.0, 2.0
+"""Steps of χ² larger than this are halved where χ² is less than so much above the lowest."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The least cost over the others as one parameter goes through its bounds.
+
+    Attributes
+    ----------
+    values : (n,) of the parameter
+    cost : (n,) least χ², prior included
+    """
+
+    name: str
+    values: FloatArray
+    cost: FloatArray
+
+
+def profile(problem: Problem, theta: FloatArray, parameter: int, *, n: int = 11) -> Profile:
+    """Return the profile of one parameter from a solution outwards, each point started from its neighbour.
+
+    Where it rises fast near its lowest point, points are added in between.
+    """
+    z = np.log(theta)
+    low, high = problem.prior.low[parameter], problem.prior.high[parameter]
+    grid = np.unique(np.append(np.linspace(low, high, n), z[parameter]))
+    centre = int(np.searchsorted(grid, z[parameter]))
+    points, cost = np.empty((grid.size, z.size)), np.empty(grid.size)
+    for side in (range(centre, grid.size), range(centre - 1, -1, -1)):
+        here = z
+        for i in side:
+            here, cost[i] = constrained(problem, here, parameter, float(grid[i]))
+            points[i] = here
+    for _ in range(_REFINEMENTS):
+        near = np.minimum(cost[1:], cost[:-1]) < cost.min() + _NEAR
+        steep = np.flatnonzero(near & (np.abs(np.diff(cost)) > _STEP))
+        for i in steep[::-1]:
+            start = points[i] if cost[i] < cost[i + 1] else points[i + 1]
+            between = 0.5 * (points[i, parameter] + points[i + 1, parameter])
+            here, value = constrained(problem, start, parameter, float(between))
+            points, cost = np.insert(points, i + 1, here, axis=0), np.insert(cost, i + 1, value)
+    return Profile(problem.parameters[parameter].name, np.exp(points[:, parameter]), cost)

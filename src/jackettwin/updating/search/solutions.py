@@ -1,0 +1,247 @@
+"""Search for every solution: scattered starts, deflation of what is known, one list of distinct clusters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import scipy  # scipy.stats is loaded where it is used: half a second
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.errors import InputError
+from jackettwin.progress import SILENT, Progress
+from jackettwin.updating.problem import Problem
+from jackettwin.updating.search.clusters import extent, gather
+from jackettwin.updating.search.descent import End, descend, descend_simplex, settle
+
+Method = Literal["least-squares", "nelder-mead"]
+METHODS = ("least-squares", "nelder-mead")
+
+LOCKED_DAMPER = 0.05
+"""Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
+_MOST = 16
+"""Starts are doubled up to this many times their number while a solution has been found only once."""
+MOST_EVALUATIONS = 40_000
+"""And while so many evaluations of the model have not been spent: half a minute."""
+_HOPELESS = 4
+"""So many times the starts without any minimum are enough."""
+_DEFLATED = 6
+"""Most descents with the known solutions deflated; a quarter of the starts if these are few."""
+_CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A minimum of the cost, or a cluster of equal ones.
+
+    Attributes
+    ----------
+    theta : (n_parameters,)
+        Of a cluster, the point nearest the middle of the bounds.
+    cost : float
+        Sum of squared residuals.
+    frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
+    rates : (n_relaxations,) of the measured relaxations [rad/s]
+    locked_damper : bool
+        An undamped frequency is more than 5 % from the damped one.
+    locks_within : bool
+        A cluster's ends are looked at, too: at some of them a damper is locked.
+    at_bound : tuple of str
+        Parameters that ended on a bound.
+    found : int
+        How many starts ended here.
+    extent : (n_parameters, 2)
+        How far each parameter can go, the others following, before the cost rises noticeably.
+    """
+
+    theta: FloatArray
+    cost: float
+    frequency_hz: FloatArray
+    undamped_hz: FloatArray
+    damping_ratio: FloatArray
+    rates: FloatArray
+    locked_damper: bool
+    locks_within: bool
+    at_bound: tuple[str, ...]
+    found: int
+    extent: FloatArray
+
+
+@dataclass(frozen=True)
+class Search:
+    """Every solution that was found, cheapest first, and how sure it is that these are all.
+
+    Attributes
+    ----------
+    starts : int
+        Descents from scattered points.
+    deflated : int
+        Further descents, with the known solutions deflated.
+    missed_share_95 : float
+        A solution that was missed draws less than this share of the starts, with 95 % confidence.
+    spent : int or None
+        Evaluations after which the search stopped, although some solution had been found only once; None if
+        it ended by itself.
+    """
+
+    solutions: tuple[Solution, ...]
+    starts: int
+    deflated: int
+    missed_share_95: float
+    spent: int | None = None
+
+    @property
+    def statement(self) -> str:
+        """How complete the list is, in a sentence."""
+        n = len(self.solutions)
+        once = sum(s.found == 1 for s in self.solutions)
+        unsettled = "" if self.spent is None else f"Not settled after {self.spent:,} evaluations: "
+        # end points that nobody had the time to compare may be one solution
+        if self.spent is not None and not once:
+            often = ", more of which may be one"
+        else:
+            often = f", {once} of them found only once" if once else ", each found more than once"
+        return (
+            f"{unsettled}{self.starts} starts and {self.deflated} deflated descents ended in "
+            f"{n} distinct solution{'s' if n > 1 else ''}{often}; "
+            f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
+            "(95 % confidence)."
+        )
+
+
+def search(
+    problem: Problem,
+    *,
+    method: Method = "least-squares",
+    starts: int = 32,
+    seed: int = 0,
+    most_evaluations: int = MOST_EVALUATIONS,
+    progress: Progress = SILENT,
+) -> Search:
+    """Return the distinct solutions, best first.
+
+    Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while a solution
+    has been found only once; then the known solutions are deflated until nothing new appears.
+
+    Parameters
+    ----------
+    method : {"least-squares", "nelder-mead"}
+        Gradient least squares, or the thesis's simplex (section 8.2), which starts only ``starts`` times.
+    most_evaluations : int
+        Of the model, after which no further starts are added to the first ones.
+    progress : Progress
+        Told within the present step after each start how far the search is.
+
+    Raises
+    ------
+    InputError
+        If the method is unknown, there is no start, or none ends anywhere: the data are out of reach.
+    """
+    if method not in METHODS:
+        raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
+    if starts < 1:
+        raise InputError("at least one start", field="update.starts", value=starts, allowed="≥ 1")
+    deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
+    run = descend if method == "least-squares" else descend_simplex
+    points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)
+    clusters: list[tuple[End, int]] = []
+    n, tried, spent = starts, 0, 0
+    while True:
+        new: list[tuple[End, int]] = []
+        for point in points[tried:n]:
+            if tried >= starts and spent >= most_evaluations:
+                break
+            end = run(problem, point)
+            tried, spent = tried + 1, spent + end.evaluations
+            new += [(end, 1)] if end.settled else []
+            progress.within(f"{tried} of {n} starts, {len(clusters)} distinct solutions before them")
+        clusters, compared = gather(problem, new, known=clusters)
+        enough = all(count > 1 for _, count in clusters) if clusters else n >= _HOPELESS * starts
+        if enough or not compared or 2 * n > len(points) or spent >= most_evaluations:
+            break
+        n *= 2
+    if deflated:
+        clusters = _deflate(problem, clusters, points[:deflated], progress)
+    if not clusters:
+        raise _out_of_reach(problem)
+    kept = [v for v in clusters if v[0].cost <= clusters[0][0].cost + problem.hopeless]
+    # two ends of one cluster may only be seen to be one from its middle
+    clusters, _ = gather(problem, [(settle(problem, end), count) for end, count in kept])
+    return Search(
+        tuple(_solution(problem, end, count) for end, count in clusters),
+        tried,
+        deflated,
+        1.0 - (1.0 - _CONFIDENCE) ** (1.0 / tried),
+        spent if not compared or (spent >= most_evaluations and not enough) else None,
+    )
+
+
+def _out_of_reach(problem: Problem) -> InputError:
+    """Return what the data ask for beside what the supports can give: frequencies from bound to bound."""
+    first = problem.states[0]
+    targets = first.residuals.used
+    ends = problem.vectors(np.stack([problem.prior.low, problem.prior.high]), first)
+    low, high = (problem.model.undamped_hz(theta, first.residuals.modes) for theta in ends)
+    reach = [
+        f"mode {t.mode} {'' if np.isnan(a) else f'from {a:.3g} '}to {b:.3g} Hz"
+        for t, a, b in zip(targets, low, high, strict=True)
+        if t.frequency_hz is not None and not np.isnan(b)
+    ]
+    return InputError(
+        "no start of the search ended in a minimum: the data are out of the supports' reach",
+        value={t.mode: t.frequency_hz and round(float(t.frequency_hz), 5) for t in targets},
+        allowed="undamped " + ", ".join(reach) if reach else None,
+        remedy="check mode numbers, frequencies, damping ratios, their standard deviations and update.bounds",
+    )
+
+
+def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
+    low, high = problem.prior.low, problem.prior.high
+    sampler = scipy.stats.qmc.Sobol(low.size, scramble=True, rng=np.random.default_rng(seed))
+    power = int(np.ceil(np.log2(max(n, 2))))
+    return np.asarray(low + (high - low) * sampler.random_base2(power)[:n])
+
+
+def _deflate(
+    problem: Problem, clusters: list[tuple[End, int]], points: FloatArray, progress: Progress
+) -> list[tuple[End, int]]:
+    """Return the clusters and what further descents find with them deflated."""
+    for i, point in enumerate(points, start=1):
+        progress.within(f"descent {i} of {len(points)} beside {len(clusters)} known solutions")
+        end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
+        if end.settled:
+            clusters, _ = gather(problem, [(end, 1)], known=clusters)
+    return clusters
+
+
+def _solution(problem: Problem, end: End, found: int) -> Solution:
+    poles, undamped = _damped_and_undamped(problem, end.z)
+    damped = np.abs(poles) / (2.0 * np.pi)
+    sides, points = extent(problem, end)
+    on_bound = (end.z - problem.prior.low < 1e-3) | (problem.prior.high - end.z < 1e-3)
+    return Solution(
+        theta=np.exp(end.z),
+        cost=end.cost,
+        frequency_hz=damped,
+        undamped_hz=undamped,
+        damping_ratio=np.asarray(-poles.real / np.abs(poles)),
+        rates=np.array([found.rate[0] for found in problem.relaxed(end.z[None], problem.states[0])]),
+        locked_damper=_locked(poles, undamped),
+        locks_within=any(_locked(*_damped_and_undamped(problem, z)) for z in points),
+        at_bound=tuple(p.name for p, flag in zip(problem.parameters, on_bound, strict=True) if flag),
+        found=found,
+        extent=np.exp(sides),
+    )
+
+
+def _damped_and_undamped(problem: Problem, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Return the poles and undamped frequencies of the first state's modes."""
+    first = problem.states[0]
+    theta, modes = problem.vectors(z[None], first)[0], first.residuals.modes
+    return problem.model.predict(theta, modes).poles, problem.model.undamped_hz(theta, modes)
+
+
+def _locked(poles: ComplexArray, undamped_hz: FloatArray) -> bool:
+    apart = np.abs(undamped_hz * 2.0 * np.pi / np.abs(poles) - 1.0)
+    return bool(np.isnan(apart).any() or (apart > LOCKED_DAMPER).any())

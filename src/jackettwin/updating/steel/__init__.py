@@ -1,0 +1,1 @@
+"""The staged update of the steel (thesis section 5.4)."""

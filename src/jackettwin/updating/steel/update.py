@@ -1,0 +1,160 @@
+"""Update the steel: E and ρ of each part, to given frequencies, stage by stage (thesis section 5.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError
+from jackettwin.response import UndampedModes
+from jackettwin.response.modes.tracking import track_modes
+from jackettwin.structure import Structure, assemble
+from jackettwin.updating.steel.band import numbered_modes
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor on one property of one part of the steel."""
+
+    part: str
+    what: Literal["youngs_modulus", "density"]
+    low: float = 0.1
+    high: float = 10.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.low < self.high:
+            raise InputError(
+                "bounds are reversed or not positive",
+                field="bounds",
+                value=[self.low, self.high],
+                allowed="0 < low < high",
+                remedy="give [low, high]",
+            )
+
+    @property
+    def name(self) -> str:
+        """``part.property``."""
+        return f"{self.part}.{self.what}"
+
+
+@dataclass(frozen=True)
+class SteelFit:
+    """A refined structure and how well it meets its frequencies on pinned feet.
+
+    Attributes
+    ----------
+    factors : mapping of factor name to value
+    modes : mode numbers
+    target_hz, before_hz, after_hz : (n_modes,)
+    """
+
+    structure: Structure
+    factors: Mapping[str, float]
+    modes: tuple[int, ...]
+    target_hz: FloatArray
+    before_hz: FloatArray
+    after_hz: FloatArray
+
+
+def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
+    """Return the structure with only some of its parts and what stands on their nodes.
+
+    Raises
+    ------
+    InputError
+        If no member belongs to a part.
+    """
+    known = sorted({member.part for member in structure.members})
+    for part in parts:
+        if part not in known:
+            raise InputError("no such part", field="parts", value=part, allowed=", ".join(known))
+    members = tuple(member for member in structure.members if member.part in parts)
+    used = {node for member in members for node in (member.start, member.end)}
+    return replace(
+        structure,
+        nodes={name: xyz for name, xyz in structure.nodes.items() if name in used},
+        members=members,
+        masses=tuple(mass for mass in structure.masses if mass.node in used),
+        rigid_links=tuple(link for link in structure.rigid_links if {link.leader, link.follower} <= used),
+        elements=tuple(e for e in structure.elements if {e.start, e.end} <= used),
+        interface_nodes=tuple(node for node in structure.interface_nodes if node in used),
+    )
+
+
+def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapping[int, float]) -> SteelFit:
+    r"""Return the structure whose scaled parts meet the target frequencies on pinned feet.
+
+    Gauss–Newton in the logarithms, with :math:`∂ω²/∂\ln p = φ^T(∂K/∂\ln p − ω² ∂M/∂\ln p)φ`; modes are
+    followed by shape from the start.
+
+    Raises
+    ------
+    InputError
+        If there are more factors than targets. Without factors the frequencies are only compared.
+    """
+    modes = tuple(sorted(target_hz))
+    if len(factors) > len(modes):
+        raise InputError(
+            "more factors than frequencies cannot be told apart",
+            field="free",
+            value=[f.name for f in factors],
+            allowed=f"up to {len(modes)} factors",
+        )
+    target = np.array([target_hz[mode] for mode in modes])
+    number = max(modes) + 3
+    start = assemble(structure)
+    reference = numbered_modes(start, number)
+    parts = [(assemble(_scaled(structure, (factor,), np.array([2.0]))), factor) for factor in factors]
+    K_parts = [a.stiffness - start.stiffness for a, _ in parts]
+    M_parts = [a.mass - start.mass for a, _ in parts]
+
+    def evaluate(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        scale = np.exp(z)
+        at = assemble(_scaled(structure, factors, scale))
+        found = numbered_modes(at, number)
+        order = track_modes(start.mass, reference.omega, reference.shapes, found.shapes)[
+            [m - 1 for m in modes]
+        ]
+        omega, phi = found.omega[order], found.shapes[:, order]
+        slopes = np.empty((len(modes), len(factors)))
+        for j, (K, M) in enumerate(zip(K_parts, M_parts, strict=True)):
+            stiffness = np.einsum("ij,ij->j", phi, K @ phi)
+            inertia = np.einsum("ij,ij->j", phi, M @ phi)
+            slopes[:, j] = scale[j] * (stiffness - omega**2 * inertia) / (2.0 * omega**2)
+        frequency = omega / (2.0 * np.pi)
+        return frequency / target - 1.0, slopes * (frequency / target)[:, None]
+
+    def residuals(z: FloatArray) -> FloatArray:
+        return evaluate(z)[0]
+
+    def jacobian(z: FloatArray) -> FloatArray:
+        return evaluate(z)[1]
+
+    z = np.zeros(len(factors))
+    if factors:
+        bounds = (np.log([f.low for f in factors]), np.log([f.high for f in factors]))
+        z = least_squares(residuals, z, jac=jacobian, bounds=bounds, xtol=1e-10).x
+    values = np.exp(z)
+    return SteelFit(
+        structure=_scaled(structure, factors, values),
+        factors={factor.name: float(value) for factor, value in zip(factors, values, strict=True)},
+        modes=modes,
+        target_hz=target,
+        before_hz=_frequencies(reference, modes),
+        after_hz=(residuals(z) + 1.0) * target,
+    )
+
+
+def _frequencies(found: UndampedModes, modes: tuple[int, ...]) -> FloatArray:
+    return np.asarray(found.frequency_hz[[m - 1 for m in modes]])
+
+
+def _scaled(structure: Structure, factors: tuple[Factor, ...], values: FloatArray) -> Structure:
+    for factor, value in zip(factors, values, strict=True):
+        structure = structure.with_material(factor.part, **{factor.what: float(value)})
+    return structure

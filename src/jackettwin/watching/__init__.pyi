@@ -1,0 +1,12 @@
+from .causes import (
+    Cause as Cause,
+    general_causes as general_causes,
+    sensor_noise as sensor_noise,
+    sizes_about as sizes_about,
+)
+from .design import Slope as Slope
+from .diagnosis import CauseVerdict as CauseVerdict, Diagnosis as Diagnosis, diagnose as diagnose
+from .directions import Pattern as Pattern
+from .history import History as History
+from .next_look import expected_information as expected_information
+from .watch import Change as Change, Look as Look, Watch as Watch, start as start, step as step

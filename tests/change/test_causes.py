@@ -1,0 +1,161 @@
+"""Directions of causes on the reference jacket: closed forms, signs, and what cannot be told apart."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jackettwin.change import causes
+from jackettwin.change.causes import (
+    MODES,
+    ModelCauses,
+    Modes,
+    _kept,
+    model_causes,
+    seen_causes,
+    standings,
+    turned,
+)
+from jackettwin.change.changed_structures import Standing, braces
+from jackettwin.decks import read_structure
+from jackettwin.errors import InputError
+from jackettwin.response.modes.modal import UndampedModes
+from jackettwin.structure import assemble
+
+LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
+
+
+@pytest.fixture(scope="module")
+def model() -> ModelCauses:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(causes, "_DRAWS", 1)
+        structure = read_structure("jacket15")
+        return model_causes(structure, LABELS, np.array([0.1806, 0.1835, 0.571]), np.full(3, 0.01))
+
+
+def direction(model: ModelCauses, start: str) -> np.ndarray:
+    (cause,) = [c for c in model.causes if c.name.startswith(start)]
+    return cause.draws.mean(axis=0)
+
+
+def test_every_line_of_the_jacket_is_one_brace() -> None:
+    found = braces(read_structure("jacket15"))
+    assert len(found) == 36  # four faces of four bays of crosses, and four at the mudline
+    assert sum(len(line) for line in found) > len(found)
+
+
+def test_soil_and_scour_soften_and_lost_braces_bend_one_plane(model: ModelCauses) -> None:
+    for name in ("scour at all feet", "soil softening", "marine growth", "corrosion"):
+        assert np.all(direction(model, name)[:2] < 0.0)
+    plane = direction(model, "brace_1_1_1 lost")[:2]
+    assert max(plane / plane.sum()) > 0.8
+
+
+def test_mass_at_the_top_does_what_rayleighs_quotient_says(model: ModelCauses) -> None:
+    """Δ ln f = −½ Δm φ²: one per cent of the RNA is worth about 0.4 % in bending, and nothing in torsion."""
+    one_percent = direction(model, "mass of the RNA") * 0.01 * 809000.0
+    np.testing.assert_allclose(one_percent[:2], -0.0043, atol=5e-4)
+    assert abs(one_percent[2]) < 1e-4
+    (mass,) = [c for c in model.causes if c.name == "mass of the RNA"]
+    three = mass.steps(np.array([3.0 * 0.01 * 809000.0]))[0]
+    np.testing.assert_allclose(three[:2], 3.0 * one_percent[:2], rtol=0.05)  # ½ Δm: bent by ¾ Δm² alone
+
+
+def test_a_clock_moves_all_frequencies_and_no_damping(model: ModelCauses) -> None:
+    assert direction(model, "sensor: clock").tolist() == [1.0] * MODES + [0.0] * (2 * MODES)
+    assert "sensor: gain" in model.traceless
+
+
+def test_watched_quantities_are_found_by_label(model: ModelCauses) -> None:
+    quantities = (("frequency", 1), ("damping", 0), ("frequency", 2))
+    seen = seen_causes(model, quantities, ("fore_aft_1", "side_side_1", "unheard_of"))
+    assert seen.known.tolist() == [True, True, False]
+    place = model.labels.index("side_side_1"), MODES + model.labels.index("fore_aft_1")
+    np.testing.assert_array_equal(seen.causes[0].draws, model.causes[0].draws[:, place])
+    assert seen.columns == place
+
+
+def test_a_mode_among_members_own_ones_tells_nothing(model: ModelCauses) -> None:
+    """Which of the modes beside them is which after a change nobody knows: it is no quantity of a cause."""
+    assert all(model.tells(label) for label in LABELS) and not model.tells("local_1")
+    mixed = replace(model, mixed=("side_side_1",))
+    seen = seen_causes(mixed, (("frequency", 0), ("frequency", 1)), LABELS)
+    assert seen.known.tolist() == [False, True]
+    assert all(pattern.change[0] == 0.0 for pattern in mixed.patterns(LABELS))
+
+
+def test_shapes_are_kept_by_their_part_in_those_of_the_whole() -> None:
+    modes = UndampedModes(np.ones(2), np.eye(3)[:, :2])
+    like = Modes(("side_side_1", "local_1"), modes, np.eye(3), np.zeros(2), np.ones(2), np.zeros(2))
+    shapes = np.array([[1.0, 0.6, 0.0], [0.0, 0.8, 0.0], [0.0, 0.0, 2.0]])
+    np.testing.assert_allclose(_kept(like, shapes), [1.0, 0.36, 0.0])
+
+
+def test_a_model_that_misses_frequencies_is_trusted_less() -> None:
+    """Four modes, two fitted numbers: without a rest √(1/3) of the usual 1 %, with one of 3 % far more."""
+    structure = read_structure("jacket15")
+    stiff, assembly = np.full(4, 2.5e9), assemble(structure, gravity=True)
+    typical = Standing(structure, stiff, stiff)
+    named, places = Modes.of(typical, assembly), [0, 1, 2, 3]
+    seen = named.modes.frequency_hz[:4]
+    off = seen * [1.0, 1.0, 1.03, 1.0]  # torsion, which the feet hardly move
+    rng = np.random.default_rng(1)
+    good, bad = (standings(typical, named, places, f, assembly, rng) for f in (seen, off))
+    np.testing.assert_allclose(good[2], 0.01 / np.sqrt(3.0), rtol=1e-6)
+    np.testing.assert_allclose(bad[2], np.sqrt((0.03**2 + 0.01**2) / 3.0), rtol=0.2)
+
+
+def test_the_sea_level_has_the_slope_of_the_added_water(model: ModelCauses) -> None:
+    """Water makes every mode slower, those that move at the surface most; only a level is known by name."""
+    (slope,) = model.slopes((*LABELS, "unheard_of"), ("hs_m", "sea_level_m", "air_temperature_c"))
+    assert slope.condition == "sea_level_m" and slope.per_unit[3] == 0.0
+    assert -3e-3 < slope.per_unit[2] < 2.0 * slope.per_unit[0] < 0.0
+    assert np.all(slope.std >= np.abs(slope.per_unit))
+
+
+def test_bending_shows_at_the_top_and_torsion_off_the_axis(model: ModelCauses) -> None:
+    named = dict(zip(model.labels, model.seen_best, strict=True))
+    assert "tower" in named["fore_aft_1"] and named["fore_aft_1"][-1] != named["side_side_1"][-1]
+    node = named["torsion_1"].split(" at ")[1].split(" along ")[0]
+    x, y, z = read_structure("jacket15").nodes[node]
+    assert np.hypot(x, y) > 1.0 and z > 72.0  # above the sea
+
+
+def test_labels_that_no_mode_has_are_refused() -> None:
+    with pytest.raises(InputError, match="no mode of the model"):
+        model_causes(read_structure("jacket15"), ("f1",), np.array([0.2]), np.array([0.01]))
+
+
+def test_a_lost_brace_turns_a_pair_and_a_clock_does_not(model: ModelCauses) -> None:
+    at = [2 * MODES + model.labels.index(n) for n in ("fore_aft_1", "side_side_1")]
+    assert not direction(model, "sensor: clock")[at].any()
+    lost = [c.draws.mean(axis=0)[at] for c in model.causes if " lost" in c.name]
+    assert all(one[0] == one[1] for one in lost)  # a pair has one direction
+    assert max(abs(one[0]) for one in lost) > 0.05
+
+
+def test_a_yaw_misread_turns_every_pair_either_way(model: ModelCauses) -> None:
+    (yaw,) = [c for c in model.causes if c.name == "sensor: yaw misread"]
+    one, other = (draw[2 * MODES + model.labels.index("fore_aft_1")] for draw in yaw.draws)
+    assert one == -other
+    assert np.sin(0.05 * one) ** 2 == pytest.approx(0.05)  # at the median size, sin² of the angle
+
+
+def test_a_pair_turns_towards_the_softer_feet() -> None:
+    """Of a square jacket whose lower mode moves along y: towards either diagonal, by as much."""
+    structure = read_structure("jacket15")
+    assembly = assemble(structure, gravity=True)
+    even = Standing(structure, *(np.full(len(structure.reaction_nodes), 2.5e9) for _ in "hv"))
+    base = Modes.of(even, assembly)
+    i, j = base.labels.index("fore_aft_1"), base.labels.index("side_side_1")
+    assert np.degrees(abs(base.direction[j])) == pytest.approx(90.0, abs=1.0)
+    across = np.array([np.prod(np.sign(structure.nodes[n][:2])) for n in structure.reaction_nodes])
+    turns = []
+    for diagonal in (1.0, -1.0):  # the feet at ±(x, y), or at ±(x, −y)
+        softer = np.where(across == diagonal, 0.5, 1.0)
+        after = Modes.of(replace(even, vertical=even.vertical * softer), assembly, like=base)
+        one, other = turned(base, after)[[i, j]]
+        assert one == other  # a pair has one direction
+        turns.append(one)
+    assert turns[0] < -0.1  # from y towards x is negative
+    assert turns[1] == pytest.approx(-turns[0], rel=0.02)

@@ -1,0 +1,209 @@
+"""A SACS deck in fixed columns: joints in feet and inches, groups with segments, what is not read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from jackettwin.cli import main
+from jackettwin.decks import read_structure
+from jackettwin.decks.sacs import sacs_remarks
+from jackettwin.errors import InputError
+from jackettwin.structure import assemble, check
+
+
+def joint(name: str, x: float, y: float, z: float, dy: float, held: str = "") -> str:
+    return f"JOINT {name:>4} {x:7.2f}{y:7.2f}{z:7.2f}{0.0:7.3f}{dy:7.3f}{0.0:7.3f} {held}"
+
+
+def load(name: str, fz: float) -> str:
+    return f"LOAD   {name:>4}     {0.0:7.1f}{0.0:7.1f}{fz:7.1f}".ljust(60) + "GLOB JOIN   DEAD"
+
+
+DECK = f"""\
+OPTIONS      EN  SDUC   2 1
+SECT BR1       TUB                               16.0000.625
+SECT WF1       WF                                24.0000.500
+GRUP
+GRUP LG1         42.000 1.375 29.0011.6050.00 1    1.001.00     0.500N490.005.00
+GRUP LG1         41.250 1.000 29.0011.6036.00 1    1.001.00     0.500N490.00
+GRUP BR1 BR1                  29.0011.6036.00 1    1.001.00     0.500N490.00
+GRUP W01 WF1                  29.0011.6036.00 1    1.001.00     0.500N490.00
+MEMBER
+MEMBER  101 201 LG1
+MEMBER  101 301 BR1
+MEMBER  301 201 BR1
+MEMBER  201 301 W01
+MEMBER OFFSETS    1.0
+JOINT
+{joint("101", -24, -50, -261, -3, "PILEHD")}
+{joint("201", -24, -50, -200, -3)}
+{joint("301", 24, -50, -261, -3, "111000")}
+PGRUP P01 0.3500I29.000 0.25036.000
+{load("201", -100.0)}
+END
+"""
+
+
+@pytest.fixture
+def deck(tmp_path: Path) -> Path:
+    path = tmp_path / "sacinp.jacket"
+    path.write_text(DECK)
+    return path
+
+
+def test_joints_are_feet_and_inches(deck: Path) -> None:
+    x, y, z = read_structure(deck).nodes["101"]
+    assert (x, z) == pytest.approx((-24 * 0.3048, -261 * 0.3048))
+    assert y == pytest.approx(-50 * 0.3048 - 3 * 0.0254)
+
+
+def test_a_group_of_two_lines_cuts_its_members(deck: Path) -> None:
+    structure = read_structure(deck)
+    legs = [m for m in structure.members if m.part == "LG1"]
+    assert [m.section_start.outer_diameter_m for m in legs] == pytest.approx([42 * 0.0254, 41.25 * 0.0254])
+    ends = [np.array(structure.nodes[n]) for n in (legs[0].start, legs[0].end)]
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(5 * 0.3048)
+
+
+def test_mass_is_that_of_the_cards(deck: Path) -> None:
+    """π(D−t)tρL by hand, and 100 kips on a joint."""
+    rho, inch, foot = 490 * 16.01846337, 0.0254, 0.3048
+
+    def tube(D: float, t: float, length: float) -> float:
+        return float(np.pi * (D - t) * t * inch**2 * rho * length)
+
+    legs = tube(42.0, 1.375, 5 * foot) + tube(41.25, 1.0, 56 * foot)
+    brace = tube(16.0, 0.625, 48 * foot) + tube(16.0, 0.625, float(np.hypot(48, 61)) * foot)
+    weight = 100 * 4448.2216152605 / 9.80665
+    assert check(assemble(read_structure(deck))).mass_kg == pytest.approx(legs + brace + weight, rel=1e-6)
+
+
+METRIC = """\
+LDOPT       NF+Z1.0280007.849000 -42.500  42.500GLOBMN          CMB
+  A tripod under a cone, in the columns and with the exponents of public decks of wind turbines' jackets
+OPTIONS      MN       SDUC   1 1   DC  A
+SECT
+SECT CONE1     CON4985.71.9605+89.8000+79.8000+7 400.604.000409.20
+SECT TUBE1     TUB1.64+46.1579+83.0789+83.0789+8 400.6013.50
+SECT TUBE2     TUB                               600.002.000
+GRUP
+GRUP 002 CONE1                21.008.10024.82 1    1.001.00     0.500N7.8490
+GRUP 052 TUBE1                20.007.69024.82 1    1.001.00     0.500N1.00-3
+GRUP L07BTUBE1                21.008.10034.50 1    1.001.00     0.500 7.8490
+GRUP L07ETUBE2                21.008.10034.50 1    1.001.00     0.500 7.8490
+GRUP LG2         200.0015.000 20.007.72224.80 1    1.001.00     0.500 7.8490
+MEMBER
+MEMBER 2   1    002
+MEMBER 601L1    052                180.00
+MEMBER1001P601L LG2
+MEMBER OFFSETS                     56.401            -56.40
+MEMBER 002P601L LG2     111
+MEMBER 003P601L L07
+JOINT
+JOINT 2         0.    -1.    93.       -41.433 20.000 222000
+JOINT 1         0.    -1.    90.       -41.433 50.000
+JOINT 601L     -6.    -4.    12.       1.091-4 20.000
+JOINT 001P    -11.    -8.   -42.-50.000-13.200-50.000 PILEHD
+JOINT 002P     11.    -8.   -42. 50.000-13.200-50.000 PILEHD
+JOINT 003P      0.     8.   -42.        13.200-50.000 111222
+CURR
+CURR      42.500   0.116
+WGTJT ANOD  1     12.0
+LOAD
+LOADCNNACL
+LOAD   1                      -8100.0                       GLOB JOIN   NACELLE
+LOADCNN090
+LOAD   1              52.4    -8100.0                       GLOB JOIN   AGAIN
+LOADCNCRAN
+LOAD   1                       -100.0                       GLOB JOIN   CRANE
+LCOMB C000 NACL1.0000CRAN1.0000
+END
+ **LEG1**    2     6.000    -4.243    12.200    11.500    -8.132   -33.500
+"""
+
+
+@pytest.fixture
+def metric(tmp_path: Path) -> Path:
+    path = tmp_path / "JACKET.sacs"
+    path.write_text(METRIC)
+    return path
+
+
+def test_a_metric_deck_reads_as_public_ones_are_written(metric: Path) -> None:
+    """The columns and the exponents without letter are those of sacs2abaqus (MIT) and of two public decks."""
+    structure = read_structure(metric)
+    assert structure.nodes["1"] == pytest.approx((0.0, -1.41433, 90.5))
+    assert structure.nodes["601L"] == pytest.approx((-6.0, -4.0 + 1.091e-6, 12.2))
+    by = {m.part: m for m in structure.members}
+    cone = by["002"]
+    assert (cone.section_start.outer_diameter_m, cone.section_end.outer_diameter_m) == (4.006, 4.092)
+    assert cone.material.youngs_modulus_pa == pytest.approx(2.1e11)
+    assert by["052"].material.density_kg_m3 == pytest.approx(1.0)
+    assert by["LG2"].section_start.thickness_m == pytest.approx(0.15)  # fills all six columns
+    ends = (by["L07"].section_start.outer_diameter_m, by["L07"].section_end.outer_diameter_m)
+    assert ends == pytest.approx((4.006, 6.0))  # cards B and E are one cone, not two segments
+    assert [m.name for m in structure.members if m.part == "L07"] == ["003P-601L"]
+
+
+def test_joints_kept_in_a_dynamic_analysis_are_not_held(metric: Path) -> None:
+    held = {r.node: r.fixed[:3] for r in read_structure(metric).reactions}
+    assert held == {"001P": (True,) * 3, "002P": (True,) * 3, "003P": (True,) * 3}
+
+
+def test_a_member_s_ends_lie_beside_its_joints_and_move_with_them(metric: Path) -> None:
+    """56.401 cm in x at one end, −56.40 at the other, in columns 36 to 41 and 54 to 59; rigid between."""
+    structure = read_structure(metric)
+    leg = next(m for m in structure.members if m.name == "001P-601L")
+    links = {link.follower: link.leader for link in structure.rigid_links}
+    assert links == {leg.start: "001P", leg.end: "601L"}
+    for end, joint, shift in ((leg.start, "001P", 0.56401), (leg.end, "601L", -0.5640)):
+        moved = np.subtract(structure.nodes[end], structure.nodes[joint])
+        np.testing.assert_allclose(moved, [shift, 0.0, 0.0], atol=1e-12)
+    assert next(m for m in structure.members if m.name == "002P-601L").end == "601L"
+    in_own_axes = METRIC.replace("MEMBER1001P601L", "MEMBER2001P601L")
+    metric.write_text(in_own_axes)
+    assert read_structure(metric).rigid_links == ()
+    assert any("axes of the member" in remark for remark in sacs_remarks(metric))
+
+
+def test_a_weight_repeated_for_every_direction_counts_once(metric: Path) -> None:
+    (mass,) = read_structure(metric).masses
+    assert mass.mass_kg == pytest.approx(8200e3 / 9.80665)
+    assert any("NACL, N090, CRAN are taken as 836.2 t" in remark for remark in sacs_remarks(metric))
+
+
+def test_every_reader_of_a_deck_hears_what_is_not_read(
+    metric: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level("WARNING"):
+        read_structure(metric)
+    said = " ".join(caplog.messages)
+    assert all(word in said for word in ("releases", "current", "WGTJT cards, weights, are not read"))
+    result = CliRunner().invoke(main, ["modes", str(metric), "--json"])
+    assert result.exit_code == 0
+    assert result.stderr.count("members' end releases are not read") == 1
+    assert "releases" not in result.stdout
+
+
+def test_what_holds_a_joint_is_read(deck: Path) -> None:
+    held = {r.node: r.fixed for r in read_structure(deck).reactions}
+    assert held == {"101": (True,) * 3 + (False,) * 3, "301": (True,) * 3 + (False,) * 3}
+
+
+def test_what_is_not_understood_is_listed(deck: Path) -> None:
+    said = " ".join(sacs_remarks(deck))
+    for word in ("WF1", "PGRUP", "offsets", "W01"):
+        assert word in said
+
+
+def test_a_card_out_of_its_columns_names_line_and_columns(deck: Path) -> None:
+    deck.write_text(DECK.replace("LG1         42.000 1.375", "LG1         4x.000 1.375"))
+    with pytest.raises(InputError, match="columns 18 to 23"):
+        read_structure(deck)
+    deck.write_text(DECK.replace("MEMBER  101 201 LG1", "MEMBER  101 999 LG1"))
+    with pytest.raises(InputError, match="no joint"):
+        read_structure(deck)

@@ -1,0 +1,75 @@
+"""Records to measured modes: one that fails is listed, the others count."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from jackettwin.errors import InputError
+from jackettwin.records import Record
+from jackettwin.study.measure import Measured, measure
+from jackettwin.study.narrative import cautions
+from jackettwin.twin import TwinModel, read_twin
+from jackettwin.twin.config import TwinConfig
+from jackettwin.twin.model import twin_model
+
+module = import_module("jackettwin.twin.observe_files")
+
+
+def measured(config: TwinConfig) -> Measured:
+    return measure(config, twin_model(config))
+
+
+@pytest.fixture
+def config() -> TwinConfig:
+    twin = read_twin("openfast_pile")
+    return replace(twin, records=twin.records[:2])
+
+
+def test_a_record_that_fails_is_left_out_and_said_to_be(config: TwinConfig, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"not a parquet file")
+    found = measured(replace(config, records=(broken, config.records[0])))
+    assert [seen.name for seen in found.observations] == [config.records[0].stem]
+    assert found.observations[0].modes
+    assert "broken.parquet" in found.failed[0].problem
+    assert cautions(config, found, (), ())[0].startswith("left out: ")
+
+
+def test_a_fault_of_ours_costs_one_record(config: TwinConfig, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = module.observe
+
+    def faulty(record: Record, model: TwinModel):
+        if record.name == config.records[1].stem:
+            raise ValueError("shapes disagree")
+        return whole(record, model)
+
+    monkeypatch.setattr(module, "observe", faulty)
+    found = measured(config)
+    assert len(found.observations) == 1
+    assert "ValueError: shapes disagree" in found.failed[0].problem
+
+
+def test_without_any_record_the_first_reason_is_raised(config: TwinConfig, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.parquet"
+    broken.write_bytes(b"not a parquet file")
+    with pytest.raises(InputError, match="not readable"):
+        measured(replace(config, records=(broken,)))
+    # a name that is wrong is no record
+    with pytest.raises(InputError, match="no such file"):
+        measured(replace(config, records=(config.records[0], tmp_path / "missing.parquet")))
+
+
+def test_a_renamed_copy_counts_once_and_is_named(config: TwinConfig, tmp_path: Path) -> None:
+    first = config.records[0]
+    for ending in (".parquet", ".json"):
+        shutil.copy(first.with_suffix(ending), tmp_path / f"copy{ending}")
+    once = measured(replace(config, records=(first,)))
+    twice = measured(replace(config, records=(first, tmp_path / "copy.parquet")))
+    assert twice.state == once.state
+    assert [seen.name for seen in twice.observations] == [first.stem]
+    assert [(f.code, f.subject) for f in twice.findings] == [("record_doubled", "copy")]
