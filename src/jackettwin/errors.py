@@ -114,7 +114,7 @@ def require(
     allowed: str | None = None,
     remedy: str | None = None,
 ) -> None:
-    """Refuse an input unless what is required of it holds; the other arguments are those of :class:`InputError`.
+    """Refuse an input unless what is required of it holds; see :class:`InputError` for the other arguments.
 
     Raises
     ------
