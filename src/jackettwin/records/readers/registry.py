@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 
 from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
+from jackettwin.plugins import plugins_of_type
 from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description, description_text, read_description
@@ -64,8 +64,7 @@ PLUGINS = "jackettwin.readers"
 @cache
 def formats() -> tuple[Format, ...]:
     """Return every format: ours, then those that installed packages bring."""
-    brought = (point.load() for point in entry_points(group=PLUGINS))
-    return (*FORMATS, *(form for form in brought if isinstance(form, Format)))
+    return (*FORMATS, *plugins_of_type(PLUGINS, Format).values())
 
 
 def read_record(path: Path | str, unsaid: Unsaid | None = None) -> Record:
