@@ -46,7 +46,7 @@ def test_the_names_of_a_package(package: str) -> None:
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'jackt'"):
+    with pytest.raises(AttributeError, match="No jackettwin attribute jackt"):
         _ = jackettwin.jackt
 
 

@@ -169,14 +169,9 @@ def require_between(field: str, value: float, low: float, high: float, unit: str
     InputError
         Names field, value, range and unit.
     """
-    if not low <= value <= high:
-        raise InputError(
-            "out of range",
-            field=field,
-            value=value,
-            allowed=f"{low:g} to {high:g} {unit}".rstrip(),
-            remedy="check the number and its unit",
-        )
+    allowed = f"{low:g} to {high:g} {unit}".rstrip()
+    remedy = "check the number and its unit"
+    require(low <= value <= high, "out of range", field=field, value=value, allowed=allowed, remedy=remedy)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:

@@ -21,11 +21,11 @@ from jackettwin.change.table_watch import begun, explained_alarm, structure_caus
 from jackettwin.change.watch_document import alarm_document
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
+from jackettwin.twin import TwinModel, TwinState
 from jackettwin.twin.codec import StoredSchema, digest
 from jackettwin.twin.config import WatchSettings
 from jackettwin.twin.exact_sums import UNIT, ModeSums
-from jackettwin.twin.model import TwinModel
-from jackettwin.twin.state import UNDATED, Day, Operation, TwinState
+from jackettwin.twin.state import UNDATED, Day, Operation
 from jackettwin.watching import History, Watch, step
 from jackettwin.watching.watch import FEWEST_DAYS
 

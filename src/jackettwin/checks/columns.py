@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.structure.model import Structure
+from jackettwin.structure import Structure
 
 _STRAIGHT = 0.9998
 """Cosine of the angle (about 1°) up to which two members in a row are one column."""

@@ -173,8 +173,8 @@ class _Messages(logging.Handler):
 
 def _hear() -> None:
     """Print what the computing part logs; a server says for itself where its log goes."""
-    for package in ("jackettwin.response", "jackettwin.structure", "jackettwin.twin"):
-        log = logging.getLogger(package)
+    for package in ("decks", "response", "structure", "study", "twin"):
+        log = logging.getLogger(f"jackettwin.{package}")
         log.handlers = [handler for handler in log.handlers if not isinstance(handler, _Messages)]
         log.addHandler(_Messages())
         log.setLevel(logging.INFO)

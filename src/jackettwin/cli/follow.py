@@ -12,8 +12,9 @@ from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report.pages.follow import build_follow_page
-from jackettwin.soil.laws.families import family
-from jackettwin.study.follow import Each, follow
+from jackettwin.soil import family
+from jackettwin.study import follow
+from jackettwin.study.follow import Each
 from jackettwin.study.follow_document import follow_document, read_followed
 from jackettwin.study.follow_result import Followed
 from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_days, write_modes_in_time

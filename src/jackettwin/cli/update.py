@@ -8,7 +8,7 @@ from rich.table import Table
 
 from jackettwin.cli.cache import keeping
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.soil.laws.families import family
+from jackettwin.soil import family
 from jackettwin.study import DampingExcess, TwinResult, count_steps, run_twin, update_document
 from jackettwin.study.result import MeasuredMode
 from jackettwin.twin import read_twin

@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.errors import InputError, located
-from jackettwin.structure.model import Material, Member, PointMass, Reaction, RigidLink, Section, Structure
+from jackettwin.structure import Material, Section, Structure
+from jackettwin.structure.model import Member, PointMass, Reaction, RigidLink
 
 log = logging.getLogger(__name__)
 _G = 9.80665

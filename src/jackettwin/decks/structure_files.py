@@ -15,21 +15,11 @@ from jackettwin.decks.subdyn import read_subdyn
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.plausible import refuse_tiny
+from jackettwin.structure import Material, Section, Structure, jacket
 from jackettwin.structure.appurtenances import hung_on_legs
-from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece, jacket
+from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece
 from jackettwin.structure.masses import body_from_static_moments
-from jackettwin.structure.model import (
-    STEEL,
-    Inertia,
-    Material,
-    Member,
-    PointMass,
-    Reaction,
-    RigidLink,
-    Section,
-    Structure,
-    Vector,
-)
+from jackettwin.structure.model import STEEL, Inertia, Member, PointMass, Reaction, RigidLink, Vector
 from jackettwin.structure.rotor_modes import FlexibleRotor, with_rotor, without_rotor
 
 Positive = Annotated[float, Field(gt=0.0)]

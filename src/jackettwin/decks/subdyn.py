@@ -14,7 +14,8 @@ from jackettwin.decks.openfast_tables import Deck, SubdynRow, flag, number, read
 from jackettwin.decks.subdyn_members import read_parts
 from jackettwin.errors import InputError, located
 from jackettwin.files.yaml import read_text
-from jackettwin.structure.model import PointMass, Reaction, Structure
+from jackettwin.structure import Structure
+from jackettwin.structure.model import PointMass, Reaction
 
 _DOFS = ("x", "y", "z", "tx", "ty", "tz")
 _FLAGS = ("tdxss", "tdyss", "tdzss", "rdxss", "rdyss", "rdzss")

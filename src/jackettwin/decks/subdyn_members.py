@@ -15,7 +15,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
 from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
 from jackettwin.errors import InputError, located
-from jackettwin.structure.model import Material, Member, RigidLink, Section, Vector
+from jackettwin.structure import Material, Section
+from jackettwin.structure.model import Member, RigidLink, Vector
 from jackettwin.structure.rectangles import rectangular_section
 from jackettwin.structure.two_node import (
     BeamSection,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, located, require_between
+from jackettwin.errors import InputError, did_you_mean, located, look_up, require_between
 from jackettwin.structure.two_node import TwoNodeElement
 
 if TYPE_CHECKING:
@@ -303,9 +303,7 @@ class Structure:
         InputError
             If no member belongs to the part.
         """
-        known = sorted({member.part for member in self.members})
-        if part not in known:
-            raise InputError("no such part", field="part", value=part, allowed=", ".join(known))
+        look_up({member.part: member for member in self.members}, part, "part", field="part")
 
         def scaled(member: Member) -> Member:
             if member.part != part:

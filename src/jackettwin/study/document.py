@@ -14,8 +14,7 @@ from jackettwin.intervals import interval_90
 from jackettwin.study.mode_matches import held_document
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.study.truth import truth_document
-from jackettwin.twin.examine import Examination
-from jackettwin.twin.observation import Observation
+from jackettwin.twin import Examination, Observation
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
 from jackettwin.updating.posterior.scatter import leg_scatter

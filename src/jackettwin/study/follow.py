@@ -23,14 +23,11 @@ from jackettwin.study.follow_result import FEWEST_DAYS, STIFFNESS, Followed, Kno
 from jackettwin.study.problem import UpdateEvidence, law_model, model_problem, tied_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.rotor import RotorDamping, States, mean_wind, operating_states, rotor_damping
-from jackettwin.twin.advance import advance
+from jackettwin.twin import Observation, TwinConfig, TwinModel, TwinState, advance, empty_state, twin_model
 from jackettwin.twin.cache import NOT_KEPT, Keep
 from jackettwin.twin.codec import digest
-from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.model import TwinModel, twin_model
-from jackettwin.twin.observation import Observation
 from jackettwin.twin.observe_files import observe_files, sorted_out, undated
-from jackettwin.twin.state import ALL, UNDATED, ConditionSums, TwinState, empty_state
+from jackettwin.twin.state import ALL, UNDATED, ConditionSums
 from jackettwin.updating import Problem, SupportModel
 from jackettwin.updating.drift import Drift, find_drift
 from jackettwin.updating.joint import Growth

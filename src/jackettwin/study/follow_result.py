@@ -10,8 +10,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.soil.laws.families import parameter_words
+from jackettwin.twin import TwinState
 from jackettwin.twin.codec import StoredSchema
-from jackettwin.twin.state import TwinState
 from jackettwin.updating.drift import Drift
 
 FEWEST_DAYS = 3

@@ -10,16 +10,19 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records import read_record
 from jackettwin.response import Sensor
-from jackettwin.twin.advance import advance_all
+from jackettwin.twin import (
+    Examination,
+    Observation,
+    TwinConfig,
+    TwinModel,
+    TwinState,
+    advance_all,
+    empty_state,
+)
 from jackettwin.twin.cache import NOT_KEPT, Keep
-from jackettwin.twin.config import TwinConfig
 from jackettwin.twin.exact_sums import ModeTotal, average
-from jackettwin.twin.examine import Examination
-from jackettwin.twin.model import TwinModel
-from jackettwin.twin.observation import Observation
 from jackettwin.twin.observe import examined, observed
 from jackettwin.twin.observe_files import Failed, Seen, observe_files, sorted_out
-from jackettwin.twin.state import TwinState, empty_state
 from jackettwin.updating import Target
 
 

@@ -12,13 +12,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from jackettwin.change.judge import Columns, Days, history_of
+from jackettwin.change import Days
+from jackettwin.change.judge import Columns, history_of
 from jackettwin.change.modal_table import QUANTITIES
 from jackettwin.files import atomic_path
-from jackettwin.twin.model import TwinModel
-from jackettwin.twin.observation import Observation
+from jackettwin.twin import Observation, TwinModel, TwinState
 from jackettwin.twin.pair_angles import pair_angles
-from jackettwin.twin.state import UNDATED, TwinState
+from jackettwin.twin.state import UNDATED
 
 MODES_IN_TIME = "modes_in_time.csv"
 """How commands call the file."""

@@ -9,7 +9,7 @@ from typing import Any
 from jackettwin.study.measure import Measured
 from jackettwin.study.mode_matches import unpaired_finding
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation
-from jackettwin.twin.config import TwinConfig
+from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 
 

@@ -14,9 +14,10 @@ from jackettwin.identification.subspace.real_poles import JOINED
 from jackettwin.response import Sensor
 from jackettwin.soil import family
 from jackettwin.study.result import MeasuredRelaxation
-from jackettwin.twin.config import GivenRelaxation, TwinConfig
+from jackettwin.twin import TwinConfig, TwinState
+from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.exact_sums import UNIT
-from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums, TwinState
+from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums
 from jackettwin.updating import SupportModel
 from jackettwin.updating.data.relaxations import RelaxationTarget
 

@@ -9,8 +9,7 @@ from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
-from jackettwin.twin.examine import Examination
-from jackettwin.twin.observation import Observation
+from jackettwin.twin import Examination, Observation
 from jackettwin.updating import Update
 from jackettwin.updating.data.pairing import Held
 

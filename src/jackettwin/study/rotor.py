@@ -15,8 +15,8 @@ from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
 from jackettwin.study.result import MeasuredMode
-from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.state import ALL, OperationTotal, TwinState
+from jackettwin.twin import TwinConfig, TwinState
+from jackettwin.twin.state import ALL, OperationTotal
 from jackettwin.updating import Residuals, Target
 from jackettwin.updating.nuisance_parameters import DASHPOTS
 

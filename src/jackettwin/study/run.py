@@ -19,10 +19,8 @@ from jackettwin.study.problem import UpdateEvidence, law_problem
 from jackettwin.study.relaxations import measured_relaxations, relaxing
 from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
+from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
 from jackettwin.twin.cache import NOT_KEPT, Keep
-from jackettwin.twin.config import TwinConfig
-from jackettwin.twin.model import TwinModel, twin_model
-from jackettwin.twin.state import TwinState
 from jackettwin.updating import Update
 from jackettwin.updating.law_choice import likely
 

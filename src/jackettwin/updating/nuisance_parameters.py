@@ -11,9 +11,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix
-from jackettwin.soil import Spring
+from jackettwin.soil import Parameter, Spring
 from jackettwin.soil.laws.coefficients import MASS, OMEGA0, C
-from jackettwin.soil.laws.parameter import Parameter
 from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.structure import Rayleigh
 

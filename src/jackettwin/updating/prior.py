@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil import Parameter
 
 
 class Prior(Protocol):

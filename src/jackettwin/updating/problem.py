@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.response.condensation.mode_numbers import NumberedModes
 from jackettwin.response.condensation.relaxation import Relaxation
-from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil import Parameter
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.data.targets import Residuals

@@ -11,7 +11,7 @@ from jackettwin.answers import Answers
 from jackettwin.arrays import FloatArray
 from jackettwin.report.pages.page import PageTable
 from jackettwin.report.tables.numbers import UNKNOWN, count, frequency, percent, scientific, words
-from jackettwin.soil.laws.parameter import Parameter
+from jackettwin.soil import Parameter
 from jackettwin.study import TwinResult
 from jackettwin.study.truth import StatedMode, TrueParameter
 from jackettwin.updating import Update

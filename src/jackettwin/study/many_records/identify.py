@@ -14,9 +14,8 @@ from pathlib import Path
 from jackettwin.findings import Finding
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records.readers.channels import Unsaid
+from jackettwin.twin import OBSERVATION, Observation, TwinModel
 from jackettwin.twin.cache import KeptInFolder
-from jackettwin.twin.model import TwinModel
-from jackettwin.twin.observation import OBSERVATION, Observation
 from jackettwin.twin.observe_files import Failed, failure, observe_files
 
 

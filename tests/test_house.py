@@ -1,0 +1,66 @@
+"""The house stays as wide, as deep and as one-way as docs/design/009-rooms.md says."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter, defaultdict
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src" / "jackettwin"
+MOST_MODULES = 23
+"""Modules side by side in a folder; ``cli`` has one for each command."""
+MOST_PAST_DOORS = 830
+"""Names that are imported from within another package instead of through its door."""
+PRIVATE_WORDS = set(
+    "held kept kept_fits together sums doubts followed watched begun desk chores room remembered rendered "
+    "confined likeness valley softer_feet believed".split()
+)
+"""Names of modules that said nothing to a newcomer."""
+
+
+def modules() -> list[Path]:
+    return [
+        path for path in SOURCE.rglob("*.py") if path.stem != "__init__" and "migrations" not in path.parts
+    ]
+
+
+def test_no_folder_is_wide() -> None:
+    folders = Counter(path.parent.relative_to(SOURCE).as_posix() for path in modules())
+    assert {name: n for name, n in folders.items() if n > MOST_MODULES and name != "cli"} == {}
+
+
+def test_no_module_has_a_private_name() -> None:
+    assert [path for path in modules() if path.stem in PRIVATE_WORDS] == []
+
+
+def past_doors() -> list[str]:
+    """Return every name that one package imports from within another."""
+    found = []
+    for path in SOURCE.rglob("*.py"):
+        own = path.relative_to(SOURCE).parts[0].removesuffix(".py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("jackettwin."):
+                parts = str(node.module).split(".")
+                if len(parts) > 2 and parts[1] != own:
+                    found += [f"{path.stem}: {node.module}.{alias.name}" for alias in node.names]
+    return found
+
+
+def test_other_packages_are_entered_by_their_doors() -> None:
+    assert len(past_doors()) <= MOST_PAST_DOORS
+
+
+def test_no_public_class_has_the_name_of_another() -> None:
+    homes = defaultdict(list)
+    for path in modules():
+        for node in ast.parse(path.read_text("utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes[node.name].append(path.relative_to(SOURCE).as_posix())
+    assert {name: places for name, places in homes.items() if len(places) > 1} == {}
+
+
+@pytest.mark.parametrize("name", ["jackettwin.doors", "jackettwin.twin.follow"])
+def test_what_moved_left_nothing_behind(name: str) -> None:
+    assert not (SOURCE.parent / (name.replace(".", "/") + ".py")).exists()
