@@ -21,11 +21,10 @@ from jackettwin.report.figures import identification as figures_identification, 
 from jackettwin.report.pages.page import PageSection, Plot
 from jackettwin.report.tables.numbers import frequency, scientific, words
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.modes.modal import UndampedModes, undamped_modes
+from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.motion.time import free_decay
 from jackettwin.response.sensors import Sensor, observation_matrix
-from jackettwin.response.system import build_system
-from jackettwin.soil import family, on_translations
+from jackettwin.soil import family
 from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import SupportModel, numbered_modes, single, support_model
@@ -36,10 +35,8 @@ RECORD = "pile_U12_s301"
 """The shipped record behind the figures of identification: OpenFAST, 12 m/s."""
 STEPS = 5
 """How often ``thesis_figures`` announces what it does."""
-_KV_1 = (2.5e9, 7.6e8)
-_KV_2 = (1.1e8, supports.NEARLY_LOCKED)
-_ZENER_1, _ZENER_2 = (4.4e9, 3.76e9, 6.14e12), (2.62e9, 8.65e8, 9.99e9)
-"""Parameters of Tables 8.1, 8.3, 8.4 and 8.7."""
+_KV_1, _KV_2 = supports.KELVIN_VOIGT
+_ZENER_1, _ZENER_2 = supports.ZENER
 
 
 @dataclass(frozen=True)
@@ -276,17 +273,12 @@ def _figure_8_1(jacket: _Jacket) -> Plot:
     k0, k1 = supports.FIGURE_8_1_K0, supports.FIGURE_8_1_K1
     c = np.geomspace(1e4, 1e14, 121)
     f1 = [abs(model.predict(np.array([k0, value, k1]), (1,)).poles[0]) / (2.0 * np.pi) for value in c]
-    limits = tuple(_elastic_f1(jacket.assembly, k) for k in (k0, k0 + k1))
+    limits = tuple(supports.elastic_f1(jacket.assembly, k) for k in (k0, k0 + k1))
     figure = figures_landscape.frequency_against_parameter(
         c, np.array(f1), (limits[0], limits[1]), parameter="c", unit="N·s/m"
     )
     caption = f"Figure 8.1: f₁ of the Zener model against c; k₀ {scientific(k0)}, k₁ {scientific(k1)} N/m."
     return Plot("figure_8_1", caption, figure)
-
-
-def _elastic_f1(assembly: Assembly, k: float) -> float:
-    support = on_translations(assembly.structure, Prony(k0=k))
-    return float(undamped_modes(build_system(assembly, support), 1).frequency_hz[0])
 
 
 def _surfaces(model: SupportModel) -> list[Plot]:

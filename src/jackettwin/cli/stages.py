@@ -10,13 +10,13 @@ from rich.table import Table
 from jackettwin.cli.console import number as show, output, print_json
 from jackettwin.decks import read_structure
 from jackettwin.updating.steel.stages import Stage, stages
-from jackettwin.verify.jacket import T5_2, T5_2_ROSAP, T5_4, T5_4_ROSAP
+from jackettwin.verify import published
 
 Reference = dict[str, tuple[float, ...]]
 
-_PUBLISHED: dict[str, Reference] = {
-    "thesis": {"jacket": T5_2, "tower": T5_4},
-    "rosap": {"jacket": T5_2_ROSAP, "tower": T5_4_ROSAP},
+_PUBLISHED = {
+    "thesis": {"jacket": "T5.2", "tower": "T5.4"},
+    "rosap": {"jacket": "T5.2-ROSAP", "tower": "T5.4-ROSAP"},
 }
 """Tables 5.2 and 5.4, Python and ROSAP rows, by the part added last; table 5.3 repeats table 5.2."""
 
@@ -32,8 +32,11 @@ def stages_command(structure: str, against: str | None, number: int, gravity: bo
     own = stages(read_structure(structure), number, gravity=gravity)
     reference: Reference = {}
     if against is not None:
-        reference = _PUBLISHED.get(against) or _paired(
-            own, stages(read_structure(against), number, gravity=gravity)
+        tables = _PUBLISHED.get(against)
+        reference = (
+            {part: published(key) for part, key in tables.items()}
+            if tables
+            else _paired(own, stages(read_structure(against), number, gravity=gravity))
         )
     alone = [s.name for s in own if against is not None and s.parts[-1] not in reference]
     document = {

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from jackettwin.verify import cantilever, jacket, supports, viscoelasticity
-from jackettwin.verify.rows import Row
+from jackettwin.verify import chapters, supports
+from jackettwin.verify.rows import Computed, Row, published, rows_of
 
-__all__ = ["Row", "published_rows"]
+__all__ = ["STEPS", "Row", "published", "published_rows"]
 
-STEPS = 6
+_CHAPTERS: dict[str, Callable[[], Computed]] = {
+    "chapter 3: cantilever": chapters.cantilever,
+    "chapter 4: viscoelasticity": chapters.viscoelasticity,
+    "chapter 5: jacket": chapters.jacket,
+    "chapter 8: the thesis's own parameters": supports.own_parameters,
+    "chapter 8: fit kelvin-voigt to Table 6.1": partial(supports.fit, "kelvin-voigt"),
+    "chapter 8: fit zener to Table 6.1": partial(supports.fit, "zener"),
+}
+STEPS = len(_CHAPTERS)
 """How often ``published_rows`` announces what it does."""
 
 
 def published_rows(step: Callable[[str], None] = lambda _: None) -> tuple[Row, ...]:
     """Return every published number beside ours, in the order of the thesis."""
-    step("chapter 3: cantilever")
-    rows = cantilever.rows()
-    step("chapter 4: viscoelasticity")
-    rows += viscoelasticity.rows()
-    step("chapter 5: jacket")
-    rows += jacket.rows()
-    return (*rows, *supports.rows(step))
+    computed: Computed = {}
+    for chapter, recompute in _CHAPTERS.items():
+        step(chapter)
+        computed |= recompute()
+    return rows_of(computed)

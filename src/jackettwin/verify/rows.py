@@ -1,9 +1,14 @@
-"""A published number beside ours."""
+"""A published number beside ours, and the table of those that were published."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import csv
+from dataclasses import asdict, dataclass
+from importlib.resources import files
 from typing import Any, Literal
+
+Computed = dict[str, float | tuple[float, float]]
+"""Our number by the row's id; the reference and ours, where the reference is computed as well."""
 
 
 @dataclass(frozen=True)
@@ -51,20 +56,32 @@ class Row:
 
     def document(self) -> dict[str, Any]:
         """Return the row as JSON data."""
-        return {
-            "id": self.id,
-            "source": self.source,
-            "quantity": self.quantity,
-            "published": self.published,
-            "computed": self.computed,
-            "relative_error": self.relative_error,
-            "tolerance": self.tolerance,
-            "ok": self.ok,
-            "kind": self.kind,
-            "note": self.note,
-        }
+        return {**asdict(self), "relative_error": self.relative_error, "ok": self.ok}
 
 
-def rounded(value: float, digits: int) -> float:
-    """Return the largest relative error that printing ``value`` with ``digits`` decimals can make."""
-    return 0.5 * 10.0**-digits / abs(value) * 1.001
+def rows_of(computed: Computed) -> tuple[Row, ...]:
+    """Return the rows of ``published.csv`` beside what was computed for them."""
+    return tuple(_row(entry, computed[entry["id"]]) for entry in _entries())
+
+
+def published(key: str) -> tuple[float, ...]:
+    """Return the published frequencies [Hz] of the modes of a table: ``T5.2``, ``T5.4-ROSAP``."""
+    return tuple(float(e["published"]) for e in _entries() if e["id"].startswith(f"{key}-f"))
+
+
+def _entries() -> list[dict[str, Any]]:
+    text = (files("jackettwin.verify") / "published.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
+
+
+def _row(entry: dict[str, Any], computed: float | tuple[float, float]) -> Row:
+    text, tolerance = entry.pop("published"), entry.pop("tolerance")
+    reference, ours = computed if isinstance(computed, tuple) else (float(text), computed)
+    allowed = _rounding(text) if tolerance == "printed" else float(tolerance) if tolerance else None
+    return Row(**entry, published=reference, computed=ours, tolerance=allowed)
+
+
+def _rounding(text: str) -> float:
+    """Return the largest relative error that printing a number with these decimals can make."""
+    decimals = len(text.partition(".")[2])
+    return 0.5 * 10.0**-decimals / abs(float(text)) * 1.001
