@@ -14,7 +14,7 @@ from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_c
 from jackettwin.structure import Section
 
 PILE = Pile(30.0, Section(2.0, 0.05), spacing_m=2.0)
-GROUND = SoilProfile((Layer(10.0, 8e3, Clay(60e3, 80e3, 0.01)), Layer(40.0, 10e3, Sand(35.0))))
+GROUND = SoilProfile((Layer(10.0, 8e3, clay=Clay((60e3, 80e3), 0.01)), Layer(40.0, 10e3, Sand(35.0))))
 
 
 @pytest.fixture(scope="module")

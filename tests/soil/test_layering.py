@@ -5,9 +5,8 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.soil.ground.layering import equivalent_depths
-from jackettwin.soil.ground.profile import Clay, Layer, Point, Sand, SoilProfile
+from jackettwin.soil.ground.profile import Clay, Layer, Point, Sand, Scour, SoilProfile
 from jackettwin.soil.ground.py_curves import sand_coefficients
-from jackettwin.soil.ground.scour import Scour
 from jackettwin.soil.piles.piles import Pile
 from jackettwin.soil.piles.reaction_curves import CurveOptions, linearised, pile_curves
 from jackettwin.structure import Section
@@ -20,11 +19,15 @@ TRAPEZOIDS = 1e-3
 
 @pytest.mark.parametrize(
     "soil",
-    [Sand(35.0), Clay(40e3, 40e3), Clay(120e3, 120e3, 0.005, stiff=True)],
+    [
+        {"sand": Sand(35.0)},
+        {"clay": Clay((40e3, 40e3))},
+        {"clay": Clay((120e3, 120e3), 0.005, stiff=True)},
+    ],
     ids=["sand", "soft", "stiff"],
 )
-def test_a_cut_through_one_soil_changes_nothing(soil: Sand | Clay) -> None:
-    cut = (Layer(5.0, 9e3, soil), Layer(11.0, 9e3, soil), Layer(24.0, 9e3, soil))
+def test_a_cut_through_one_soil_changes_nothing(soil: dict[str, Sand | Clay]) -> None:
+    cut = tuple(Layer(height, 9e3, **soil) for height in (5.0, 11.0, 24.0))
     for scour in (0.0, 3.0):
         ground = SoilProfile(cut, Scour(general_m=scour))
         plain, layered = (pile_curves(PILE, ground, options).py for options in (CurveOptions(), GEORGIADIS))
@@ -58,7 +61,7 @@ def test_loose_sand_over_dense_in_closed_form() -> None:
 
 
 def test_soft_clay_holds_the_sand_below_it_less_than_its_weight_tells() -> None:
-    ground = SoilProfile((Layer(8.0, 6e3, Clay(5e3, 15e3, 0.02)), Layer(40.0, 10e3, Sand(38.0))))
+    ground = SoilProfile((Layer(8.0, 6e3, clay=Clay((5e3, 15e3), 0.02)), Layer(40.0, 10e3, Sand(38.0))))
     plain, layered = (pile_curves(PILE, ground, options) for options in (CurveOptions(), GEORGIADIS))
     sand = plain.at.layer == 1
     capacities = np.array([[c.capacity for c in curves.py] for curves in (plain, layered)])
@@ -69,11 +72,11 @@ def test_soft_clay_holds_the_sand_below_it_less_than_its_weight_tells() -> None:
 
 
 def test_what_has_no_equivalent_depth_is_refused() -> None:
-    ground = (Layer(5.0, 9e3, Sand(35.0)), Layer(40.0, 9e3, Clay(20e3, 20e3)))
+    ground = (Layer(5.0, 9e3, Sand(35.0)), Layer(40.0, 9e3, clay=Clay((20e3, 20e3))))
     with pytest.raises(InputError, match="local scour"):
         pile_curves(PILE, SoilProfile(ground, Scour(local_m=1.0)), GEORGIADIS)
     with pytest.raises(InputError, match="overburden, georgiadis"):
         pile_curves(PILE, SoilProfile(ground), CurveOptions(layering="api"))
-    nothing = (Layer(5.0, 9e3, Sand(35.0)), Layer(40.0, 1e-6, Clay(0.0, 0.0)))
+    nothing = (Layer(5.0, 9e3, Sand(35.0)), Layer(40.0, 0.0, clay=Clay((0.0, 0.0))))
     with pytest.raises(InputError, match="no equivalent depth"):
         pile_curves(PILE, SoilProfile(nothing), GEORGIADIS)

@@ -31,7 +31,7 @@ def test_axial_capacity_is_friction_times_length_and_the_tip() -> None:
     assert found.compression_n == pytest.approx(2e5 * L + 3e6)
     assert found.tension_n == found.shaft_n
     su, gamma = 60e3, 9e3
-    curves = pile_curves(STUBBY, SoilProfile((Layer(30.0, gamma, Clay(su, su)),)))
+    curves = pile_curves(STUBBY, SoilProfile((Layer(30.0, gamma, clay=Clay((su, su))),)))
     z = np.linspace(0.0, L, 4001)
     psi = su / np.maximum(gamma * z, 1.0)
     alpha = np.minimum(np.where(psi <= 1.0, 0.5 * psi**-0.5, 0.5 * psi**-0.25), 1.0)
@@ -60,7 +60,7 @@ def test_a_stiff_short_pile_turns_over_as_broms_says(arm: float) -> None:
 def test_a_far_load_and_a_deep_one_stop_at_the_limit_too(arm: float) -> None:
     """Small beside all that resists, or so deep that the head goes backwards: the load is found to 0.1 %."""
     pile = Pile(40.0, Section(D, 0.05))
-    curves = pile_curves(pile, SoilProfile((Layer(60.0, 9e3, Clay(1e5, 1e5)),)))
+    curves = pile_curves(pile, SoilProfile((Layer(60.0, 9e3, clay=Clay((1e5, 1e5))),)))
     found = pushover(pile, curves, arm_m=arm, steps=2)
     more = 1.001 * found.ultimate_n
     beyond = push(pile, curves, np.array([more, 0.0, 0.0, 0.0, arm * more, 0.0])).displacement[0, 0]

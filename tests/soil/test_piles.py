@@ -11,8 +11,7 @@ from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
-from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, Scour, SoilProfile
 from jackettwin.soil.laws.viscoelastic import Springpot
 from jackettwin.soil.piles.impedance import head_impedance, lumped_head
 from jackettwin.soil.piles.piles import Pile, dashpots, linear_springs, stations
@@ -136,7 +135,7 @@ def test_scour_is_a_shorter_pile_with_a_stick_up() -> None:
 
 
 def test_layers_meet_at_a_node_with_both_soils() -> None:
-    profile = SoilProfile((Layer(10.0, 8e3, Clay(20e3, 60e3)), Layer(50.0, 10e3, Sand(35.0))))
+    profile = SoilProfile((Layer(10.0, 8e3, clay=Clay((20e3, 60e3))), Layer(50.0, 10e3, Sand(35.0))))
     curves = pile_curves(PILE, profile)
     pair = np.flatnonzero(curves.at.depth == 10.0)
     assert [type(curves.py[i]).__name__ for i in pair] == ["TabulatedCurve", "Tanh"]
@@ -144,7 +143,7 @@ def test_layers_meet_at_a_node_with_both_soils() -> None:
 
 
 def test_a_pushed_pile_is_in_equilibrium_and_its_secant_springs_agree() -> None:
-    profile = SoilProfile((Layer(60.0, 8e3, Clay(20e3, 150e3)),))
+    profile = SoilProfile((Layer(60.0, 8e3, clay=Clay((20e3, 150e3))),))
     curves = pile_curves(PILE, profile)
     load = np.array([1.2e6, 0.5e6, -4e6, 0.0, 0.0, 0.0])
     pushed = push(PILE, curves, load)

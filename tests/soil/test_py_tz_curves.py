@@ -9,8 +9,7 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.soil.ground import py_curves, tz_curves
 from jackettwin.soil.ground.curves import CubeRoot, TabulatedCurve, Tanh, secant_stiffness, tangent_stiffness
-from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile, ground_at
-from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.ground.profile import Clay, Layer, Sand, Scour, SoilProfile, ground_at
 
 CASES = {
     case["id"]: case
@@ -175,9 +174,9 @@ def test_stiff_clay_without_free_water() -> None:
 def test_mean_strength_counts_the_clay_above_without_what_is_scoured() -> None:
     """5 m of 20 to 40 kPa, 5 m of sand, then 60 kPa growing to 100 kPa in 10 m and staying."""
     layers = (
-        Layer(5.0, 8e3, Clay(20e3, 40e3)),
+        Layer(5.0, 8e3, clay=Clay((20e3, 40e3))),
         Layer(5.0, 10e3, Sand(35.0)),
-        Layer(10.0, 9e3, Clay(60e3, 100e3, stiff=True)),
+        Layer(10.0, 9e3, clay=Clay((60e3, 100e3), stiff=True)),
     )
     point = ground_at(SoilProfile(layers), 15.0, 2, diameter=2.0)
     assert point is not None

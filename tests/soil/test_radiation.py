@@ -45,7 +45,7 @@ def test_dashpots_along_a_pile_add_up_to_its_length() -> None:
     """20 m of pile, D 2 m: 5 m near the surface and 15 m below; the node on the edge goes below."""
     pile = Pile(20.0, Section(2.0, 0.05), spacing_m=0.5)
     springs = linear_springs(pile, lateral=lambda z: 1e7 + 0.0 * z, axial=lambda z: 1e8 + 0.0 * z)
-    found = Radiation(1900.0, 200.0, 6.0, poisson_ratio=0.4).on(pile, springs)
+    found = Radiation(1900.0, 200.0, 3.0 / np.pi, poisson_ratio=0.4).on(pile, springs)
     deep, shallow = (lateral_radiation(**SOIL, poisson_ratio=0.4, shallow=s) for s in (False, True))
     assert found.lateral.sum() == pytest.approx(4.75 * shallow + 15.25 * deep)
     assert found.axial.sum() == pytest.approx(20.0 * axial_radiation(**SOIL))
@@ -54,7 +54,7 @@ def test_dashpots_along_a_pile_add_up_to_its_length() -> None:
 def test_scoured_ground_radiates_nothing() -> None:
     pile = Pile(20.0, Section(2.0, 0.05), spacing_m=0.5)
     springs = linear_springs(pile, lateral=lambda z: 1e7 * (z > 4.0), axial=lambda z: 1e8 * (z > 4.0))
-    found = Radiation(1900.0, 200.0, 6.0).on(pile, springs)
+    found = Radiation(1900.0, 200.0, 3.0 / np.pi).on(pile, springs)
     assert (found.lateral[found.node_depth < 3.9] == 0.0).all()
     assert (found.lateral[found.node_depth > 4.6] > 0.0).all()
 
@@ -63,7 +63,7 @@ def test_the_lumped_head_loses_what_the_exact_one_does() -> None:
     """Im K*/ω towards ω = 0 is TᵀCT by Rayleigh's principle."""
     pile = Pile(40.0, Section(2.0, 0.05))
     springs = linear_springs(pile, lateral=lambda z: 1e7 * z, axial=lambda z: 1e8 + 0.0 * z)
-    lost = Radiation(1900.0, 200.0, 6.0).on(pile, springs)
+    lost = Radiation(1900.0, 200.0, 3.0 / np.pi).on(pile, springs)
     K = head_impedance(pile, springs, 0.01j, dashpots=lost)[0]
     lumped = lumped_head(pile, springs, dashpots=lost).dashpots
     np.testing.assert_allclose(K.imag / 0.01, lumped, rtol=1e-5, atol=1e-6 * np.abs(lumped).max())

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar, get_args
+from dataclasses import fields, is_dataclass
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic_core import PydanticCustomError
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files.limits import in_words
@@ -20,9 +23,23 @@ class Schema(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, populate_by_name=True)
 
 
+def _refusing_in_place(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    try:
+        return handler(value)
+    except InputError as error:
+        raise PydanticCustomError(_REFUSED, "{error}", {"error": error}) from None
+
+
 S = TypeVar("S", bound=Schema)
+T = TypeVar("T")
+Placed = Annotated[T, WrapValidator(_refusing_in_place)]
+"""A frozen dataclass that a file gives as it is; what it refuses is reported at its place in the file."""
+_REFUSED = "refused"
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+"""What pydantic calls an unknown key of a model, and of a dataclass."""
 
 _BOUNDS = ("gt", "ge", "lt", "le")
+_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type", "dataclass_type")
 _PLAIN = {
     "string_type": ("not a text", "write a name; in quotes if it looks like a number"),
     **dict.fromkeys(("too_short", "string_too_short"), ("empty, or too few", "add what is missing")),
@@ -33,7 +50,7 @@ _PLAIN = {
     "finite_number": ("not a finite number", "give its value, or leave the key out"),
     **dict.fromkeys(("bool_parsing", "bool_type"), ("not a yes or no", "write true or false")),
     **dict.fromkeys(("list_type", "tuple_type"), ("not a list", "write [a, b, …]")),
-    **dict.fromkeys(("dict_type", "model_type", "model_attributes_type"), ("not a mapping", "write keys")),
+    **dict.fromkeys(_NO_MAPPING, ("not a mapping", "write keys")),
 }
 """What pydantic calls a mistake → what to say of it, and what to do."""
 _KINDS = ("str", "int", "float", "bool", "constrained-float", "constrained-int", "constrained-str")
@@ -41,7 +58,7 @@ _OF_ANOTHER_KIND = (
     "literal_error",
     "string_type",
     *(f"{kind}_{what}" for kind in ("int", "float", "bool") for what in ("parsing", "type")),
-    *("list_type", "tuple_type", "dict_type", "model_type", "model_attributes_type"),
+    *("list_type", "tuple_type", *_NO_MAPPING),
 )
 """Mistakes that say no more than that a value is not of one of the kinds it may be."""
 
@@ -77,8 +94,8 @@ def _yes_for_a_number(data: Any, valid: Any, place: str = "") -> Iterator[tuple[
     if isinstance(data, bool) and isinstance(valid, (int, float)) and not isinstance(valid, bool):
         yield place, data
     if isinstance(data, dict):
-        if isinstance(valid, Schema):
-            names = {f.alias or name: name for name, f in type(valid).model_fields.items()}
+        if isinstance(valid, Schema) or is_dataclass(valid):
+            names = {f.alias or name: name for name, f in _own(type(valid)).items()}
             valid = {key: getattr(valid, names.get(key, str(key)), None) for key in data}
         parts = [(key, data[key], valid[key]) for key in data if isinstance(valid, dict) and key in valid]
     elif isinstance(data, (list, tuple)) and isinstance(valid, (list, tuple)):
@@ -92,7 +109,7 @@ def _yes_for_a_number(data: Any, valid: Any, place: str = "") -> Iterator[tuple[
 def _place(error: Any, schema: type[BaseModel]) -> tuple[Any, ...]:
     """Return a mistake's location without what pydantic puts in for each alternative of a union."""
     location = error["loc"]
-    unknown = error["type"] == "extra_forbidden"
+    unknown = error["type"] in _UNKNOWN
     names = {model.__name__ for model in _all_models(schema)}
     last = len(location) - 1  # an unknown key itself is said whatever it looks like
     return tuple(
@@ -104,10 +121,10 @@ def _place(error: Any, schema: type[BaseModel]) -> tuple[Any, ...]:
     )
 
 
-def _all_models(schema: type[BaseModel]) -> set[type[BaseModel]]:
+def _all_models(schema: type[Any]) -> set[type[Any]]:
     found, stack = {schema}, [schema]
     while stack:
-        for info in stack.pop().model_fields.values():
+        for info in _own(stack.pop()).values():
             new = set(_models_inside(info.annotation)) - found
             found |= new
             stack += new
@@ -119,7 +136,7 @@ def _most_telling(errors: list[Any]) -> Any:
 
     Else the first; where a value may be of several kinds, what is wrong with it as the kind that it is.
     """
-    unknown = next((e for e in errors if e["type"] == "extra_forbidden"), None)
+    unknown = next((e for e in errors if e["type"] in _UNKNOWN), None)
     if unknown is not None:
         return unknown
     first = errors[0]
@@ -147,7 +164,10 @@ def _as_input_error(error: Any, schema: type[BaseModel]) -> InputError:
     location = error["loc"]
     field = ".".join(str(part) for part in location)
     kind, context = error["type"], error.get("ctx", {})
-    if kind == "extra_forbidden":
+    if kind == _REFUSED:
+        refusal: InputError = context["error"]
+        return refusal.at(field=field)
+    if kind in _UNKNOWN:
         known = _keys_at(schema, location[:-1])
         return InputError(
             "unknown key",
@@ -200,11 +220,11 @@ def _range(schema: type[BaseModel], location: tuple[Any, ...], broken: dict[str,
 def _keys_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[str]:
     """Return the keys allowed at a place of the schema, as far as they can be followed."""
     models = _models_at(schema, location)
-    return [f.alias or name for model in models for name, f in model.model_fields.items()]
+    return [f.alias or name for model in models for name, f in _own(model).items()]
 
 
-def _models_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[type[BaseModel]]:
-    current: list[type[BaseModel]] = [schema]
+def _models_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[type[Any]]:
+    current: list[type[Any]] = [schema]
     for part in location:
         inside = [model for info in _fields(current, part) for model in _models_inside(info.annotation)]
         # what is no field is an index, the key of a free mapping, or the tag of one model of a union
@@ -212,16 +232,24 @@ def _models_at(schema: type[BaseModel], location: tuple[Any, ...]) -> list[type[
     return current
 
 
-def _fields(models: list[type[BaseModel]], key: Any) -> list[Any]:
-    return [f for model in models for name, f in model.model_fields.items() if key in (name, f.alias)]
+def _own(model: type[Any]) -> dict[str, Any]:
+    """Return the fields of a model or a dataclass by name, each with annotation, metadata and alias."""
+    if issubclass(model, BaseModel):
+        return dict(model.model_fields)
+    hints = get_type_hints(model, include_extras=True)
+    return {f.name: SimpleNamespace(annotation=hints[f.name], metadata=[], alias=None) for f in fields(model)}
 
 
-def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
-    info = model.model_fields.get("type")
+def _fields(models: list[type[Any]], key: Any) -> list[Any]:
+    return [f for model in models for name, f in _own(model).items() if key in (name, f.alias)]
+
+
+def _tags(model: type[Any]) -> tuple[Any, ...]:
+    info = _own(model).get("type")
     return get_args(info.annotation) if info is not None else ()
 
 
-def _models_inside(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+def _models_inside(annotation: Any) -> list[type[Any]]:
+    if isinstance(annotation, type) and (issubclass(annotation, BaseModel) or is_dataclass(annotation)):
         return [annotation]
     return [model for argument in get_args(annotation) for model in _models_inside(argument)]

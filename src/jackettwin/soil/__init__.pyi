@@ -1,6 +1,13 @@
 from .files import parse_law as parse_law, read_support as read_support
-from .laws.families import DEFAULT_LAWS as DEFAULT_LAWS, family as family
+from .foundation import Foundation as Foundation, read_foundation as read_foundation
+from .ground.curves import Curve as Curve
+from .ground.profile import Clay as Clay, Layer as Layer, Point as Point, Sand as Sand, Scour as Scour
+from .laws.families import DEFAULT_LAWS as DEFAULT_LAWS, Family as Family, family as family
 from .laws.parameter import Parameter as Parameter
+from .laws.viscoelastic import Law as Law, Prony as Prony, Springpot as Springpot
+from .piles.piles import Pile as Pile
+from .piles.radiation import Radiation as Radiation
+from .piles.soil_curves import CurveOptions as CurveOptions, SoilCurve as SoilCurve
 from .support import (
     Spring as Spring,
     Support as Support,

@@ -5,24 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
-from jackettwin.errors import InputError, located
-from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
+from jackettwin.errors import InputError, located, require
+from jackettwin.files import Placed, Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.limits import Frequency
-from jackettwin.files.plausible import refuse_tiny
-from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.ground.scour import Scour
+from jackettwin.soil.ground.profile import Layer, Scour, SoilProfile
 from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.soil.piles.cyclic import CyclicPile, cyclic_pile
 from jackettwin.soil.piles.impedance import PileHead, lumped_head, on_pile_heads
 from jackettwin.soil.piles.piles import Pile, PileSprings, dashpots, linear_springs, with_piles
 from jackettwin.soil.piles.radiation import Radiation
-from jackettwin.soil.piles.reaction_curves import CurveOptions, PileCurves, linearised, pile_curves
+from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves
+from jackettwin.soil.piles.soil_curves import CurveOptions
 from jackettwin.soil.support import ELASTIC, Support
 from jackettwin.structure import Material, Section, Structure
 
@@ -65,12 +64,12 @@ class Foundation:
             raise InputError(
                 "linear ground has no loops", field="hysteresis", remedy="describe the ground by layers"
             )
-        if self.law != ELASTIC:
-            raise InputError(
-                "loops are the ground's damping already",
-                field="hysteresis",
-                remedy="leave damping and law out",
-            )
+        require(
+            self.law == ELASTIC,
+            "loops are the ground's damping already",
+            field="hysteresis",
+            remedy="leave damping and law out",
+        )
         return cyclic_pile(self.pile, self.curves)
 
     @property
@@ -106,14 +105,14 @@ class PileSchema(Schema):
 
     def build(self) -> Pile:
         """Return the pile."""
-        if self.element_m is not None and self.length_m > _MOST_ELEMENTS * self.element_m:
-            raise InputError(
-                "too many elements",
-                field="element_m",
-                value=self.element_m,
-                allowed=f"≥ {self.length_m / _MOST_ELEMENTS:.3g} m for this length",
-                remedy="leave it out: half a diameter leaves 0.03 %",
-            )
+        require(
+            self.element_m is None or self.length_m <= _MOST_ELEMENTS * self.element_m,
+            "too many elements",
+            field="element_m",
+            value=self.element_m,
+            allowed=f"≥ {self.length_m / _MOST_ELEMENTS:.3g} m for this length",
+            remedy="leave it out: half a diameter leaves 0.03 %",
+        )
         return Pile(
             length_m=self.length_m,
             section=Section(self.outer_diameter_m, self.thickness_m),
@@ -127,66 +126,6 @@ class PileSchema(Schema):
         )
 
 
-class SandSchema(Schema):
-    """``Sand``."""
-
-    friction_angle_deg: float
-    beta: float = 0.46
-    limit_friction_pa: float = 96e3
-    bearing_factor: float = 40.0
-    limit_bearing_pa: float = 10e6
-    modulus_n_m3: float | None = None
-
-    def build(self) -> Sand:
-        """Return the sand."""
-        with located(field="sand"):
-            refuse_tiny("limit_friction_pa", self.limit_friction_pa, least=1e3, remedy="Pa: 96 kPa is 96e3")
-            refuse_tiny("limit_bearing_pa", self.limit_bearing_pa, least=5e4, remedy="Pa: 10 MPa is 10e6")
-            refuse_tiny("modulus_n_m3", self.modulus_n_m3 or 0.0, least=1e5, remedy="N/m³: 22 MN/m³ is 22e6")
-            return Sand(**self.model_dump())
-
-
-class ClaySchema(Schema):
-    """``Clay``; strength at the layer's top and bottom."""
-
-    strength_pa: tuple[float, float]
-    strain_50: float = 0.01
-    J: float = 0.5
-    residual: float = 0.9
-    stiff: bool = False
-    free_water: bool = True
-
-    def build(self) -> Clay:
-        """Return the clay."""
-        top, bottom = self.strength_pa
-        with located(field="clay"):
-            for strength in (top, bottom):
-                refuse_tiny("strength_pa", strength, least=500.0, remedy="Pa: 20 kPa is 20e3")
-            return Clay(top, bottom, **self.model_dump(exclude={"strength_pa"}))
-
-
-class LayerSchema(Schema):
-    """A layer of sand or clay."""
-
-    thickness_m: Annotated[float, Field(gt=0.0, le=1e4)]
-    effective_weight_n_m3: Annotated[float, Field(ge=0.0, le=30e3)]
-    sand: SandSchema | None = None
-    clay: ClaySchema | None = None
-
-    def build(self) -> Layer:
-        """Return the layer."""
-        if (self.sand is None) == (self.clay is None):
-            raise InputError("a layer is either sand or clay", field="sand, clay", remedy="give one of them")
-        weight = self.effective_weight_n_m3
-        refuse_tiny("effective_weight_n_m3", weight, least=1e3, remedy="N/m³: 9 kN/m³ is 9e3")
-        soil = self.clay.build() if self.clay is not None else self._sand()
-        return Layer(self.thickness_m, weight, soil)
-
-    def _sand(self) -> Sand:
-        assert self.sand is not None
-        return self.sand.build()
-
-
 class LinearSchema(Schema):
     """Linear ground: k_h = lateral·z, constant k_v, a spring under the tip."""
 
@@ -195,40 +134,11 @@ class LinearSchema(Schema):
     tip_n_m: Stiffness = 0.0
 
 
-class ScourSchema(Schema):
-    """``Scour``."""
-
-    general_m: float = 0.0
-    local_m: float = 0.0
-    recovery_diameters: float = 6.0
-
-
 class SoilSchema(Schema):
     """Layers of soil, or linear ground."""
 
-    layers: list[LayerSchema] | None = Field(default=None, min_length=1)
+    layers: list[Placed[Layer]] | None = Field(default=None, min_length=1)
     linear: LinearSchema | None = None
-
-
-class CurvesSchema(Schema):
-    """``CurveOptions``."""
-
-    cyclic: bool = False
-    sand_tz: Literal["rp2geo", "rp2a"] = "rp2geo"
-    clay_py: Literal["table", "cube-root"] = "table"
-    cycles: Annotated[float, Field(ge=1.0, le=1e9)] = 100.0
-    layering: Literal["overburden", "georgiadis"] = "overburden"
-
-    def build(self) -> CurveOptions:
-        """Return the options."""
-        if self.cyclic and self.clay_py == "cube-root":
-            raise InputError(
-                "Matlock's parabola is for static loads",
-                field="curves.clay_py",
-                value=self.clay_py,
-                allowed="table, if cyclic",
-            )
-        return CurveOptions(**self.model_dump())
 
 
 class FoundationDampingSchema(Schema):
@@ -238,36 +148,21 @@ class FoundationDampingSchema(Schema):
     frequency_hz: Frequency
 
 
-class RadiationSchema(Schema):
-    """``radiation``: ground that carries waves away, and their frequency."""
-
-    density_kg_m3: Annotated[float, Field(ge=500.0, le=5000.0)]
-    shear_wave_m_s: Annotated[float, Field(ge=1.0, le=1e4)]
-    frequency_hz: Frequency
-    poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5)] = 0.5
-
-    def build(self) -> Radiation:
-        """Return it at its frequency."""
-        return Radiation(
-            self.density_kg_m3, self.shear_wave_m_s, 2.0 * pi * self.frequency_hz, self.poisson_ratio
-        )
-
-
 class FoundationSchema(Schema):
     """A foundation file."""
 
     pile: PileSchema
     soil: SoilSchema
-    scour: ScourSchema | None = None
-    curves: CurvesSchema = CurvesSchema()
+    scour: Placed[Scour] | None = None
+    curves: Placed[CurveOptions] = CurveOptions()
     damping: FoundationDampingSchema | None = None
     law: LawSchema | None = None
-    radiation: RadiationSchema | None = None
+    radiation: Placed[Radiation] | None = None
 
     def build(self) -> Foundation:
         """Return the foundation."""
-        if self.damping is not None and self.law is not None:
-            raise InputError("damping is given twice", field="damping, law", remedy="give one of them")
+        once = self.damping is None or self.law is None
+        require(once, "damping is given twice", field="damping, law", remedy="give one of them")
         law: Law = ELASTIC
         if self.damping is not None:
             law = dashpots(self.damping.ratio, 2.0 * pi * self.damping.frequency_hz)
@@ -277,9 +172,8 @@ class FoundationSchema(Schema):
         with located(field="pile"):
             pile = self.pile.build()
         curves = self._curves(pile)
-        radiation = None if self.radiation is None else self.radiation.build()
         springs = self._linear(pile) if curves is None else linearised(curves)
-        return Foundation(pile, springs, law, radiation, curves, self._notes())
+        return Foundation(pile, springs, law, self.radiation, curves, self._notes())
 
     def _notes(self) -> tuple[str, ...]:
         """Return what to beware of in layered ground: a pile that is longer than the layers, or stout."""
@@ -302,25 +196,21 @@ class FoundationSchema(Schema):
 
     def _curves(self, pile: Pile) -> PileCurves | None:
         layers, linear = self.soil.layers, self.soil.linear
-        if (layers is None) == (linear is None):
-            raise InputError("the ground is either layers or linear", field="soil", remedy="give one of them")
+        one = (layers is None) != (linear is None)
+        require(one, "the ground is either layers or linear", field="soil", remedy="give one of them")
         if layers is None:
             return None
-        scour = Scour(**self.scour.model_dump()) if self.scour is not None else Scour()
-        built = []
-        for i, layer in enumerate(layers):
-            with located(field=f"soil.layers.{i}"):
-                built.append(layer.build())
-        profile = SoilProfile(tuple(built), scour)
-        return pile_curves(pile, profile, self.curves.build())
+        return pile_curves(pile, SoilProfile(tuple(layers), self.scour or Scour()), self.curves)
 
     def _linear(self, pile: Pile) -> PileSprings:
         linear = self.soil.linear
         assert linear is not None
-        if self.scour is not None:
-            raise InputError(
-                "linear ground knows no scour", field="scour", remedy="describe the ground by layers"
-            )
+        require(
+            self.scour is None,
+            "linear ground knows no scour",
+            field="scour",
+            remedy="describe the ground by layers",
+        )
         return linear_springs(
             pile,
             lateral=lambda z: linear.lateral_n_m3 * z,

@@ -7,19 +7,12 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from jackettwin.decks.structure_files import RnaSchema
-from jackettwin.files import Schema
+from jackettwin.files import Placed, Schema
 from jackettwin.files.limits import Angle, ForceCoefficient, Frequency, Height, Seed
 from jackettwin.loads.aerodynamics.wind import TOWER_DRAG
 from jackettwin.simulate.scenario.water_files import WaterSchema
-from jackettwin.soil.foundation import (
-    CurvesSchema,
-    FoundationDampingSchema,
-    LayerSchema,
-    LinearSchema,
-    PileSchema,
-    RadiationSchema,
-    ScourSchema,
-)
+from jackettwin.soil import CurveOptions, Layer, Radiation, Scour
+from jackettwin.soil.foundation import FoundationDampingSchema, LinearSchema, PileSchema
 from jackettwin.soil.laws.files import LawSchema
 
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]
@@ -59,13 +52,13 @@ class SteelDampingSchema(Schema):
 class GroundSchema(Schema):
     """``soil``: layers or linear ground, scour, which curves, and the ground's damping or law."""
 
-    layers: list[LayerSchema] | None = Field(default=None, min_length=1)
+    layers: list[Placed[Layer]] | None = Field(default=None, min_length=1)
     linear: LinearSchema | None = None
-    scour: ScourSchema | None = None
-    curves: CurvesSchema = CurvesSchema()
+    scour: Placed[Scour] | None = None
+    curves: Placed[CurveOptions] = CurveOptions()
     damping: FoundationDampingSchema | None = None
     law: LawSchema | None = None
-    radiation: RadiationSchema | None = None
+    radiation: Placed[Radiation] | None = None
     hysteresis: bool = False
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.soil.ground.profile import Clay, Layer, Point, SoilProfile
 
 Resistance = Callable[[Point], float]
@@ -41,14 +41,14 @@ def equivalent_points(
     InputError
         If scour is local, for which no equivalent depth is defined, or a layer has no strength.
     """
-    if profile.scour.local_m > 0.0:
-        raise InputError(
-            "equivalent depths know no local scour",
-            field="scour.local_m",
-            value=profile.scour.local_m,
-            allowed="0",
-            remedy="give it as general_m, or take curves.layering: overburden",
-        )
+    require(
+        profile.scour.local_m <= 0.0,
+        "equivalent depths know no local scour",
+        field="scour.local_m",
+        value=profile.scour.local_m,
+        allowed="0",
+        remedy="give it as general_m, or take curves.layering: overburden",
+    )
     surfaces = equivalent_depths(profile, resistance)
     return [
         None if one is None else _point(profile, one, float(z), surfaces[one])
@@ -93,13 +93,13 @@ def _equivalent_depth(
     deepest = 1.0
     while short_of(deepest) > 0.0:
         deepest *= 2.0
-        if deepest > _DEEPEST:
-            raise InputError(
-                "a layer this weak has no equivalent depth",
-                field=f"soil.layers.{k}",
-                value=f"{force:.3g} N above it",
-                remedy="check its strength, or take curves.layering: overburden",
-            )
+        require(
+            deepest <= _DEEPEST,
+            "a layer this weak has no equivalent depth",
+            field=f"soil.layers.{k}",
+            value=f"{force:.3g} N above it",
+            remedy="check its strength, or take curves.layering: overburden",
+        )
     return float(brentq(short_of, 0.0, deepest, xtol=1e-9))
 
 
@@ -117,11 +117,9 @@ def _strengths(layer: Layer, edge: float, top: float, z: float, h: float) -> tup
     """Return s_u at ``z`` and its mean from the equivalent surface down; above the top it is the top's."""
     if not isinstance(layer.soil, Clay):
         return 0.0, 0.0
-    clay, t = layer.soil, layer.thickness_m
+    (upper, lower), t = layer.soil.strength_pa, layer.thickness_m
     at = np.array([top, z, min(max(edge + t, top), z)])
-    su = clay.strength_top_pa + (clay.strength_bottom_pa - clay.strength_top_pa) * np.minimum(
-        (at - edge) / t, 1.0
-    )
+    su = upper + (lower - upper) * np.minimum((at - edge) / t, 1.0)
     first, here, last = map(float, su)
     if h + z - top <= 0.0:
         return here, here

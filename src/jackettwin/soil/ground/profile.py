@@ -1,4 +1,4 @@
-"""Layered ground: what each layer is made of, and the effective stress it carries."""
+"""Layered ground: what each layer is made of, what scour has taken of it, and the effective stress."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, require_between
-from jackettwin.soil.ground.scour import NO_SCOUR, Scour
+from jackettwin.errors import require, require_between
+from jackettwin.files import Placed
+from jackettwin.files.plausible import refuse_tiny
 
 _SAND_AT_MOST = {"beta": 10.0, "limit_friction_pa": 1e7, "bearing_factor": 1e4, "limit_bearing_pa": 1e9}
 """Far beyond any sand: a slip, not a soil."""
+_DEEPEST_SCOUR = 300.0
+"""Metres, or pile diameters."""
 _UNITS = {"_deg": "degrees", "_pa": "Pa", "_n_m3": "N/m³", "_m": "m"}
 
 
@@ -35,18 +38,20 @@ class Sand:
             _check(name, getattr(self, name), 0.0, highest)
         if self.modulus_n_m3 is not None:
             _check("modulus_n_m3", self.modulus_n_m3, 0.0, 1e10)
+        refuse_tiny("limit_friction_pa", self.limit_friction_pa, least=1e3, remedy="Pa: 96 kPa is 96e3")
+        refuse_tiny("limit_bearing_pa", self.limit_bearing_pa, least=5e4, remedy="Pa: 10 MPa is 10e6")
+        refuse_tiny("modulus_n_m3", self.modulus_n_m3 or 0.0, least=1e5, remedy="N/m³: 22 MN/m³ is 22e6")
 
 
 @dataclass(frozen=True)
 class Clay:
-    """Clay; the undrained shear strength goes linearly from the layer's top to its bottom.
+    """Clay; ``strength_pa`` is the undrained shear strength at the layer's top and bottom, linear in between.
 
     ``stiff`` chooses the p-y curve of Reese et al. (1975) in place of Matlock's (1970), or without
     ``free_water`` that of Welch & Reese (1972).
     """
 
-    strength_top_pa: float
-    strength_bottom_pa: float
+    strength_pa: tuple[float, float]
     strain_50: float = 0.01
     J: float = 0.5
     residual: float = 0.9
@@ -54,8 +59,9 @@ class Clay:
     free_water: bool = True
 
     def __post_init__(self) -> None:
-        for strength in (self.strength_top_pa, self.strength_bottom_pa):
+        for strength in self.strength_pa:
             _check("strength_pa", strength, 0.0, 1e8)
+            refuse_tiny("strength_pa", strength, least=500.0, remedy="Pa: 20 kPa is 20e3")
         _check("strain_50", self.strain_50, 1e-4, 0.1)
         _check("J", self.J, 0.0, 1.0)
         _check("residual", self.residual, 0.0, 1.0)
@@ -63,15 +69,58 @@ class Clay:
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer of one soil; ``effective_weight_n_m3`` is its submerged unit weight."""
+    """A layer of either sand or clay; ``effective_weight_n_m3`` is its submerged unit weight."""
 
     thickness_m: float
     effective_weight_n_m3: float
-    soil: Sand | Clay
+    sand: Placed[Sand] | None = None
+    clay: Placed[Clay] | None = None
 
     def __post_init__(self) -> None:
+        one = (self.sand is None) != (self.clay is None)
+        require(one, "a layer is either sand or clay", field="sand, clay", remedy="give one of them")
         _check("thickness_m", self.thickness_m, 1e-6, 1e4)
         _check("effective_weight_n_m3", self.effective_weight_n_m3, 0.0, 30e3)
+        weight = self.effective_weight_n_m3
+        refuse_tiny("effective_weight_n_m3", weight, least=1e3, remedy="N/m³: 9 kN/m³ is 9e3")
+
+    @property
+    def soil(self) -> Sand | Clay:
+        """What the layer is made of."""
+        soil = self.clay if self.sand is None else self.sand
+        assert soil is not None
+        return soil
+
+
+@dataclass(frozen=True)
+class Scour:
+    """General scour lowers the whole seabed, local scour is a hole around the pile.
+
+    Under a hole the vertical effective stress σ'_v grows linearly from zero at its bottom to its value
+    without the hole at ``recovery_diameters`` pile diameters below (6 D: API RP 2GEO 2011, section 8.3 and
+    its figure of the overburden reduction depth; DNV-ST-0126).
+    """
+
+    general_m: float = 0.0
+    local_m: float = 0.0
+    recovery_diameters: float = 6.0
+
+    def __post_init__(self) -> None:
+        for field in ("general_m", "local_m", "recovery_diameters"):
+            require_between(field, getattr(self, field), 0.0, _DEEPEST_SCOUR)
+
+    @property
+    def total_m(self) -> float:
+        """Depth of the hole's bottom below the original mudline [m]."""
+        return self.general_m + self.local_m
+
+    def recovery_m(self, diameter: float) -> float:
+        """Return how far below the hole's bottom σ'_v has its value without the hole again [m].
+
+        >>> Scour(local_m=2.0).recovery_m(1.5)
+        9.0
+        """
+        return self.recovery_diameters * diameter if self.local_m > 0.0 else 0.0
 
 
 @dataclass(frozen=True)
@@ -79,11 +128,10 @@ class SoilProfile:
     """Layers from the original mudline downwards; the lowest reaches as deep as it is asked."""
 
     layers: tuple[Layer, ...]
-    scour: Scour = NO_SCOUR
+    scour: Scour = Scour()
 
     def __post_init__(self) -> None:
-        if not self.layers:
-            raise InputError("a soil profile needs a layer", field="layers", value=[])
+        require(self.layers, "a soil profile needs a layer", field="layers", value=[])
 
     @property
     def boundaries_m(self) -> FloatArray:
@@ -145,9 +193,9 @@ def _strength(profile: SoilProfile, layer: int, z: float) -> float:
     one = profile.layers[layer]
     if not isinstance(one.soil, Clay):
         return 0.0
+    upper, lower = one.soil.strength_pa
     top = float(np.sum([above.thickness_m for above in profile.layers[:layer]]))
-    at = min((z - top) / one.thickness_m, 1.0)
-    return one.soil.strength_top_pa + (one.soil.strength_bottom_pa - one.soil.strength_top_pa) * at
+    return upper + (lower - upper) * min((z - top) / one.thickness_m, 1.0)
 
 
 def _mean_strength(profile: SoilProfile, layer: int, top: float, z: float) -> float:

@@ -1,0 +1,158 @@
+"""The kinds of soil reaction curves, and the table they are looked up in.
+
+A kind is a function that returns the curve of one depth, and its row: in ``SOIL_CURVES``, or as an entry point
+of an installed package. A foundation file chooses it by name, under the reaction's key in ``curves``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal, NamedTuple, cast
+
+from jackettwin.errors import look_up, require, require_between
+from jackettwin.soil.ground.curves import Curve
+from jackettwin.soil.ground.profile import Clay, Point, Sand
+from jackettwin.soil.ground.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
+from jackettwin.soil.ground.tz_curves import (
+    clay_bearing,
+    clay_friction,
+    clay_tz,
+    sand_bearing,
+    sand_friction,
+    sand_tz,
+    tip_qz,
+)
+from jackettwin.soil.piles.piles import Pile
+
+REACTIONS = ("sand_py", "clay_py", "sand_tz", "clay_tz", "sand_qz", "clay_qz")
+"""Lateral, along the shaft, under the tip, in either soil: fields of :class:`CurveOptions`."""
+LAYERING = ("overburden", "georgiadis")
+
+
+@dataclass(frozen=True)
+class CurveOptions:
+    """Which kind of curve stands for each reaction, by its name in ``soil_curves``, and how it is loaded."""
+
+    cyclic: bool = False
+    sand_tz: str = "rp2geo"
+    clay_py: str = "table"
+    cycles: float = 100.0
+    """How many, for the one curve that asks: stiff clay without free water, if ``cyclic``."""
+    layering: Literal["overburden", "georgiadis"] = "overburden"
+    """How p-y curves know of the layers above: by their weight σ'_v alone at the true depth, or by
+    Georgiadis's equivalent depth."""
+    sand_py: str = "rp2geo"
+    clay_tz: str = "rp2geo"
+    sand_qz: str = "rp2geo"
+    clay_qz: str = "rp2geo"
+
+    def __post_init__(self) -> None:
+        require_between("cycles", self.cycles, 1.0, 1e9)
+        require(
+            self.layering in LAYERING,
+            "unknown way of layering",
+            field="layering",
+            value=self.layering,
+            allowed=", ".join(LAYERING),
+        )
+        for reaction in REACTIONS:
+            look_up(soil_curves(reaction), getattr(self, reaction), "soil curve", field=reaction)
+        require(
+            not (self.cyclic and self.clay_py == "cube-root"),
+            "Matlock's parabola is for static loads",
+            field="clay_py",
+            value=self.clay_py,
+            allowed="table, if cyclic",
+        )
+
+    def curve(self, of: Literal["py", "tz", "qz"], point: Point, pile: Pile) -> Curve:
+        """Return the lateral, shaft or tip reaction of the ground at one depth of a pile."""
+        reaction = f"{'sand' if isinstance(point.soil, Sand) else 'clay'}_{of}"
+        return soil_curves(reaction)[getattr(self, reaction)].build(point, pile, self)
+
+
+class SoilCurve(NamedTuple):
+    """A kind of curve: its reaction (one of ``REACTIONS``), its name, what it is in words, and its function.
+
+    The function gets the ground at a depth, the pile and all options; its curve is in N per m of pile, under
+    the tip in N.
+    """
+
+    reaction: str
+    name: str
+    words: str
+    build: Callable[[Point, Pile, CurveOptions], Curve]
+
+
+def _sand_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    soil = cast("Sand", point.soil)
+    return sand_py(
+        friction_angle_deg=soil.friction_angle_deg,
+        stress_pa=point.stress_pa,
+        z=point.depth_m,
+        D=pile.section.outer_diameter_m,
+        cyclic=options.cyclic,
+        modulus_n_m3=soil.modulus_n_m3,
+    )
+
+
+def _clay_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    soil = cast("Clay", point.soil)
+    clay = {
+        "strength_pa": point.strength_pa,
+        "stress_pa": point.stress_pa,
+        "z": point.depth_m,
+        "D": pile.section.outer_diameter_m,
+        "strain_50": soil.strain_50,
+    }
+    if not soil.stiff:
+        return soft_clay_py(**clay, J=soil.J, cyclic=options.cyclic, form=options.clay_py)
+    clay["mean_strength_pa"] = point.mean_strength_pa
+    if soil.free_water:
+        return stiff_clay_py(**clay, cyclic=options.cyclic)
+    return dry_stiff_clay_py(**clay, J=soil.J, cycles=options.cycles if options.cyclic else 0.0)
+
+
+def _sand_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    soil = cast("Sand", point.soil)
+    f = sand_friction(stress_pa=point.stress_pa, beta=soil.beta, limit_pa=soil.limit_friction_pa)
+    return sand_tz(friction_pa=f, D=pile.section.outer_diameter_m, form=options.sand_tz)
+
+
+def _clay_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    soil = cast("Clay", point.soil)
+    f = clay_friction(strength_pa=point.strength_pa, stress_pa=point.stress_pa)
+    return clay_tz(friction_pa=f, D=pile.section.outer_diameter_m, residual=soil.residual)
+
+
+def _sand_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    soil = cast("Sand", point.soil)
+    q = sand_bearing(
+        stress_pa=point.stress_pa, bearing_factor=soil.bearing_factor, limit_pa=soil.limit_bearing_pa
+    )
+    return tip_qz(bearing_pa=q, D=pile.section.outer_diameter_m, area_m2=pile.tip_area_m2)
+
+
+def _clay_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
+    q = clay_bearing(point.strength_pa)
+    return tip_qz(bearing_pa=q, D=pile.section.outer_diameter_m, area_m2=pile.tip_area_m2)
+
+
+SOIL_CURVES = (
+    SoilCurve("sand_py", "rp2geo", "API RP 2GEO, O'Neill & Murchison (1983)", _sand_py),
+    SoilCurve("clay_py", "table", "Matlock (1970), points of the code; stiff clay by its layer", _clay_py),
+    SoilCurve("clay_py", "cube-root", "Matlock's parabola, static only; stiff clay by its layer", _clay_py),
+    SoilCurve("sand_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter", _sand_tz),
+    SoilCurve("sand_tz", "rp2a", "API RP 2A-WSD: straight to the peak at 2.54 mm", _sand_tz),
+    SoilCurve("clay_tz", "rp2geo", "API RP 2GEO: peak at 1 % of the diameter, then a residual", _clay_tz),
+    SoilCurve("sand_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _sand_qz),
+    SoilCurve("clay_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _clay_qz),
+)
+
+
+@cache
+def soil_curves(reaction: str) -> dict[str, SoilCurve]:
+    """Return the kinds of curves of a reaction by name."""
+    return {kind.name: kind for kind in SOIL_CURVES if kind.reaction == reaction}
