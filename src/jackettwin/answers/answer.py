@@ -19,8 +19,7 @@ from jackettwin.answers.result import (
 )
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90, interval_90
-from jackettwin.soil import Parameter
-from jackettwin.soil.laws.families import FAMILIES
+from jackettwin.soil import Parameter, families, law_parameter
 from jackettwin.study import TwinResult
 from jackettwin.study.result import MeasuredMode
 from jackettwin.updating import Update, law_probability
@@ -32,8 +31,6 @@ PRECISION = 0.2
 """A damping ratio known to ± so much (90 %) tells a design with half a per cent more from one without."""
 _DESIGNS = 100
 """Draws of the prior that the design's frequencies are made of: their 5 % quantile to some tenth of a σ."""
-_STIFF = {law.names[0] for law in FAMILIES.values()}
-"""Parameters of the laws that are the ground's stiffness; k1 of Zener's law is a part of what damps."""
 _STRANGERS = ("c_fore_aft", "c_side_side", "water_", "rayleigh_")
 """Names of what is updated beside the ground."""
 
@@ -172,8 +169,9 @@ def _kind(p: Parameter) -> Literal["stiffness", "damping", ""]:
     """Return what of the ground a parameter is; nothing for one of the rotor, the water or the steel."""
     if p.name.startswith(_STRANGERS):
         return ""
-    base = p.name.split("@")[0].split("_")[0]
-    return "stiffness" if base in _STIFF else "damping"
+    # k1 of Zener's law is a part of what damps
+    stiff = law_parameter(p.name) in {law.names[0] for law in families().values()}
+    return "stiffness" if stiff else "damping"
 
 
 def _ground(u: Update) -> Sequence[GroundAnswer]:

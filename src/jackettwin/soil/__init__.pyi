@@ -2,12 +2,23 @@ from .files import parse_law as parse_law, read_support as read_support
 from .foundation import Foundation as Foundation, read_foundation as read_foundation
 from .ground.curves import Curve as Curve
 from .ground.profile import Clay as Clay, Layer as Layer, Point as Point, Sand as Sand, Scour as Scour
-from .laws.families import DEFAULT_LAWS as DEFAULT_LAWS, Family as Family, family as family
+from .laws.families import (
+    DEFAULT_LAWS as DEFAULT_LAWS,
+    Family as Family,
+    families as families,
+    family as family,
+    law_parameter as law_parameter,
+    parameter_words as parameter_words,
+)
 from .laws.parameter import Parameter as Parameter
 from .laws.viscoelastic import Law as Law, Prony as Prony, Springpot as Springpot
 from .piles.piles import Pile as Pile
 from .piles.radiation import Radiation as Radiation
-from .piles.soil_curves import CurveOptions as CurveOptions, SoilCurve as SoilCurve
+from .piles.soil_curves import (
+    CurveOptions as CurveOptions,
+    SoilCurve as SoilCurve,
+    soil_curves as soil_curves,
+)
 from .support import (
     Spring as Spring,
     Support as Support,

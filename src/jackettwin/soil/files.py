@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.arrays import FloatArray
+from jackettwin.errors import InputError, did_you_mean, located, require
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.soil.foundation import build_foundation, read_foundation, shipped_foundations
-from jackettwin.soil.laws.families import FAMILIES, Family
+from jackettwin.soil.laws.families import families
 from jackettwin.soil.laws.files import ElasticLaw, LawSchema
 from jackettwin.soil.laws.viscoelastic import Law, Prony, require_positive
 from jackettwin.soil.support import Spring, Support, clamped, on_translations, own_support, pinned
@@ -25,6 +26,15 @@ class SpringSchema(Schema):
     nodes: Literal["reaction"] | list[str]
     stiffness: list[float] | list[list[float]]
     law: LawSchema = ElasticLaw(type="elastic")
+
+    def build(self, structure: Structure) -> list[Spring]:
+        """Return one spring a node."""
+        nodes = structure.reaction_nodes if self.nodes == "reaction" else self.nodes
+        for node in nodes:
+            remedy = did_you_mean(node, structure.nodes) or "name a node of the structure"
+            require(node in structure.nodes, "no such node", field="nodes", value=node, remedy=remedy)
+        matrix, law = _matrix(self.stiffness), self.law.build()
+        return [Spring(node, matrix, law) for node in nodes]
 
 
 class SpringsSchema(Schema):
@@ -66,43 +76,41 @@ def read_support(
     if text is None:
         return own_support(structure)
     word = str(text)
-    if not structure.reactions:
-        raise InputError(
-            "the structure has no reaction nodes to support",
-            field="reaction_nodes",
-            value=[],
-            remedy="name them in the structure file",
-        )
+    require(
+        structure.reactions,
+        "the structure has no reaction nodes to support",
+        field="reaction_nodes",
+        value=[],
+        remedy="name them in the structure file",
+    )
     if word in ("pinned", "clamped"):
         return pinned(structure) if word == "pinned" else clamped(structure)
     name, colon, arguments = word.partition(":")
-    if colon and name in SHORT_FORMS:
+    forms = short_forms()
+    if colon and name in forms:
         return on_translations(structure, parse_law(name, arguments, first_frequency_hz))
     if word in shipped_foundations():
         return read_foundation(word).heads(structure)
     path = Path(word) if folder is None else folder / word
     if path.suffix.lower() in (".yaml", ".yml"):
         return _read_support_file(path, structure)
-    known = ["pinned", "clamped", *shipped_foundations(), *SHORT_FORMS]
+    known = ["pinned", "clamped", *shipped_foundations(), *forms]
     raise InputError(
         "unknown support or law",
         field="support",
         value=word,
-        allowed=", ".join(f"{k}:{SHORT_FORMS[k]}" if k in SHORT_FORMS else k for k in known)
-        + ", or a .yaml file",
+        allowed=", ".join(f"{k}:{forms[k]}" if k in forms else k for k in known) + ", or a .yaml file",
         remedy=did_you_mean(name, known) or "take one of these, or give the path of a file",
     )
 
 
-def _short_form(law: Family) -> str:
-    return ",".join(f"{name}=" for name in (*law.names, *(["f0"] if law.needs_frequency else [])))
-
-
-SHORT_FORMS: Mapping[str, str] = {
-    "elastic": "k=",
-    "maxwell": "k0=,branches=k/tau;k/tau",
-    **{name: _short_form(law) for name, law in FAMILIES.items()},
-}
+def short_forms() -> Mapping[str, str]:
+    """Return what each law's short form takes behind its name: ``k=,c=``."""
+    updated = {
+        name: ",".join(f"{key}=" for key in (*law.names, *(["f0"] if law.needs_frequency else [])))
+        for name, law in families().items()
+    }
+    return {"elastic": "k=", "maxwell": "k0=,branches=k/tau;k/tau", **updated}
 
 
 def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]) -> Law:
@@ -113,63 +121,56 @@ def parse_law(name: str, arguments: str, first_frequency_hz: Callable[[], float]
     InputError
         If an argument is missing, unknown, given twice, not a number or out of range.
     """
-    number, branches = _arguments(name, arguments)
     with located(field=f"support.{name}"):
+        given = _arguments(short_forms()[name], arguments)
+        branches = given.pop("branches", "")
+        number = {key: _number(key, text) for key, text in given.items()}
         if name == "elastic":
             return Prony(k0=number["k"])
         if name == "maxwell":
             return Prony(number["k0"], 0.0, *_branches(branches))
-        law, f0 = FAMILIES[name], 1.0
+        law, f0 = families()[name], 1.0
         if law.needs_frequency:
             f0 = number["f0"] if "f0" in number else first_frequency_hz()
             require_positive("f0", f0)
         return law.build(np.array([number[p] for p in law.names]), f0)
 
 
-def _arguments(name: str, text: str) -> tuple[dict[str, float], str]:
-    """Return the numbers of a short form, and the text of its branches."""
-    known = [part.rstrip("=").split("=")[0] for part in SHORT_FORMS[name].split(",")]
+def _arguments(form: str, text: str) -> dict[str, str]:
+    """Return the arguments of a short form by name."""
+    known = [part.partition("=")[0] for part in form.split(",")]
     values: dict[str, str] = {}
     for part in filter(None, text.split(",")):
         key, _, value = part.partition("=")
-        if key not in known:
-            raise InputError(
-                "unknown argument",
-                field=f"support.{name}",
-                value=part,
-                allowed=SHORT_FORMS[name],
-                remedy=did_you_mean(key, known) or "take one of these",
-            )
-        if key in values:
-            raise InputError("argument is given twice", field=f"support.{name}.{key}", value=part)
+        remedy = did_you_mean(key, known) or "take one of these"
+        require(key in known, "unknown argument", value=part, allowed=form, remedy=remedy)
+        require(key not in values, "argument is given twice", field=key, value=part)
         values[key] = value
     for key in known:
-        if key not in values and key != "f0":
-            raise InputError("argument is missing", field=f"support.{name}.{key}", allowed=SHORT_FORMS[name])
-    branches = values.pop("branches", "")
-    return {key: _number(name, key, value) for key, value in values.items()}, branches
+        require(key in values or key == "f0", "argument is missing", field=key, allowed=form)
+    return values
 
 
-def _number(name: str, key: str, text: str) -> float:
+def _number(key: str, text: str) -> float:
     try:
         value = float(text)
     except ValueError:
         value = float("nan")
-    if not np.isfinite(value):
-        raise InputError(
-            "not a finite number", field=f"support.{name}.{key}", value=text, remedy="write e.g. 2.5e9"
-        )
+    require(np.isfinite(value), "not a finite number", field=key, value=text, remedy="write e.g. 2.5e9")
     return value
 
 
 def _branches(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return stiffnesses and relaxation times of ``k/tau;k/tau``."""
     pairs = [pair.split("/") for pair in text.split(";") if pair]
-    if not pairs or any(len(pair) != 2 for pair in pairs):
-        raise InputError(
-            "branches are pairs k/tau joined by ;", field="branches", value=text, allowed="k/tau;k/tau"
-        )
-    k = tuple(_number("maxwell", "branches", pair[0]) for pair in pairs)
-    tau = tuple(_number("maxwell", "branches", pair[1]) for pair in pairs)
+    require(
+        pairs and all(len(pair) == 2 for pair in pairs),
+        "branches are pairs k/tau joined by ;",
+        field="branches",
+        value=text,
+        allowed="k/tau;k/tau",
+    )
+    k, tau = (tuple(_number("branches", pair[i]) for pair in pairs) for i in (0, 1))
     for value in tau:
         require_positive("tau", value)
     return k, tau
@@ -179,53 +180,28 @@ def _read_support_file(path: Path, structure: Structure) -> Support:
     content = read_yaml(path, what="support file")
     if isinstance(content, dict) and "pile" in content:
         return build_foundation(content, path).heads(structure)
-    return _springs(content, path, structure)
-
-
-def _springs(content: Any, path: Path, structure: Structure) -> Support:
     schema = validate(SpringsSchema, content, file=path)
-    springs = []
+    springs: list[Spring] = []
     for index, entry in enumerate(schema.supports):
-        place = f"supports.{index}"
-        nodes = structure.reaction_nodes if entry.nodes == "reaction" else tuple(entry.nodes)
-        for node in nodes:
-            if node not in structure.nodes:
-                raise InputError(
-                    "no such node",
-                    file=path,
-                    field=f"{place}.nodes",
-                    value=node,
-                    remedy=did_you_mean(node, structure.nodes) or "name a node of the structure",
-                )
-        with located(file=path, field=place):
-            matrix, law = _matrix(entry.stiffness), entry.law.build()
-        springs += [Spring(node, matrix, law) for node in nodes]
+        with located(file=path, field=f"supports.{index}"):
+            springs += entry.build(structure)
     return Support(springs=tuple(springs))
 
 
-def _matrix(values: list[float] | list[list[float]]) -> np.ndarray:
+def _matrix(values: list[float] | list[list[float]]) -> FloatArray:
     """Return the 6×6 matrix of 3 or 6 diagonal values, or of a full symmetric matrix."""
-    allowed = "3 or 6 numbers, or a symmetric 6×6 matrix that stores energy"
+    told = {"field": "stiffness", "allowed": "3 or 6 numbers, or a symmetric 6×6 matrix that stores energy"}
     if all(isinstance(value, (int, float)) for value in values) and len(values) in (3, 6):
         matrix = np.diag(np.concatenate([np.asarray(values, dtype=float), np.zeros(6 - len(values))]))
     else:
         try:
             matrix = np.array(values, dtype=float)
         except ValueError:
-            raise InputError("stiffness rows differ in length", field="stiffness", allowed=allowed) from None
-        if matrix.shape != (6, 6):
-            raise InputError(
-                "stiffness has the wrong shape", field="stiffness", value=matrix.shape, allowed=allowed
-            )
+            raise InputError("stiffness rows differ in length", **told) from None
+        require(matrix.shape == (6, 6), "stiffness has the wrong shape", value=matrix.shape, **told)
     scale = np.sqrt(np.maximum(np.abs(np.diag(matrix)), 1e-300))
     scaled = matrix / np.outer(scale, scale)
-    if np.abs(scaled - scaled.T).max() > 1e-6:
-        raise InputError("stiffness is not symmetric", field="stiffness", allowed=allowed)
-    if np.linalg.eigvalsh(scaled).min() < -1e-9:
-        raise InputError(
-            "stiffness gives energy out",
-            field="stiffness",
-            value=float(np.diag(matrix).min()),
-            allowed=allowed,
-        )
+    require(np.abs(scaled - scaled.T).max() <= 1e-6, "stiffness is not symmetric", **told)
+    passive = np.linalg.eigvalsh(scaled).min() >= -1e-9
+    require(passive, "stiffness gives energy out", value=float(np.diag(matrix).min()), **told)
     return np.asarray(0.5 * (matrix + matrix.T))

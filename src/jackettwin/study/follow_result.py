@@ -9,7 +9,7 @@ from datetime import datetime
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 from jackettwin.twin import TwinState
 from jackettwin.twin.codec import StoredSchema
 from jackettwin.updating.drift import Drift

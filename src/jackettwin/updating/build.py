@@ -8,8 +8,7 @@ from math import pi, sqrt
 
 from jackettwin.errors import InputError
 from jackettwin.response.condensation.condensed import strongest_beta
-from jackettwin.soil import Parameter, Support
-from jackettwin.soil.laws.families import Family
+from jackettwin.soil import Family, Parameter, Support
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters

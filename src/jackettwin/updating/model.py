@@ -15,8 +15,7 @@ from jackettwin.response import DampedModes, System, build_system, damped_modes,
 from jackettwin.response.condensation.condensed import Condensed
 from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, numbered_poles
 from jackettwin.response.modes.tracking import track_modes
-from jackettwin.soil import Parameter
-from jackettwin.soil.laws.families import Family
+from jackettwin.soil import Family, Parameter
 from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters

@@ -13,7 +13,7 @@ from jackettwin.report.figures import style
 from jackettwin.report.figures.svg import Canvas, spread
 from jackettwin.report.tables.numbers import digits_of, quantity, words
 from jackettwin.report.tables.sentences import MARGIN, verdict_words
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 
 SOURCE_COLOURS = {
     "structure": style.GREY,

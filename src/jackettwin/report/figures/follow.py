@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.report.figures import style
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 from jackettwin.study.follow_result import Followed
 
 _DAY_MS = 86_400_000

@@ -7,8 +7,6 @@ from typing import Any, NamedTuple
 
 import plotly.graph_objects as go
 
-from jackettwin.soil.laws.families import FAMILIES
-
 # Okabe & Ito 2008: distinct for all common forms of colour blindness.
 ORANGE, SKY, GREEN = "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
@@ -24,19 +22,13 @@ class Appearance(NamedTuple):
     dash: str
 
 
-_LAWS = dict(
-    zip(
-        FAMILIES,
-        (
-            Appearance(ORANGE, "square", "dash"),
-            Appearance(SKY, "diamond", "dot"),
-            Appearance(PURPLE, "triangle-up", "solid"),
-            Appearance(GREEN, "cross", "dashdot"),
-        ),
-        strict=False,
-    )
-)
-"""Of the support laws in their order; one that comes after these is grey."""
+_LAWS = {
+    "kelvin-voigt": Appearance(ORANGE, "square", "dash"),
+    "zener": Appearance(SKY, "diamond", "dot"),
+    "maxwell-3": Appearance(PURPLE, "triangle-up", "solid"),
+    "springpot": Appearance(GREEN, "cross", "dashdot"),
+}
+"""Of the support laws; one of another package is grey."""
 _KINDS = {
     "fore_aft": (BLUE, "circle"),
     "side_side": (VERMILLION, "square"),

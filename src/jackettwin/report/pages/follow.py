@@ -10,7 +10,7 @@ from jackettwin.report.figures.follow import parameters_through_time
 from jackettwin.report.pages.page import PageSection, PageTable, Plot, Text, write_page
 from jackettwin.report.tables.answers import ranged
 from jackettwin.report.tables.numbers import count
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 from jackettwin.study.follow_result import Followed
 from jackettwin.version import __version__
 

@@ -7,7 +7,7 @@ from jackettwin.report.pages.page import PageTable
 from jackettwin.report.tables.numbers import UNKNOWN, between, factor, fixed, words
 from jackettwin.report.tables.sentences import span_words, step_words, verdict_words
 from jackettwin.report.tables.sentences_fit import value_words
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
 from jackettwin.updating.budget import SOURCES
 

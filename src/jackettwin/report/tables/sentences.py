@@ -10,7 +10,7 @@ from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import Clearance, GroundAnswer, ModeAnswer, NextStep
 from jackettwin.report.tables.numbers import UNKNOWN, between, count, factor, listed, words
 from jackettwin.report.tables.sentences_fit import fit_sentence, mend, misfit_headline, value_words
-from jackettwin.soil.laws.families import FAMILIES, parameter_words
+from jackettwin.soil import family, parameter_words
 
 MARGIN = 0.10
 """Least distance from the rotor's speeds that designs keep, as a share of them (DNV-ST-0126 speaks of the
@@ -346,7 +346,7 @@ def _law(a: Answers) -> list[str]:
     law = next((one for one in a.laws if one.law == a.law), None)
     if law is None:
         return []
-    why = FAMILIES[law.law].words
+    why = family(law.law).words
     if law.probability is None:
         return [f"Law: {law.law} ({why})."]
     others = [one for one in a.laws if one.law != a.law and one.probability is not None]

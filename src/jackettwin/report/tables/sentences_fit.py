@@ -5,7 +5,7 @@ from __future__ import annotations
 from jackettwin.answers import Answers, Span
 from jackettwin.answers.result import FitAnswer
 from jackettwin.report.tables.numbers import count, digits_of, listed, quantity, words
-from jackettwin.soil.laws.families import parameter_words
+from jackettwin.soil import parameter_words
 
 _NAMED = 2
 """Modes that a sentence names: the table has all."""

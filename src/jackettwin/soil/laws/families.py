@@ -1,21 +1,23 @@
 """The support laws that can be updated: one class each, and the table they are looked up in.
 
-A law of its own is a class here with its parameters and their bounds, the law it builds, its row of numbers
-with the derivatives, and an entry in ``FAMILIES``. Updating, the command line's short forms and the report
-find all they say of it there.
+A law is a class with its parameters and their bounds, the law it builds, and its row of numbers with the
+derivatives. It is entered in ``LAWS`` here, or by an installed package as an entry point. Updating, short
+forms, twin files and the report find there all that they say of it.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import cache
 from math import pi
 from typing import ClassVar
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean
+from jackettwin.errors import look_up
+from jackettwin.plugins import plugins_of_type
 from jackettwin.soil.laws.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, OMEGA0, C
 from jackettwin.soil.laws.parameter import Parameter
 from jackettwin.soil.laws.viscoelastic import (
@@ -100,7 +102,7 @@ class KelvinVoigt(Family):
 
     def build(self, values: FloatArray, reference_hz: float) -> Law:
         """Return the law."""
-        return kelvin_voigt(float(values[0]), float(values[1]))
+        return kelvin_voigt(*map(float, values))
 
     def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
         """Return rows and slopes, as the base class says."""
@@ -123,7 +125,7 @@ class Zener(Family):
 
     def build(self, values: FloatArray, reference_hz: float) -> Law:
         """Return the law."""
-        return zener(float(values[0]), float(values[1]), float(values[2]))
+        return zener(*map(float, values))
 
     def rows(self, values: FloatArray, reference_hz: float) -> tuple[FloatArray, FloatArray]:
         """Return rows and slopes, as the base class says."""
@@ -204,11 +206,18 @@ def _empty(values: FloatArray, *, branches: int) -> tuple[FloatArray, FloatArray
     return rows, np.zeros((*rows.shape, values.shape[1]))
 
 
-FAMILIES: Mapping[str, Family] = {
-    known.name: known for known in (KelvinVoigt(), Zener(), ThreeBranches(), FractionalElement())
-}
+LAWS = (KelvinVoigt(), Zener(), ThreeBranches(), FractionalElement())
+PLUGINS = "jackettwin.support_laws"
+"""Group of entry points, each an instance of a :class:`Family`, entered by its name."""
 DEFAULT_LAWS = ("maxwell-3", "kelvin-voigt", "zener", "springpot")
 """The first is the default: soil loses about as much at every frequency, and this law does, too."""
+
+
+@cache
+def families() -> Mapping[str, Family]:
+    """Return every support law by name: ours, then those that installed packages bring."""
+    entered = plugins_of_type(PLUGINS, Family)  # type: ignore[type-abstract]
+    return {law.name: law for law in (*LAWS, *entered.values())}
 
 
 def family(name: str, *, field: str | None = None) -> Family:
@@ -219,19 +228,22 @@ def family(name: str, *, field: str | None = None) -> Family:
     InputError
         If the name is unknown.
     """
-    if name not in FAMILIES:
-        raise InputError(
-            "unknown law",
-            field=field,
-            value=name,
-            allowed=", ".join(FAMILIES),
-            remedy=did_you_mean(name, FAMILIES),
-        )
-    return FAMILIES[name]
+    return look_up(families(), name, "law", field=field)
 
 
-_PARAMETERS = {p.name: p.words for law in FAMILIES.values() for p in law.parameters}
 _ROTORS = {f"c_{axis}": f"rotor's {axis.replace('_', '-')} dashpot" for axis in ("fore_aft", "side_side")}
+
+
+def law_parameter(name: str) -> str:
+    """Return which parameter of a law a name of the ground's is of, empty if of none.
+
+    >>> law_parameter("loss_factor_vertical"), law_parameter("k1_foot_2@scoured")
+    ('loss_factor', 'k1')
+    """
+    known = {p.name for law in families().values() for p in law.parameters}
+    words = name.partition("@")[0].split("_")
+    starts = ("_".join(words[:n]) for n in range(len(words), 0, -1))
+    return next((start for start in starts if start in known), "")
 
 
 def parameter_words(name: str) -> str:
@@ -244,11 +256,10 @@ def parameter_words(name: str) -> str:
     """
     if name in _ROTORS:
         return _ROTORS[name]
+    known = {p.name: p.words for law in families().values() for p in law.parameters}
     name, _, state = name.partition("@")
-    base = next(
-        (b for b in sorted(_PARAMETERS, key=len, reverse=True) if name == b or name.startswith(f"{b}_")), ""
-    )
+    base = law_parameter(name)
     rest = name[len(base) + 1 :].replace("_", " ") if base else ""
-    said = _PARAMETERS.get(base, name.replace("_", " "))
+    said = known.get(base, name.replace("_", " "))
     said = f"{rest} {said}" if rest in ("horizontal", "vertical") else f"{said} of {rest}" if rest else said
     return f"{said} ({state})" if state else said

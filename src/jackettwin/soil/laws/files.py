@@ -52,9 +52,7 @@ class MaxwellLaw(Schema):
 
     def build(self) -> Law:
         """Return the law."""
-        return Prony(
-            k0=self.g0, k=tuple(b.g for b in self.branches), tau=tuple(b.tau_s for b in self.branches)
-        )
+        return Prony(self.g0, 0.0, tuple(b.g for b in self.branches), tuple(b.tau_s for b in self.branches))
 
 
 class SpringpotLaw(Schema):

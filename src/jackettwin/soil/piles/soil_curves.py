@@ -1,7 +1,7 @@
 """The kinds of soil reaction curves, and the table they are looked up in.
 
-A kind is a function that returns the curve of one depth, and its row: in ``SOIL_CURVES``, or as an entry point
-of an installed package. A foundation file chooses it by name, under the reaction's key in ``curves``.
+A kind is a function that returns the curve of one depth, and its row. The row is entered in ``SOIL_CURVES``
+here, or by an installed package as an entry point. A foundation file chooses a kind by its name.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from functools import cache
 from typing import Literal, NamedTuple, cast
 
 from jackettwin.errors import look_up, require, require_between
+from jackettwin.plugins import plugins_of_type
 from jackettwin.soil.ground.curves import Curve
 from jackettwin.soil.ground.profile import Clay, Point, Sand
 from jackettwin.soil.ground.py_curves import dry_stiff_clay_py, sand_py, soft_clay_py, stiff_clay_py
@@ -150,9 +151,12 @@ SOIL_CURVES = (
     SoilCurve("sand_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _sand_qz),
     SoilCurve("clay_qz", "rp2geo", "API RP 2GEO: full bearing at a tenth of the diameter", _clay_qz),
 )
+PLUGINS = "jackettwin.soil_curves"
+"""Group of entry points, each a :class:`SoilCurve`."""
 
 
 @cache
 def soil_curves(reaction: str) -> dict[str, SoilCurve]:
-    """Return the kinds of curves of a reaction by name."""
-    return {kind.name: kind for kind in SOIL_CURVES if kind.reaction == reaction}
+    """Return the kinds of curves of a reaction by name: ours, then those that installed packages bring."""
+    every = (*SOIL_CURVES, *plugins_of_type(PLUGINS, SoilCurve).values())
+    return {kind.name: kind for kind in every if kind.reaction == reaction}
