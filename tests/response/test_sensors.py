@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.sensors import Sensor, observation_matrix
+from jackettwin.response import sensors as sensors_module
+from jackettwin.response.sensors import Sensor, SensorKind, observation_matrix
 from jackettwin.structure import Assembly, assemble
+from jackettwin.structure.beam import rotation_shape
 from jackettwin.structure.check import rigid_body_motion
 
 
@@ -136,3 +138,21 @@ def test_bad_sensors_are_refused(jacket15, sensor: Sensor, message: str) -> None
 
 def test_no_sensors_give_an_empty_matrix(jacket15) -> None:
     assert observation_matrix(jacket15, ()).shape == (0, jacket15.n_dof)
+
+
+def test_another_package_adds_a_kind_of_sensor(jacket15, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A gyroscope sees the rotation about its own direction: that of a lean a quarter turn ahead."""
+    gyroscope = SensorKind(
+        "gyroscope",
+        lambda at, d: at.axes @ d @ rotation_shape(at.xi, at.length_m, at.shear),
+        lambda d: np.concatenate([np.zeros(3), d]),
+        "inclination",
+    )
+    monkeypatch.setattr(sensors_module, "plugins_of_type", lambda group, kind: {"gyroscope": gyroscope})
+    for place in ({"node": "tower_top"}, {"height_m": 60.0}):
+        turn = Sensor("g", (0.0, 1.0, 0.0), quantity="gyroscope", **place)
+        lean = Sensor("i", (1.0, 0.0, 0.0), quantity="inclination", **place)
+        both = observation_matrix(jacket15, (turn, lean)).toarray()
+        np.testing.assert_allclose(both[0], both[1], atol=1e-15)
+    with pytest.raises(InputError, match=r"sensors.g.quantity: no such kind of sensor.*motion, inclination"):
+        observation_matrix(jacket15, (Sensor("g", (1.0, 0.0, 0.0), node="tower_top", quantity="sonar"),))

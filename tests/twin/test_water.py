@@ -90,7 +90,7 @@ def test_the_share_of_water_is_that_of_the_simulated_record() -> None:
         assembly,
         family=family("kelvin-voigt"),
         rayleigh=config.rayleigh,
-        nuisance=NuisanceParameters((), water=drag),
+        nuisance=NuisanceParameters((), matrices=drag),
         highest_mode=5,
     )
     budget = damping_budget(model, np.array([2.5e9, 7.6e8, 1.0]), (1, 2, 3, 4, 5))

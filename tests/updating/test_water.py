@@ -4,16 +4,18 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 from jackettwin.errors import InputError
 from jackettwin.loads.members.drag_damping import sea_drag_damping
 from jackettwin.loads.members.morison import morison_points
 from jackettwin.loads.members.water import Water, water_mass
 from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.soil import Parameter
 from jackettwin.structure import Assembly
-from jackettwin.updating import SupportModel
+from jackettwin.updating import SupportModel, nuisance_parameters as nuisance_module
 from jackettwin.updating.budget import SOURCES, damping_budget
-from jackettwin.updating.nuisance_parameters import NuisanceParameters
+from jackettwin.updating.nuisance_parameters import NuisanceParameter, NuisanceParameters, matrix_of
 
 MODES = (1, 2, 3, 4, 5)
 TRUTH = np.array([3e9, 0.1, 2e4, 1.2, 1.5])
@@ -26,7 +28,7 @@ def wet(jacket15: Assembly, maxwell_3: Callable[..., SupportModel]) -> SupportMo
         "water_mass": water_mass(jacket15, grid, Water()),
         "water_damping": sea_drag_damping(grid, SeaState(3.0, 8.0), 72.0),
     }
-    return maxwell_3(nuisance=NuisanceParameters(("c_side_side",), water=water))
+    return maxwell_3(nuisance=NuisanceParameters(("c_side_side",), matrices=water))
 
 
 def test_factors_are_lognormal_around_one(wet: SupportModel) -> None:
@@ -65,7 +67,7 @@ def test_more_water_is_slower_by_the_modal_mass_it_adds(wet: SupportModel, jacke
     """Rayleigh's quotient: d ln f/dw = −½ φᵀM_wφ / φᵀMφ."""
     theta = np.array([3e9, 0.1, 1e2, 1.0, 1e-6])
     phi = wet.exact_modes(theta, (4,)).shapes[:, 0]
-    mass = wet.nuisance.water["water_mass"]
+    mass = wet.nuisance.matrices["water_mass"]
     share = float((phi.conj() @ (mass @ phi)).real / (phi.conj() @ (jacket15.mass @ phi)).real)
     pole, slope = (a[0] for a in (wet.predict(theta, (4,)).poles, wet.predict(theta, (4,)).slopes))
     d_ln_f = float((np.conj(pole) * slope[3]).real / abs(pole) ** 2)
@@ -78,7 +80,7 @@ def test_more_water_than_the_structure_weighs_is_refused(
 ) -> None:
     heavy = {"water_mass": 2.1 * jacket15.mass}
     with pytest.raises(InputError, match="cannot hold that much water"):
-        maxwell_3(nuisance=NuisanceParameters((), water=heavy))
+        maxwell_3(nuisance=NuisanceParameters((), matrices=heavy))
 
 
 def test_the_budget_has_a_share_of_water(wet: SupportModel) -> None:
@@ -96,3 +98,36 @@ def test_the_budget_has_a_share_of_water(wet: SupportModel) -> None:
     low, high = budget.damping_ratio_interval_90[3, 3]
     # the 5 and 95 % points of 21 even steps: e^{±0.9} about 1.5
     assert high / low == pytest.approx(np.exp(1.8), rel=0.05)
+
+
+@pytest.fixture
+def spring_on_top(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An installed package adds a spring that holds the tower top along x."""
+
+    def matrix(assembly: Assembly) -> sp.csr_array:
+        row = sp.csr_array(assembly.expand[assembly.mesh.node_dofs(assembly.structure.top_node)[:1]])
+        return sp.csr_array(row.T @ row)
+
+    stay = NuisanceParameter(Parameter("k_stay", 1e3, 1e7, "N/m"), "stiffness", matrix=matrix)
+    monkeypatch.setattr(nuisance_module, "plugins_of_type", lambda group, kind: {"stay": stay})
+
+
+@pytest.mark.usefixtures("spring_on_top")
+def test_a_parameter_of_another_package_acts_as_the_full_model_says(
+    jacket15: Assembly, maxwell_3: Callable[..., SupportModel]
+) -> None:
+    model = maxwell_3(nuisance=NuisanceParameters(matrices={"k_stay": matrix_of("k_stay")(jacket15)}))
+    assert model.parameters[-1].name == "k_stay"
+    soft, stiff = (np.array([*TRUTH[:2], k]) for k in (1e3, 1e6))
+    f = [np.abs(model.predict(theta, MODES).poles) / (2 * np.pi) for theta in (soft, stiff)]
+    np.testing.assert_allclose(f[1], model.exact_modes(stiff, MODES).frequency_hz, rtol=1e-4)
+    assert np.max(f[1] / f[0]) > 1.05
+    step = np.array([0.0, 0.0, 1e-4])
+    ahead, behind = (model.predict(stiff * np.exp(s * step), MODES).poles for s in (1, -1))
+    slopes = model.predict(stiff, MODES).slopes[:, 2]
+    np.testing.assert_allclose(slopes, (ahead - behind) / 2e-4, rtol=1e-4, atol=1e-7)
+
+
+def test_a_parameter_that_nobody_adds_is_refused() -> None:
+    with pytest.raises(InputError, match=r"update.parameters: no such parameter.*'k_stay'"):
+        matrix_of("k_stay")

@@ -6,14 +6,21 @@ from dataclasses import fields, is_dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_core import PydanticCustomError
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files.limits import in_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
 
@@ -37,6 +44,20 @@ Placed = Annotated[T, WrapValidator(_refusing_in_place)]
 _REFUSED = "refused"
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 """What pydantic calls an unknown key of a model, and of a dataclass."""
+
+
+def one_of(known: Callable[[], Iterable[str]]) -> AfterValidator:
+    """Check that a text is one of the names of a registry when a file is read, as a Literal would be."""
+
+    def check(value: str) -> str:
+        names = tuple(known())
+        if value not in names:
+            expected = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
+            raise PydanticCustomError("literal_error", "is none of {expected}", {"expected": expected})
+        return value
+
+    return AfterValidator(check)
+
 
 _BOUNDS = ("gt", "ge", "lt", "le")
 _NO_MAPPING = ("dict_type", "model_type", "model_attributes_type", "dataclass_type")

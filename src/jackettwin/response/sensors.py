@@ -1,22 +1,68 @@
-"""Where sensors sit and what they see of the structure's motion: displacement, inclination or strain."""
+"""Where sensors sit and what they see of the structure's motion: displacement, inclination or strain.
+
+Another package adds a kind of sensor by an entry point in ``jackettwin.sensors`` that is a
+:class:`SensorKind`; twin files and scenarios name it as the ``quantity`` of a sensor.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, require_between
+from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
+from jackettwin.plugins import plugins_of_type
 from jackettwin.structure import Assembly, beam
 from jackettwin.structure.forces import tube_radius
 
-Seen = Literal["motion", "inclination", "strain"]
+PLUGINS = "jackettwin.sensors"
+"""Entry points of packages that add kinds of sensors: each is a :class:`SensorKind`."""
 _ACROSS = 0.1
 """Least part of a strain gauge's direction that is across its member: 6° from the axis."""
+
+
+class ElementPlace(NamedTuple):
+    """A place in a beam element.
+
+    Attributes
+    ----------
+    xi : share of the element's length from its first end
+    length_m, shear, radius_m : L, the shear factor Φ and the tube's outer radius
+    axes : (3, 3) rows are the element's axes, along it first
+    """
+
+    xi: float
+    length_m: float
+    shear: float
+    radius_m: float
+    axes: FloatArray
+
+
+@dataclass(frozen=True)
+class SensorKind:
+    """What a kind of sensor sees of the structure's displacement.
+
+    Attributes
+    ----------
+    name : str
+        ``quantity`` of the sensors in a twin file.
+    on_element : function of an :class:`ElementPlace` and the sensor's direction, a global unit vector
+        Returns the row (12,) on translations and rotations of the element's ends, in the element's axes.
+    on_node : function of the direction, optional
+        Returns the row (6,) on a node's translations and rotations in global axes; None if a node does not
+        tell what the sensor sees.
+    recorded_as : str
+        Quantity of the channel when such a sensor is simulated.
+    """
+
+    name: str
+    on_element: Callable[[ElementPlace, FloatArray], FloatArray]
+    on_node: Callable[[FloatArray], FloatArray] | None
+    recorded_as: str
 
 
 @dataclass(frozen=True)
@@ -31,8 +77,9 @@ class Sensor:
         centre; it measures along the member.
     position : float
         Share of the member's length from its first node.
-    quantity : {"motion", "inclination", "strain"}
-        Motion is displacement, velocity or acceleration, of which modes have the same shape.
+    quantity : str
+        Of :func:`sensor_kinds`. Motion is displacement, velocity or acceleration: modes have the same shape
+        in all three.
     """
 
     channel: str
@@ -41,16 +88,68 @@ class Sensor:
     height_m: float | None = None
     member: str | None = None
     position: float = 0.5
-    quantity: Seen = "motion"
+    quantity: str = "motion"
 
 
-def sees(quantity: str) -> Seen:
-    """Return what a sensor of a measured quantity sees of the structure's displacement."""
-    match quantity:
-        case "inclination" | "strain" as deformation:
-            return deformation
-        case _:
-            return "motion"
+def _motion(at: ElementPlace, direction: FloatArray) -> FloatArray:
+    return np.asarray(at.axes @ direction @ beam.translation_shape(at.xi, at.length_m, at.shear))
+
+
+def _inclination(at: ElementPlace, direction: FloatArray) -> FloatArray:
+    axis = at.axes @ _axis_of_lean(direction)
+    return np.asarray(axis @ beam.rotation_shape(at.xi, at.length_m, at.shear))
+
+
+def _axis_of_lean(direction: FloatArray) -> FloatArray:
+    """Return the axis about which a mast turns that leans towards a direction."""
+    require(
+        abs(direction[2]) <= 1e-6,
+        "an inclination is a lean to one side",
+        field="direction",
+        value=direction.tolist(),
+        remedy="give the horizontal direction that reads positive, e.g. [1, 0, 0]",
+    )
+    return np.array([-direction[1], direction[0], 0.0])
+
+
+def _strain(at: ElementPlace, direction: FloatArray) -> FloatArray:
+    local = at.axes @ direction
+    across = float(np.hypot(local[1], local[2]))
+    require(
+        across >= _ACROSS,
+        "a strain gauge's direction points from the section's centre to the gauge",
+        field="direction",
+        value=direction.tolist(),
+        remedy="give a vector across the member",
+    )
+    y, z = at.radius_m / across * local[1:]
+    return beam.strain_shape(at.xi, at.length_m, float(y), float(z), at.shear)
+
+
+SENSOR_KINDS = {
+    kind.name: kind
+    for kind in (
+        SensorKind("motion", _motion, lambda d: np.concatenate([d, np.zeros(3)]), "acceleration"),
+        SensorKind(
+            "inclination",
+            _inclination,
+            lambda d: np.concatenate([np.zeros(3), _axis_of_lean(d)]),
+            "inclination",
+        ),
+        SensorKind("strain", _strain, None, "strain"),
+    )
+}
+
+
+def sensor_kinds() -> dict[str, SensorKind]:
+    """Return every kind of sensor by its name, those of installed packages included."""
+    added = plugins_of_type(PLUGINS, SensorKind).values()
+    return {**SENSOR_KINDS, **{kind.name: kind for kind in added}}
+
+
+def sees(quantity: str) -> str:
+    """Return the kind of sensor that measures a quantity of a record: strain, inclination, else motion."""
+    return quantity if quantity in SENSOR_KINDS else "motion"
 
 
 def observation_matrix(assembly: Assembly, sensors: tuple[Sensor, ...]) -> sp.csr_array:
@@ -90,82 +189,51 @@ def sensor_positions(assembly: Assembly, sensors: Sequence[Sensor]) -> FloatArra
 def _row(assembly: Assembly, sensor: Sensor) -> sp.csr_array:
     direction = np.asarray(sensor.direction, dtype=np.float64)
     length = np.linalg.norm(direction)
-    if not length > 0.0:
-        raise InputError(
-            "direction must not be zero",
-            field=f"sensors.{sensor.channel}.direction",
-            value=sensor.direction,
-            remedy="give a vector in global axes, e.g. [1, 0, 0]",
+    require(
+        length > 0.0,
+        "direction must not be zero",
+        field=f"sensors.{sensor.channel}.direction",
+        value=sensor.direction,
+        remedy="give a vector in global axes, e.g. [1, 0, 0]",
+    )
+    require(
+        sum(place is not None for place in (sensor.node, sensor.height_m, sensor.member)) == 1,
+        "give node, height_m or member",
+        field=f"sensors.{sensor.channel}",
+        remedy="keep exactly one of them",
+    )
+    with located(field=f"sensors.{sensor.channel}"):
+        kind = SENSOR_KINDS.get(sensor.quantity) or look_up(
+            sensor_kinds(), sensor.quantity, "kind of sensor", field="quantity"
         )
-    if sum(place is not None for place in (sensor.node, sensor.height_m, sensor.member)) != 1:
-        raise InputError(
-            "give node, height_m or member",
-            field=f"sensors.{sensor.channel}",
-            remedy="keep exactly one of them",
-        )
-    direction = direction / length
-    if sensor.quantity == "inclination":
-        direction = _axis_of_lean(sensor, direction)
-    if sensor.node is not None:
-        return sp.csr_array(direction[None, :] @ _of_node(assembly, sensor, sensor.node))
+        if sensor.node is not None:
+            return _of_node(assembly, sensor.node, kind, direction / length)
     e, xi = _on_member(assembly, sensor) if sensor.member is not None else _on_axis(assembly, sensor)
-    seen = _seen_between(assembly, sensor, e, xi, direction)
-    return sp.csr_array(seen[None, :] @ assembly.expand[assembly.mesh.element_dofs()[e]])
+    mesh = assembly.mesh
+    R, p = mesh.axes[e], mesh.properties
+    place = ElementPlace(xi, float(p.L[e]), float(p.Phi[e]), float(tube_radius(p)[e]), R)
+    with located(field=f"sensors.{sensor.channel}"):
+        seen = (kind.on_element(place, direction / length).reshape(4, 3) @ R).ravel()
+    return sp.csr_array(seen[None, :] @ assembly.expand[mesh.element_dofs()[e]])
 
 
-def _axis_of_lean(sensor: Sensor, direction: FloatArray) -> FloatArray:
-    """Return the axis about which a mast turns that leans towards a direction."""
-    if abs(direction[2]) > 1e-6:
+def _of_node(assembly: Assembly, node: str, kind: SensorKind, direction: FloatArray) -> sp.csr_array:
+    """Return what a sensor sees on a node, (1, n_dof)."""
+    require(
+        node in assembly.structure.nodes,
+        "no such node",
+        field="node",
+        value=node,
+        remedy=did_you_mean(node, assembly.structure.nodes) or "name a node, or give height_m",
+    )
+    if kind.on_node is None:
         raise InputError(
-            "an inclination is a lean to one side",
-            field=f"sensors.{sensor.channel}.direction",
-            value=sensor.direction,
-            remedy="give the horizontal direction that reads positive, e.g. [1, 0, 0]",
-        )
-    return np.array([-direction[1], direction[0], 0.0])
-
-
-def _of_node(assembly: Assembly, sensor: Sensor, node: str) -> sp.csr_array:
-    """Return (3, n_dof): translations or rotations of a node."""
-    if node not in assembly.structure.nodes:
-        raise InputError(
-            "no such node",
-            field=f"sensors.{sensor.channel}.node",
-            value=node,
-            remedy=did_you_mean(node, assembly.structure.nodes) or "name a node, or give height_m",
-        )
-    if sensor.quantity == "strain":
-        raise InputError(
-            "strain is a member's, not a node's",
-            field=f"sensors.{sensor.channel}.node",
+            f"{kind.name} is a member's, not a node's",
+            field="node",
             value=node,
             remedy="give member and position, or height_m on the tower",
         )
-    dofs = assembly.mesh.node_dofs(node)
-    return sp.csr_array(assembly.expand[dofs[3:] if sensor.quantity == "inclination" else dofs[:3]])
-
-
-def _seen_between(assembly: Assembly, sensor: Sensor, e: int, xi: float, direction: FloatArray) -> FloatArray:
-    """Return (12,): what a sensor sees of the displacements of an element's ends, in global axes."""
-    mesh, R = assembly.mesh, assembly.mesh.axes[e]
-    L, Phi = float(mesh.properties.L[e]), float(mesh.properties.Phi[e])
-    local = R @ direction
-    if sensor.quantity == "strain":
-        across = np.hypot(local[1], local[2])
-        if across < _ACROSS:
-            raise InputError(
-                "a strain gauge's direction points from the section's centre to the gauge",
-                field=f"sensors.{sensor.channel}.direction",
-                value=sensor.direction,
-                remedy="give a vector across the member",
-            )
-        y, z = tube_radius(mesh.properties)[e] / across * local[1:]
-        seen = beam.strain_shape(xi, L, float(y), float(z), Phi)
-    elif sensor.quantity == "inclination":
-        seen = local @ beam.rotation_shape(xi, L, Phi)
-    else:
-        seen = local @ beam.translation_shape(xi, L, Phi)
-    return np.asarray(seen.reshape(4, 3) @ R).ravel()
+    return sp.csr_array(kind.on_node(direction)[None, :] @ assembly.expand[assembly.mesh.node_dofs(node)])
 
 
 def _on_member(assembly: Assembly, sensor: Sensor) -> tuple[int, float]:

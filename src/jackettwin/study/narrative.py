@@ -49,6 +49,8 @@ def assumptions(
             f"Factors on the water are updated: {', '.join(config.update.water)}. Drag is linear, in one "
             "mean sea for all records; radiation damping is left out."
         )
+    if config.update.parameters:
+        lines.append(f"Updated beside the law: {', '.join(config.update.parameters)}.")
     if len(config.records) > 1:
         lines.append(
             f"{len(config.records)} records are fused on the logarithms, weighted by precision, with their "

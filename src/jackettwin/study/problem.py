@@ -20,7 +20,7 @@ from jackettwin.updating import Problem, Residuals, SupportModel, joint, support
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
 from jackettwin.updating.joint import Growth
-from jackettwin.updating.nuisance_parameters import NuisanceParameters
+from jackettwin.updating.nuisance_parameters import NuisanceParameters, matrix_of
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,9 @@ def law_model(config: TwinConfig, evidence: UpdateEvidence, law: str) -> Support
     with located(file=config.path):
         waves = None if evidence.state is None else evidence.state.totals[ALL].conditions.waves
         water = water_effects(in_the_records_sea(config.water, waves), evidence.assembly, given.water)
+        others = {name: matrix_of(name)(evidence.assembly) for name in given.parameters}
     nuisance = NuisanceParameters(
-        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, water
+        given.dashpots, given.steel_damping == "free", evidence.rotor.patterns, {**water, **others}
     )
     own = {p.name for p in (*chosen.parameters, *nuisance.parameters)}
     relative = any(residuals.relative for residuals, _ in states.values())

@@ -102,6 +102,8 @@ class UpdateSettings(Schema):
     """Instead of the mean over the records' conditions."""
     water: tuple[Literal["water_mass", "water_damping"], ...] = ()
     """Factors on the water to update as well."""
+    parameters: tuple[str, ...] = ()
+    """Other parameters to update as well, of those that installed packages add."""
     steel_damping: Literal["fixed", "free"] = "fixed"
     """Whether ratio and frequency of the steel's least damping are updated as well."""
 

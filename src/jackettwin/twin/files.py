@@ -35,7 +35,7 @@ from jackettwin.twin.schema import RefinedStructure, SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import Target, numbered_modes
-from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters
+from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters, matrix_of
 from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
 
 _STRUCTURE_KEYS = {"jacket", "members"}
@@ -299,9 +299,10 @@ def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
 def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
     """Refuse unknown bounds and priors now, not after the records have been identified."""
     known = {p.name for law in (*DEFAULT_LAWS, *update.laws) for p in family(law).parameters}
-    known |= {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters} | set(
-        update.water
-    )
+    for name in update.parameters:
+        matrix_of(name, field="parameters")
+    known |= {p.name for p in NuisanceParameters(_dashpots(update), rayleigh=True).parameters}
+    known |= {*update.water, *update.parameters}
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
             if not any(name == k or name.startswith(f"{k}_") for k in known):
@@ -371,6 +372,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
         "dashpots": _dashpots(u),
         "rotor": None if u.rotor is None else _beside(u.rotor, folder),
         "water": tuple(dict.fromkeys(u.water)),
+        "parameters": tuple(dict.fromkeys(u.parameters)),
     }
     if "modes" not in u.model_fields_set:
         targets = (t.number for t in schema.targets if t.number is not None)

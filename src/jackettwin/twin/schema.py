@@ -13,12 +13,12 @@ from pydantic import AwareDatetime, BeforeValidator, Field
 from jackettwin.decks import read_structure
 from jackettwin.decks.structure_files import RnaSchema
 from jackettwin.errors import InputError, did_you_mean, located
-from jackettwin.files import Schema
+from jackettwin.files import Schema, one_of
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
 from jackettwin.response import Sensor
-from jackettwin.response.sensors import Seen
+from jackettwin.response.sensors import sensor_kinds
 from jackettwin.simulate.scenario.schema import RayleighSchema, StructureChoice
 from jackettwin.simulate.scenario.water_files import WaterSchema
 from jackettwin.structure import Structure
@@ -141,7 +141,7 @@ class SensorSchema(Schema):
     member: str | None = None
     position: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
     direction: Vector
-    quantity: Seen = "motion"
+    quantity: Annotated[str, one_of(sensor_kinds)] = "motion"
     calibrations: list[CalibrationSchema] = []
 
     def build(self) -> Sensor:

@@ -120,10 +120,10 @@ def _ratios(model: SupportModel, points: Points, found: NumberedModes) -> FloatA
         D = law_stiffness(points.rows[:, g, None], pole)
         groups[..., g] = D.imag / pole.imag * np.einsum("kmi,kmi->km", x.conj() @ group.S, x).real
     soil, rotor = groups[..., :n_soil].sum(axis=-1), groups[..., n_soil:n_rotor].sum(axis=-1)
-    lost = np.stack([a * m + b * k, soil, rotor], axis=-1)
-    if "water_damping" in model.nuisance.water:
-        drag = n_rotor + list(model.nuisance.water).index("water_damping")
-        lost = np.concatenate([lost, groups[..., drag : drag + 1]], axis=-1)
+    of_matrices = dict(zip(model.nuisance.matrices, np.moveaxis(groups[..., n_rotor:], -1, 0), strict=True))
+    drag = of_matrices.pop("water_damping", None)
+    steel = a * m + b * k + sum(of_matrices.values())
+    lost = np.stack([steel, soil, rotor, *([] if drag is None else [drag])], axis=-1)
     # M and K of the coordinates leave out what the truncated modes move (1e-4): close the sum on ζ itself
     zeta = -pole.real / np.abs(pole)
     ratio = lost * (zeta / lost.sum(axis=-1))[..., None]

@@ -16,7 +16,7 @@ from jackettwin.response.condensation.condensed import Condensed
 from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, numbered_poles
 from jackettwin.response.modes.tracking import track_modes
 from jackettwin.soil import Family, Parameter
-from jackettwin.soil.laws.viscoelastic import Law, Prony
+from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.steel.band import condensed_for, numbered_modes
@@ -168,13 +168,13 @@ class SupportModel:
     def system(self, theta: FloatArray) -> System:
         """Return the full model at ``theta``."""
         extra = self._split(theta)[1]
-        mass, damping = self.nuisance.water_effects(extra)
+        mass, spread = self.nuisance.effects(extra)
         return build_system(
             self.assembly if mass is None else replace(self.assembly, mass=self.assembly.mass + mass),
             self.tie_groups.support(self.laws(theta)),
             rayleigh=self.nuisance.steel(self.rayleigh, extra),
             dashpots=self.nuisance.springs(self.assembly.structure.top_node, extra),
-            spread=() if damping is None else ((damping, Prony(c=1.0)),),
+            spread=spread,
         )
 
     def exact_modes(self, theta: FloatArray, modes: tuple[int, ...]) -> ExactModes:

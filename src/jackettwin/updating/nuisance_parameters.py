@@ -1,30 +1,88 @@
-"""What else the modes depend on, as free parameters: the rotor's dashpots, the water, the steel's damping."""
+"""What else the modes depend on, as free parameters: the rotor's dashpots, the water, the steel's damping.
+
+Another package adds one by an entry point in ``jackettwin.parameters`` that is a :class:`NuisanceParameter`
+with a ``matrix``; a twin file asks for it by name in ``update.parameters``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
+from typing import Literal
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import look_up, require
+from jackettwin.plugins import plugins_of_type
 from jackettwin.response.system import Matrix
 from jackettwin.soil import Parameter, Spring
-from jackettwin.soil.laws.coefficients import MASS, OMEGA0, C
-from jackettwin.soil.laws.viscoelastic import Prony
-from jackettwin.structure import Rayleigh
+from jackettwin.soil.laws.coefficients import K0, MASS, OMEGA0, C
+from jackettwin.soil.laws.viscoelastic import Law, Prony
+from jackettwin.structure import Assembly, Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}
 """Dashpots on the top node and the direction each acts in: x, y, the nacelle at zero yaw."""
-_DASHPOT_BOUNDS = (1e2, 1e7, "N·s/m")
-WATER = {
-    "water_mass": Parameter("water_mass", 0.5, 2.0, "-", 1.0, 0.2),
-    "water_damping": Parameter("water_damping", 0.05, 20.0, "-", 1.0, 0.5),
+PLUGINS = "jackettwin.parameters"
+"""Entry points of packages that add parameters: each is a :class:`NuisanceParameter`."""
+
+
+@dataclass(frozen=True)
+class NuisanceParameter:
+    """A free parameter beside those of the support law: the size of a matrix on the structure's DOFs.
+
+    Attributes
+    ----------
+    parameter : Parameter
+        Its name, bounds and prior.
+    acts_as : {"stiffness", "damping", "mass"}
+        What the matrix is.
+    at_rest : float
+        The value that the structure's own matrices hold: 1 for a factor on mass that is in them already.
+    matrix : function of the assembly, optional
+        Returns the symmetric matrix for a value of 1, (assembly.n_dof, assembly.n_dof). None if other keys of
+        the twin file give it: ``update.rotor``, ``water``.
+    """
+
+    parameter: Parameter
+    acts_as: Literal["stiffness", "damping", "mass"]
+    at_rest: float = 0.0
+    matrix: Callable[[Assembly], Matrix] | None = None
+
+
+NUISANCE_PARAMETERS = {
+    one.parameter.name: one
+    for one in (
+        NuisanceParameter(Parameter("c_fore_aft", 1e2, 1e7, "N·s/m"), "damping"),
+        NuisanceParameter(Parameter("c_side_side", 1e2, 1e7, "N·s/m"), "damping"),
+        # factors on the water; C_a and growth are known to a fifth, C_D and the sea to a half
+        NuisanceParameter(Parameter("water_mass", 0.5, 2.0, "-", 1.0, 0.2), "mass", at_rest=1.0),
+        NuisanceParameter(Parameter("water_damping", 0.05, 20.0, "-", 1.0, 0.5), "damping"),
+    )
 }
-"""Factors on water that moves with the members, and on its linear drag; C_a and growth are known to a fifth,
-C_D and the sea to a half."""
+
+
+def nuisance_parameters() -> dict[str, NuisanceParameter]:
+    """Return every parameter beside the law's by its name, those of installed packages included."""
+    added = plugins_of_type(PLUGINS, NuisanceParameter).values()
+    return {**NUISANCE_PARAMETERS, **{one.parameter.name: one for one in added}}
+
+
+def matrix_of(name: str, *, field: str = "update.parameters") -> Callable[[Assembly], Matrix]:
+    """Return what makes the matrix of a parameter that installed packages add.
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter, or another key of the twin file asks for it.
+    """
+    table = {known: one.matrix for known, one in nuisance_parameters().items() if one.matrix is not None}
+    remedy = "install the package that adds it; dashpots, water and steel_damping are keys of their own"
+    return look_up(table, name, "parameter beside the law's", field=field, remedy=remedy)
+
+
+_PLACES = {"stiffness": K0, "damping": C, "mass": MASS}
 STEEL = (Parameter("rayleigh_ratio", 1e-4, 0.03, "-"), Parameter("rayleigh_frequency_hz", 0.1, 1.0, "Hz"))
 """Ratio and frequency of the steel's least damping: wide, and narrowed where they would overdamp a mode."""
 
@@ -41,27 +99,26 @@ class NuisanceParameters:
         Whether ratio and frequency of the steel's smallest damping are free.
     patterns : {dashpot: (6, 6)}
         What a dashpot of 1 N·s/m is on the top node's translations and rotations; without, a translation's.
-    water : {factor: (assembly.n_dof, assembly.n_dof)}
-        Of ``WATER``: mass of water and growth that the assembly holds, and damping, at a factor of one.
+    matrices : {parameter: (assembly.n_dof, assembly.n_dof)}
+        What the other parameters of :func:`nuisance_parameters` are at a value of one: mass of water and
+        growth that the assembly holds, damping of its drag.
     """
 
     dashpots: tuple[str, ...] = ()
     rayleigh: bool = False
     patterns: Mapping[str, FloatArray] = field(default_factory=dict)
-    water: Mapping[str, Matrix] = field(default_factory=dict)
+    matrices: Mapping[str, Matrix] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name in self.dashpots:
-            if name not in DASHPOTS:
-                raise InputError(
-                    "no such dashpot", field="update.dashpots", value=name, allowed=", ".join(DASHPOTS)
-                )
+            look_up(DASHPOTS, name, "dashpot", field="update.dashpots")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The parameters in the order of the vector: dashpots, water, then the steel's."""
-        dashpots = (Parameter(name, *_DASHPOT_BOUNDS) for name in self.dashpots)
-        return (*dashpots, *(WATER[name] for name in self.water), *(STEEL if self.rayleigh else ()))
+        """The parameters in the order of the vector: dashpots, those with matrices, then the steel's."""
+        table = nuisance_parameters()
+        own = (table[name].parameter for name in (*self.dashpots, *self.matrices))
+        return (*own, *(STEEL if self.rayleigh else ()))
 
     def springs(self, node: str, values: FloatArray) -> tuple[Spring, ...]:
         """Return the dashpots on a node at these values of the extra parameters."""
@@ -76,30 +133,35 @@ class NuisanceParameters:
         """Return the steel's damping at these values of the extra parameters."""
         return Rayleigh.minimum(float(values[-2]), float(values[-1])) if self.rayleigh else fixed
 
-    def water_effects(self, values: FloatArray) -> tuple[Matrix | None, Matrix | None]:
-        """Return what comes to the assembly's mass, and the drag's damping, at these values; None without."""
-        factor = dict(zip(self.water, values[len(self.dashpots) :], strict=False))
-        mass, damping = self.water.get("water_mass"), self.water.get("water_damping")
-        return (
-            None if mass is None else (factor["water_mass"] - 1.0) * mass,
-            None if damping is None else factor["water_damping"] * damping,
-        )
+    def effects(self, values: FloatArray) -> tuple[Matrix | None, tuple[tuple[Matrix, Law], ...]]:
+        """Return what they add to the assembly's mass, None if nothing, and their springs and dampers."""
+        table = nuisance_parameters()
+        mass: Matrix | None = None
+        spread: list[tuple[Matrix, Law]] = []
+        for (name, matrix), value in zip(self.matrices.items(), values[len(self.dashpots) :], strict=False):
+            kind = table[name]
+            added = (value - kind.at_rest) * matrix
+            if kind.acts_as == "mass":
+                mass = added if mass is None else mass + added
+            else:
+                spread.append((added, Prony(c=1.0) if kind.acts_as == "damping" else Prony(k0=1.0)))
+        return mass, tuple(spread)
 
     def rows(self, values: FloatArray, width: int) -> tuple[FloatArray, FloatArray]:
-        """Return the law rows of dashpots and water (n_sets, n_groups, width) and d rows/d ln θ (…, n_extra).
+        """Return the law rows of dashpots and matrices (n_sets, n_groups, width), d rows/d ln θ (…, n_extra).
 
         Parameters
         ----------
         values : (n_sets, n_extra)
         """
         n_sets, n_extra = values.shape
-        names = (*self.dashpots, *self.water)
+        table, names = nuisance_parameters(), (*self.dashpots, *self.matrices)
         rows = np.zeros((n_sets, len(names), width))
         rows[..., OMEGA0] = 1.0
         jacobian = np.zeros((*rows.shape, n_extra))
         for j, name in enumerate(names):
-            place, at_rest = (MASS, 1.0) if name == "water_mass" else (C, 0.0)
-            rows[:, j, place] = values[:, j] - at_rest
+            place = _PLACES[table[name].acts_as]
+            rows[:, j, place] = values[:, j] - table[name].at_rest
             jacobian[:, j, place, j] = values[:, j]
         return rows, jacobian
 
@@ -121,7 +183,7 @@ class NuisanceParameters:
         Parameters
         ----------
         mass : (n, n) of the structure, water included
-        patterns : (n, n) of dashpots and water
+        patterns : (n, n) of dashpots and matrices
         low : least factor on the water's mass
 
         Raises
@@ -129,13 +191,13 @@ class NuisanceParameters:
         InputError
             If what is left at the least factor is no mass.
         """
-        if "water_mass" not in self.water:
+        if "water_mass" not in self.matrices:
             return
-        water = patterns[len(self.dashpots) + list(self.water).index("water_mass")]
-        if np.linalg.eigvalsh(mass - (1.0 - low) * water)[0] <= 0.0:
-            raise InputError(
-                "the structure's mass cannot hold that much water",
-                field="water.adds_mass",
-                value=False,
-                remedy="adds_mass: true if the structure has the mass of its steel; else less growth or C_a",
-            )
+        water = patterns[len(self.dashpots) + list(self.matrices).index("water_mass")]
+        require(
+            np.linalg.eigvalsh(mass - (1.0 - low) * water)[0] > 0.0,
+            "the structure's mass cannot hold that much water",
+            field="water.adds_mass",
+            value=False,
+            remedy="adds_mass: true if the structure has the mass of its steel; else less growth or C_a",
+        )
