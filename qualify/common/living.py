@@ -19,9 +19,9 @@ from tests.support.observations import estimate, observation
 from jackettwin.service import ServiceSettings, add_twin
 from jackettwin.service.context import Service
 from jackettwin.service.intake.files import take_file
-from jackettwin.service.work import engine
 from jackettwin.service.work.dispatch import Dispatcher
-from jackettwin.service.work.tasks import read_file
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.tasks import read_file
 from jackettwin.store import assets, open_database, reading, results, sqlite_url, tables, work, writing
 from jackettwin.twin import OBSERVATION
 

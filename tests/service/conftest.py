@@ -23,8 +23,8 @@ from jackettwin.service.context import Service
 from jackettwin.service.web import auth
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.catalogue import add_text_version
-from jackettwin.service.work import engine, verdict
 from jackettwin.service.work.dispatch import Dispatcher
+from jackettwin.service.workers import engine, verdict
 from jackettwin.store import open_database, people, read_waveform, work, writing
 from jackettwin.twin import OBSERVATION
 

@@ -3,6 +3,7 @@
 import io
 import json
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -357,3 +358,16 @@ def test_a_query_that_nobody_reads_is_refused(client: TestClient, path: str) -> 
     problem = answer.json()
     assert problem["field"] in path and problem["detail"] == "no such query parameter"
     assert problem["allowed"]
+
+
+def test_more_requests_at_once_than_threads_are_all_answered(client: TestClient, service: Service) -> None:
+    """Each holds a connection and needs a thread to go on, while the others wait for SQLite's only writer."""
+    body = {"time_utc": ["2025-03-01T12:00:00Z"], "values": {"wind": [8.0]}}
+
+    def send(k: int) -> int:
+        if k % 2:
+            return client.get("/api/v1/jobs").status_code
+        return client.post("/api/v1/assets/wtg/conditions", json=body).status_code
+
+    with ThreadPoolExecutor(120) as pool:
+        assert set(pool.map(send, range(240))) == {200}

@@ -9,8 +9,8 @@ import pytest
 from distributed.scheduler import KilledWorker
 
 from jackettwin.service import ServiceSettings
-from jackettwin.service.work.compute import Compute
-from jackettwin.service.work.task_status import NoWorker
+from jackettwin.service.workers.cluster import Compute
+from jackettwin.service.workers.task_status import NoWorker
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_a_worker_that_was_given_up_is_replaced(compute: Compute) -> None:
 
 
 def test_a_worker_has_loaded_what_it_needs_before_its_first_task(compute: Compute) -> None:
-    loaded = "'jackettwin.service.work.engine' in __import__('sys').modules"
+    loaded = "'jackettwin.service.workers.engine' in __import__('sys').modules"
     assert compute.submit(eval, loaded).result(timeout=60)
 
 

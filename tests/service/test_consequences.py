@@ -115,7 +115,7 @@ def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(service: S
         job = work.lease(connection, "slow", 1, service.now())[0]
         task = consequences.task_of(connection, service, job)
         work.bury(connection, "slow")
-    from jackettwin.service.work.tasks import observe_stored
+    from jackettwin.service.workers.tasks import observe_stored
 
     slow = type(service)(service.settings, service.database, service.compute, "slow")
     turn(service)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
 from jackettwin.service.web.catalogue import add_text_version
-from jackettwin.service.work.task_status import NoWorker
+from jackettwin.service.workers.task_status import NoWorker
 from jackettwin.store import reading, writing
 from jackettwin.store.records import find_record
 
@@ -39,6 +40,27 @@ def test_a_file_becomes_a_record_and_leaves_the_inbox(service: Service) -> None:
     with reading(service.database) as connection:
         assert find_record(connection, "wtg", found.record_id) is not None
     assert list(path.parent.iterdir()) == []
+
+
+def test_a_record_is_carried_over_from_the_folder_of_another_store(service: Service) -> None:
+    """Its content, and so its number, stays: a store that cannot be opened any more loses no record."""
+    first = taken(service, dropped(service, record_file(1)))
+    assert first is not None
+    with reading(service.database) as connection:
+        before = find_record(connection, "wtg", first.record_id)
+    with writing(service.database) as connection:
+        add_text_version(connection, service, "new", TWIN, {}, "test")
+    path = service.settings.inbox / "new" / Path(before.waveform).name
+    shutil.copy(service.settings.store / before.waveform, path)
+    again = taken(service, path)
+    assert again is not None and again.new and again.record_id == first.record_id
+    with reading(service.database) as connection:
+        after = find_record(connection, "new", again.record_id)
+    assert (after.start_utc, after.channels, after.conditions) == (
+        before.start_utc,
+        before.channels,
+        before.conditions,
+    )
 
 
 def test_an_asset_has_its_folder_from_the_start(service: Service) -> None:

@@ -17,11 +17,11 @@ from tests.service.test_security import token
 from tests.store.conftest import fresh
 
 from jackettwin.errors import InputError
+from jackettwin.service.answer_cache import Answer, AnswerCache
 from jackettwin.service.context import Service
 from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.intake.mqtt import read_packets
 from jackettwin.service.web import app as web, auth
-from jackettwin.service.web.answer_cache import Rendered, compressed
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.routes import health
 from jackettwin.store import people, writing
@@ -182,15 +182,15 @@ def test_no_message_of_a_stranger_holds_up_those_behind_it(topic: str, body: dic
 
 def test_answers_kept_count_what_was_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     """A reader's long questions fill no memory."""
-    monkeypatch.setattr("jackettwin.service.web.answer_cache._MOST_BYTES", 100_000)
-    kept = Rendered()
+    monkeypatch.setattr("jackettwin.service.answer_cache._MOST_BYTES", 100_000)
+    kept = AnswerCache()
     for k in range(50):
-        kept.keep(f"/{k}?{'x' * 20_000}", compressed(1, b"body"))
+        kept.keep(f"/{k}?{'x' * 20_000}", Answer.of(1, b"body"))
     assert sum(sys.getsizeof(question) for question in kept._answers) < 100_000
 
 
 def test_names_at_random_are_slowed_down_too(stranger: TestClient, monkeypatch) -> None:
-    monkeypatch.setattr(auth, "GUESSES_FROM", 8)
+    monkeypatch.setattr(auth, "ATTEMPTS_FROM", 8)
     for k in range(8):
         assert stranger.post("/api/v1/login", json={"name": f"u{k}", "password": "x" * 12}).status_code == 401
     assert stranger.post("/api/v1/login", json={"name": "admin", "password": PASSWORD}).status_code == 429

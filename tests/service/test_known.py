@@ -11,8 +11,8 @@ import pytest
 from tests.service.conftest import NOON
 from tests.support.observations import estimate, observation
 
-from jackettwin.service.work import engine, verdict
-from jackettwin.service.work.tasks import Question, know
+from jackettwin.service.workers import engine, verdict
+from jackettwin.service.workers.tasks import Question, know
 from jackettwin.twin import OBSERVATION
 
 TWIN = """structure: jacket15

@@ -15,11 +15,11 @@ from sqlalchemy import event
 from tests.service.conftest import NOON, TWIN, make_service, turn, upload
 
 from jackettwin.service import adopt_version, rebuild
+from jackettwin.service.answer_cache import Answer, AnswerCache, has_tag
 from jackettwin.service.context import Service
-from jackettwin.service.web.answer_cache import Rendered, compressed, has_tag
 from jackettwin.service.web.app import create_app
+from jackettwin.service.web.dependencies import Told
 from jackettwin.service.web.routes import assets, modes, records
-from jackettwin.service.web.routes.common import Told
 from jackettwin.service.work.housekeeping import Housekeeping, prune
 from jackettwin.store import journal, results, writing
 from jackettwin.store.tables import events
@@ -101,7 +101,7 @@ def test_an_answer_costs_so_many_queries_and_a_known_one_two(
 ) -> None:
     client, service = standing
     url = filled(path, client)
-    service.rendered = Rendered()
+    service.answers = AnswerCache()
     with counted(service) as statements:
         first = client.get(url)
     assert first.status_code == 200
@@ -174,7 +174,7 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
     for number, step in enumerate(steps):
         step()
         urls = [filled(path, client) for path in QUERIES]
-        service.rendered = Rendered()
+        service.answers = AnswerCache()
         found = {url: client.get(url) for url in urls}
         now = {url: (answer.content, answer.headers["etag"]) for url, answer in found.items()}
         for url in now.keys() & before.keys():
@@ -186,10 +186,10 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
 
 
 def test_answers_kept_take_no_more_than_their_room(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("jackettwin.service.web.answer_cache._MOST_BYTES", 5000)
-    kept = Rendered()
+    monkeypatch.setattr("jackettwin.service.answer_cache._MOST_BYTES", 5000)
+    kept = AnswerCache()
     for k in range(10):
-        kept.keep(f"/{k}", compressed(1, b"body"))
+        kept.keep(f"/{k}", Answer.of(1, b"body"))
     assert kept.find("/9", 1) is not None and kept.find("/9", 1).body == b"body"  # type: ignore[union-attr]
     assert kept.find("/9", 2) is None
     assert [k for k in range(10) if kept.find(f"/{k}", 1)] == [6, 7, 8, 9]

@@ -21,7 +21,7 @@ from jackettwin.service.context import Service
 from jackettwin.service.settings import refuse_exposed
 from jackettwin.service.web import auth, pages
 from jackettwin.service.web.app import API, ROUTERS, create_app
-from jackettwin.service.work.tasks import File, read_file
+from jackettwin.service.workers.tasks import File, read_file
 from jackettwin.store import people, results, writing
 
 OPEN = {

@@ -14,7 +14,7 @@ from jackettwin.errors import InputError
 from jackettwin.service import ServiceSettings, serve
 from jackettwin.service.context import Service
 from jackettwin.service.intake.mqtt import MqttIntake
-from jackettwin.service.work.compute import Compute
+from jackettwin.service.workers.cluster import Compute
 
 
 @pytest.fixture(autouse=True)

@@ -18,8 +18,8 @@ from tests.service.servers import Broker, Database, Server, opened, publish
 
 from jackettwin.service import add_twin, take_here
 from jackettwin.service.web.app import create_app
-from jackettwin.service.work import engine
-from jackettwin.service.work.tasks import File, read_file
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.tasks import File, read_file
 from jackettwin.store import sqlite_url, work, writing
 from jackettwin.store.backup import backup, restore
 

@@ -11,7 +11,7 @@ from tests.service.conftest import TWIN, turn, upload
 from tests.support.observations import seen
 
 from jackettwin.service.context import Service
-from jackettwin.service.work import engine, verdict
+from jackettwin.service.workers import engine, verdict
 from jackettwin.twin import TwinState, advance_all
 
 ALARM = {

@@ -1,15 +1,13 @@
 """A backup restores into either kind of database; a damaged one restores nothing."""
 
-import io
-import json
-import tarfile
 from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from sqlalchemy import Engine, func, select
+from sqlalchemy import Engine, func, select, text
+from tests.store.test_database import with_next_migration
 
 from jackettwin.cli.restore import restore_command
 from jackettwin.errors import InputError
@@ -83,45 +81,38 @@ def test_a_store_that_holds_something_is_not_overwritten(database: Engine, tmp_p
         restore(tmp_path / "all.tar.gz", database, tmp_path / "b")
 
 
-@pytest.mark.parametrize("schema", ["0001", "0002", "0003"])
-def test_a_backup_of_an_older_schema_is_read_for_ever(database: Engine, tmp_path: Path, schema: str) -> None:
+def test_a_backup_of_an_older_schema_is_read_for_ever(
+    database: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It is put into tables as they were then, which are then migrated."""
     filled(database, tmp_path / "a")
     with writing(database) as c:
         results.put_knowledge(c, "wtg", 1, {"known": {"law": "zener"}, "judged": None}, None, NOW)
         c.execute(tables.windows.insert().values(asset="wtg", window_utc=NOW, n_packets=2, n_known=2))
-    backup(database, tmp_path / "a", tmp_path / "new.tar.gz")
-    as_written_by(schema, tmp_path / "new.tar.gz", tmp_path / "old.tar.gz")
+    backup(database, tmp_path / "a", tmp_path / "old.tar.gz")
+    with_next_migration(tmp_path, monkeypatch)
     other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
     counts = restore(tmp_path / "old.tar.gz", other, tmp_path / "b")
-    assert (counts["records"], counts["knowledge"]) == (1, 1)
+    assert (counts["records"], counts["knowledge"], counts["windows"]) == (1, 1, 1)
     with other.connect() as c:
         assert results.find_supports(c, "wtg", 1) == {"law": "zener"}
         assert records.find_record(c, "wtg", "ab12").start_utc == NOW
+        assert c.scalar(text("select n_late from windows")) == 0
     other.dispose()
 
 
-def as_written_by(schema: str, new: Path, old: Path) -> None:
-    """Write a backup as versions before wrote it: knowledge by model, no archive, fewer columns."""
-    with tarfile.open(new) as source, tarfile.open(old, "w:gz") as target:
-        for member in source:
-            content = source.extractfile(member).read()
-            if member.name == "manifest.json":
-                content = json.dumps({**json.loads(content), "schema_version": schema}).encode()
-            if member.name == "tables/assets.jsonl":
-                row = json.loads(content)
-                del row["archived_utc"]
-                content = json.dumps(row).encode()
-            if member.name == "tables/knowledge.jsonl" and schema < "0003":
-                row = json.loads(content)
-                del row["version"], row["report"]
-                content = json.dumps({**row, "model_hash": "m"}).encode()
-            if member.name == "tables/windows.jsonl" and schema == "0001":
-                row = json.loads(content)
-                del row["n_known"]
-                content = json.dumps(row).encode()
-            member.size = len(content)
-            target.addfile(member, io.BytesIO(content))
+@pytest.mark.parametrize(("schema", "said"), [("0004", "before 0.1.0"), ("9999", "newer version")])
+def test_a_backup_of_a_schema_that_cannot_be_migrated_is_refused(
+    database: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, schema: str, said: str
+) -> None:
+    filled(database, tmp_path / "a")
+    with monkeypatch.context() as then:
+        then.setattr("jackettwin.store.backup.SCHEMA_VERSION", schema)
+        backup(database, tmp_path / "a", tmp_path / "other.tar.gz")
+    other = open_database(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    with pytest.raises(InputError, match=said):
+        restore(tmp_path / "other.tar.gz", other, tmp_path / "b")
+    other.dispose()
 
 
 def test_a_failed_restore_leaves_no_store_behind(tmp_path: Path) -> None:

@@ -1,116 +1,146 @@
-"""A database of the schema before: migrated when it is opened, kept as it was, once for all who start."""
+"""The schema: one migration a release, never edited; older stores migrated once, with a copy, or refused."""
 
 from __future__ import annotations
 
+import hashlib
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from alembic import command
 from alembic.autogenerate import compare_metadata
-from alembic.config import Config
 from alembic.migration import MigrationContext
 from sqlalchemy import Engine, inspect, text
 from tests.service.servers import opened
 from tests.store.conftest import fresh
 
 from jackettwin.errors import InputError
-from jackettwin.store import database as module, open_database, reading, streams, tables, writing
+from jackettwin.store import backup, database as module, open_database, reading, tables, writing
 
-BEFORE = "0001"
+NOW = datetime(2025, 3, 1, 12, tzinfo=UTC)
+MIGRATIONS = Path(module.__file__).with_name("migrations")
+RELEASED = {"0100_initial.py": "17d3a6aed6d1a270cf0bdfcb0335e61bbb664104849f32d2576a0eff7502b203"}
+"""SHA-256 of every migration that stores have run. Whatever changes since is a migration of its own."""
+NEXT = """
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0101"
+down_revision = "0100"
 
 
-def at(minute: int) -> str:
-    """Return a time as SQLite keeps it."""
-    return f"2025-03-01 12:{minute:02d}:00.000000"
+def upgrade() -> None:
+    op.add_column("windows", sa.Column("n_late", sa.Integer(), nullable=False, server_default="0"))
+
+
+def downgrade() -> None:
+    op.drop_column("windows", "n_late")
+"""
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
-def old(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    """A database of the schema before, with a turbine whose stream has an open and a closed window."""
-    url = f"sqlite:///{tmp_path / 'twin.sqlite'}"
-    if request.param == "postgresql":
-        url = fresh(request.getfixturevalue("postgresql_url"))
-    engine = open_database(url, migrate=False)
-    with writing(engine) as connection:
-        config = Config()
-        config.set_main_option("script_location", str(Path(module.__file__).with_name("migrations")))
-        config.attributes["connection"] = connection
-        command.upgrade(config, BEFORE)
-        connection.execute(
-            text("insert into assets (name, created_utc, adopted_version) values ('wtg', :t, 1)"),
-            {"t": at(0)},
-        )
-        for k, minute in enumerate((0, 0, 10)):
-            row = {
-                "t": f"2025-03-01 12:{minute + k:02d}:00.000000",
-                "w": f"2025-03-01 12:{minute:02d}:00.000000",
-            }
-            connection.execute(
-                text(
-                    "insert into packets (asset, channel, t0_utc, window_utc, rate_hz, samples) "
-                    "values ('wtg', 'a', :t, :w, 1.0, :s)"
-                ),
-                {**row, "s": b"\0" * 8},
-            )
-        connection.execute(
-            text("insert into windows (asset, window_utc, n_packets, record_id) values ('wtg', :t, 2, 'r')"),
-            {"t": at(0)},
-        )
-    engine.dispose()
+def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """Of an empty database."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'twin.sqlite'}"
+    return fresh(request.getfixturevalue("postgresql_url"))
+
+
+@pytest.fixture
+def old(url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A database of today's schema, with a turbine, in the hands of a version with one migration more."""
+    with opened(url) as engine, writing(engine) as connection:
+        row = {"name": "wtg", "created_utc": NOW, "adopted_version": 1}
+        connection.execute(tables.assets.insert().values(**row))
+    with_next_migration(tmp_path, monkeypatch)
     yield url
 
 
-def differences(engine: Engine) -> list[object]:
-    with engine.connect() as connection:
-        return list(compare_metadata(MigrationContext.configure(connection), tables.metadata))
+def with_next_migration(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(MIGRATIONS, folder / "migrations", ignore=shutil.ignore_patterns("__pycache__"))
+    (folder / "migrations" / "versions" / "0101_next.py").write_text(NEXT)
+    monkeypatch.setattr(module, "_MIGRATIONS", folder / "migrations")
+    for user in (module, backup):
+        monkeypatch.setattr(user, "SCHEMA_VERSION", "0101")
+
+
+def windows(engine: Engine, schema: str | None = None) -> list[str]:
+    return [column["name"] for column in inspect(engine).get_columns("windows", schema=schema)]
+
+
+def test_a_new_database_is_what_the_tables_say(url: str) -> None:
+    with opened(url) as engine, engine.connect() as connection:
+        strict = {"compare_type": True, "compare_server_default": True}
+        context = MigrationContext.configure(connection, opts=strict)
+        assert compare_metadata(context, tables.metadata) == []
+        found = inspect(connection)
+        for table in tables.metadata.sorted_tables:  # what the comparison leaves out
+            key = found.get_pk_constraint(table.name)
+            assert key["constrained_columns"] == [c.name for c in table.primary_key.columns]
+            assert key["name"] == f"pk_{table.name}"
+
+
+def test_released_migrations_are_never_edited() -> None:
+    found = {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted((MIGRATIONS / "versions").glob("*.py"))
+    }
+    assert {name: found.get(name) for name in RELEASED} == RELEASED
 
 
 def test_it_is_migrated_and_a_copy_is_kept(old: str, tmp_path: Path) -> None:
     with opened(old) as engine:
-        assert differences(engine) == []
+        assert "n_late" in windows(engine)
         with reading(engine) as connection:
             assert [row.name for row in connection.execute(tables.assets.select())] == ["wtg"]
-            assert [w.n_known for w in streams.open_windows(connection)] == [1]  # of the second window
     if old.startswith("sqlite"):
-        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0001.sqlite'}", None
+        copy, schema = f"sqlite:///{tmp_path / 'twin.schema-0100.sqlite'}", None
     else:
-        copy, schema = old, "schema_0001"
+        copy, schema = old, "schema_0100"
     engine = open_database(copy, migrate=False)
-    assert "n_known" not in [c["name"] for c in inspect(engine).get_columns("windows", schema=schema)]
+    assert "n_late" not in windows(engine, schema)
     with reading(engine) as connection:
-        name = "packets" if schema is None else f"{schema}.packets"
-        assert connection.scalar(text(f"select count(*) from {name}")) == 3
+        name = "assets" if schema is None else f"{schema}.assets"
+        assert connection.scalar(text(f"select count(*) from {name}")) == 1
     engine.dispose()
 
 
 def test_servers_that_start_together_migrate_it_once(old: str) -> None:
-    def start(_: int) -> int:
+    def start(_: int) -> bool:
         with opened(old) as engine:
-            return len(differences(engine))
+            return "n_late" in windows(engine)
 
     with ThreadPoolExecutor(4) as pool:
-        assert list(pool.map(start, range(4))) == [0] * 4
+        assert list(pool.map(start, range(4))) == [True] * 4
 
 
-def test_a_migration_that_fails_leaves_everything_as_it_was(old: str, monkeypatch) -> None:
+def test_a_migration_that_fails_changes_nothing(old: str, monkeypatch: pytest.MonkeyPatch) -> None:
     original = module.command.upgrade
 
     def breaking(*arguments: object) -> None:
         original(*arguments)
         raise OSError("no space left")
 
-    monkeypatch.setattr(module.command, "upgrade", breaking)
-    with pytest.raises(OSError, match="no space"):
-        open_database(old)
-    monkeypatch.undo()
+    with monkeypatch.context() as broken:
+        broken.setattr(module.command, "upgrade", breaking)
+        with pytest.raises(OSError, match="no space"):
+            open_database(old)
+    engine = open_database(old, migrate=False)
+    assert "n_late" not in windows(engine)
+    engine.dispose()
     with opened(old) as engine:
-        assert differences(engine) == []
+        assert "n_late" in windows(engine)
 
 
-def test_a_newer_one_is_refused(old: str) -> None:
-    with opened(old) as engine, writing(engine) as connection:
-        connection.execute(text("update alembic_version set version_num = '9999'"))
-    with pytest.raises(InputError, match="newer version"):
-        open_database(old)
+@pytest.mark.parametrize(
+    ("schema", "said"),
+    [("9999", "newer version"), ("0004", "before 0.1.0"), ("0001", "jackettwin intake OLD/records")],
+)
+def test_a_schema_that_cannot_be_migrated_is_refused(url: str, schema: str, said: str) -> None:
+    """The databases of versions that were never released had schemas 0001 to 0004."""
+    with opened(url) as engine, writing(engine) as connection:
+        connection.execute(text(f"update alembic_version set version_num = '{schema}'"))
+    with pytest.raises(InputError, match=said):
+        open_database(url)

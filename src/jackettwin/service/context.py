@@ -12,12 +12,12 @@ from functools import cached_property
 
 from sqlalchemy import Engine
 
+from jackettwin.service.answer_cache import AnswerCache
+from jackettwin.service.day_cache import DayCache
+from jackettwin.service.event_feed import Feed
+from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.service.web.answer_cache import Rendered
-from jackettwin.service.web.auth import Guesses
-from jackettwin.service.web.day_cache import Remembered
-from jackettwin.service.web.feed import Feed
-from jackettwin.service.work.compute import Compute
+from jackettwin.service.workers.cluster import Compute
 from jackettwin.store import open_database
 
 
@@ -43,9 +43,9 @@ class Service:
     compute: Compute
     server_id: str
     now: Callable[[], datetime] = _now
-    guesses: Guesses = field(default_factory=Guesses)
-    remembered: Remembered = field(default_factory=Remembered)
-    rendered: Rendered = field(default_factory=Rendered)
+    login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
+    days: DayCache = field(default_factory=DayCache)
+    answers: AnswerCache = field(default_factory=AnswerCache)
     chores: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True

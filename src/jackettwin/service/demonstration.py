@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from jackettwin.records import read_record
 from jackettwin.service.intake.files import accept
 from jackettwin.service.store_commands import add_twin
-from jackettwin.service.work.tasks import stored
+from jackettwin.service.workers.tasks import stored
 from jackettwin.store import assets, reading, writing
 from jackettwin.twin import read_twin
 

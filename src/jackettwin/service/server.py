@@ -27,7 +27,7 @@ from jackettwin.service.settings import ServiceSettings, refuse_exposed
 from jackettwin.service.web.app import create_app
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.work.housekeeping import Housekeeping
-from jackettwin.service.work.task_status import NoWorker, one_heap
+from jackettwin.service.workers.task_status import NoWorker, one_heap
 from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)

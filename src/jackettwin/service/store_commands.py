@@ -17,7 +17,7 @@ from jackettwin.service.intake.files import Accepted, take_file
 from jackettwin.service.settings import ServiceSettings
 from jackettwin.service.web.catalogue import add_version, adopt, archive
 from jackettwin.service.work import consequences
-from jackettwin.service.work.tasks import read_file
+from jackettwin.service.workers.tasks import read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 from jackettwin.store.results import StoredObservation
 from jackettwin.store.tables import observations

@@ -5,6 +5,7 @@ from .database import (
     writing as writing,
 )
 from .waveforms import (
+    is_waveform as is_waveform,
     read_waveform as read_waveform,
     waveform_path as waveform_path,
     write_waveform as write_waveform,

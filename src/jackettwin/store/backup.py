@@ -19,7 +19,7 @@ from sqlalchemy import Connection, DateTime, Engine, LargeBinary, MetaData, Tabl
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
 from jackettwin.store import tables
-from jackettwin.store.database import bring_to, writing
+from jackettwin.store.database import bring_to, check_schema, writing
 from jackettwin.store.tables import SCHEMA_VERSION
 
 _LEFT_OUT = ("servers",)
@@ -117,19 +117,11 @@ def _add(archive: tarfile.TarFile, name: str, content: bytes) -> None:
 
 
 def _schema(archive: tarfile.TarFile, source: Path) -> str:
-    """Return the schema of a backup: ours, or an older one."""
+    """Return the schema of a backup: that of this version, or an older one."""
     stream = archive.extractfile("manifest.json")
     manifest: Mapping[str, Any] = json.load(stream) if stream is not None else {}
-    found = manifest.get("schema_version")
-    if not isinstance(found, str) or not "0001" <= found <= SCHEMA_VERSION:
-        raise InputError(
-            "the backup is of a newer version, or of none",
-            file=source,
-            field="schema_version",
-            value=found,
-            allowed=f"0001 to {SCHEMA_VERSION}",
-            remedy="install the version that wrote it",
-        )
+    found = str(manifest.get("schema_version"))
+    check_schema(found, "schema_version", source)
     return found
 
 

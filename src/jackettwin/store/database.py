@@ -15,8 +15,8 @@ from sqlalchemy import Connection, Engine, Table, create_engine, event, inspect,
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError, OperationalError
 
-from jackettwin.errors import InputError
-from jackettwin.store.tables import SCHEMA_VERSION
+from jackettwin.errors import InputError, require
+from jackettwin.store.tables import FIRST_SCHEMA, SCHEMA_VERSION
 
 _BUSY_S = 30.0
 """How long a writer of SQLite waits for another one."""
@@ -36,7 +36,8 @@ def open_database(url: str, *, migrate: bool = True) -> Engine:
     Raises
     ------
     InputError
-        If the URL is not of SQLite or PostgreSQL, the server does not answer, or its schema is newer.
+        If the URL is not of SQLite or PostgreSQL, the server does not answer, or its schema is of a newer
+        version or of one before 0.1.0.
     """
     try:
         parsed = make_url(url)
@@ -111,14 +112,8 @@ def _migrate(engine: Engine, url: str) -> None:
         current = MigrationContext.configure(connection).get_current_revision()
     if current == SCHEMA_VERSION:
         return
-    if current is not None and current > SCHEMA_VERSION:
-        raise InputError(
-            "the database was written by a newer version",
-            field="schema version",
-            value=current,
-            allowed=f"up to {SCHEMA_VERSION}",
-            remedy="install the newer jackettwin, or restore a backup of this one",
-        )
+    if current is not None:
+        check_schema(current, "schema version")
     with writing(engine) as connection:
         if engine.dialect.name == "postgresql":
             connection.execute(text("select pg_advisory_xact_lock(740113)"))
@@ -128,6 +123,36 @@ def _migrate(engine: Engine, url: str) -> None:
         if current is not None:
             _copy(connection, url, current)
         bring_to(connection, SCHEMA_VERSION)
+
+
+def check_schema(found: str, field: str, file: Path | None = None) -> None:
+    """Refuse a schema that this version cannot migrate.
+
+    Raises
+    ------
+    InputError
+        If a version before 0.1.0 made it, or a later version than this one.
+    """
+    known = f"{FIRST_SCHEMA} to {SCHEMA_VERSION}"
+    require(
+        found >= FIRST_SCHEMA,
+        "made by a version before 0.1.0, whose stores no release can open",
+        file=file,
+        field=field,
+        value=found,
+        allowed=known,
+        remedy="make a new store with `jackettwin asset add`; carry the records over with `jackettwin intake "
+        "OLD/records/NAME --asset NAME --store NEW`; a backup is a tar file that holds the same folder",
+    )
+    require(
+        found <= SCHEMA_VERSION,
+        "written by a newer version",
+        file=file,
+        field=field,
+        value=found,
+        allowed=known,
+        remedy="install the newer jackettwin, or restore a backup of this one",
+    )
 
 
 def bring_to(connection: Connection, schema: str) -> None:

@@ -29,8 +29,8 @@ from sqlalchemy import (
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
-SCHEMA_VERSION = "0004"
-"""Newest migration; a database of an older one is migrated when it is opened, a newer one is refused."""
+FIRST_SCHEMA, SCHEMA_VERSION = "0100", "0100"
+"""Migrations of 0.1.0 and of this version: a database between them is migrated when it is opened."""
 
 
 class Utc(TypeDecorator[datetime]):

@@ -55,6 +55,16 @@ def write_waveform(record: Record, path: Path) -> int:
     return path.stat().st_size
 
 
+def is_waveform(path: Path) -> bool:
+    """Tell whether a file was written by :func:`write_waveform`."""
+    if path.suffix != ".parquet":
+        return False
+    try:
+        return b"jackettwin" in (pq.read_schema(path).metadata or {})
+    except (pa.ArrowException, OSError):
+        return False
+
+
 def read_waveform(path: Path) -> Record:
     """Return the record that :func:`write_waveform` wrote, equal to the last bit."""
     table = pq.read_table(path)

@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.files import read_yaml
-from jackettwin.service.work.engine import TWIN_FILE, Twin, load_twin
+from jackettwin.service.workers.engine import TWIN_FILE, Twin, load_twin
 from jackettwin.store import assets
 
 if TYPE_CHECKING:

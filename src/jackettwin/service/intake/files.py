@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection
 
 from jackettwin.service.intake.bundles import adopted_twin
-from jackettwin.service.work.task_status import LOST_WORKER, NO_ROOM, NoWorker
-from jackettwin.service.work.tasks import File, Parsed, read_file
+from jackettwin.service.workers.task_status import LOST_WORKER, NO_ROOM, NoWorker
+from jackettwin.service.workers.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from paho.mqtt.enums import CallbackAPIVersion, MQTTProtocolVersion
 from jackettwin.errors import InputError
 from jackettwin.service.intake.files import accept
 from jackettwin.service.intake.packets import assembled
-from jackettwin.service.work.tasks import EARLIEST, stored
+from jackettwin.service.workers.tasks import EARLIEST, stored
 from jackettwin.store import assets, reading, streams, writing
 from jackettwin.store.streams import KEPT, LONGEST, WINDOW, Packet
 
@@ -221,7 +221,8 @@ def close_window(service: Service, window: streams.OpenWindow) -> None:
     In place of an earlier one of fewer packets, with all consequences at once.
     """
     from jackettwin.service.intake import bundles
-    from jackettwin.service.work import consequences, engine
+    from jackettwin.service.work import consequences
+    from jackettwin.service.workers import engine
 
     with reading(service.database) as connection:
         packets = streams.packets_of(connection, window.asset, window.window_utc)

@@ -26,7 +26,7 @@ from jackettwin.service.web.schemas import (
     Page,
     TwinOut,
 )
-from jackettwin.service.work import engine
+from jackettwin.service.workers import engine
 from jackettwin.store import assets, results, tables
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
@@ -121,7 +121,7 @@ def twin(
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
     model = engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
-    told = service.remembered.told(connection, version, model, last)
+    told = service.days.told(connection, version, model, last)
     known = engine.knowledge(model, told.sums)
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)

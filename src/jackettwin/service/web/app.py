@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager, suppress
 from importlib.resources import files
 from typing import Any
 
-from fastapi import FastAPI, HTTPException, Request
+from fastapi import FastAPI, HTTPException, Request, Response
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.datastructures import MutableHeaders
 from starlette.middleware.gzip import GZipMiddleware
@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from jackettwin.service.context import Service
 from jackettwin.service.web import auth, pages, problems
+from jackettwin.service.web.dependencies import KnownAnswer, sent
 from jackettwin.service.web.routes import assets, health, jobs, modes, people, records
 from jackettwin.version import __version__
 
@@ -65,6 +66,7 @@ def create_app(service: Service) -> FastAPI:
     )
     app.state.service = service
     problems.register(app)
+    app.add_exception_handler(KnownAnswer, known_answer)
     for router in ROUTERS:
         app.include_router(router, prefix=API)
     app.include_router(pages.router)
@@ -72,6 +74,12 @@ def create_app(service: Service) -> FastAPI:
     app.add_middleware(Guard, service=service)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
     return app
+
+
+async def known_answer(request: Request, known: Exception) -> Response:
+    """Answer from the cache."""
+    assert isinstance(known, KnownAnswer)
+    return sent(request, known.answer, known.headers)
 
 
 def described(app: FastAPI) -> dict[str, Any]:

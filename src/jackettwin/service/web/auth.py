@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import secrets
-import time
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import ceil
-from threading import Lock
 from urllib.parse import urlsplit
 
 from argon2 import PasswordHasher
@@ -17,6 +15,7 @@ from fastapi import Depends, Request
 from sqlalchemy import Connection, Engine
 
 from jackettwin.errors import InputError
+from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings, is_loopback
 from jackettwin.service.web.problems import ApiError
 from jackettwin.store import people, reading, writing
@@ -25,7 +24,7 @@ COOKIE = "jackettwin_session"
 SESSION = timedelta(hours=12)
 TOKEN = timedelta(days=365)
 SAFE_METHODS = ("GET", "HEAD", "OPTIONS")
-GUESSES, GUESSES_FROM = 5, 30
+ATTEMPTS, ATTEMPTS_FROM = 5, 30
 """Failed logins a minute: of one name from one address, and of any from it."""
 SHORTEST_PASSWORD = 12
 """Characters; NIST SP 800-63B asks for 8 and advises more."""
@@ -47,36 +46,6 @@ class Who:
     def may(self, role: str) -> bool:
         """Tell whether this role includes another one."""
         return people.ROLES.index(self.role) >= people.ROLES.index(role)
-
-
-@dataclass
-class Guesses:
-    """Logins of late that have not succeeded, by who was tried and from where."""
-
-    within_s: float = 60.0
-    _tried: dict[str, list[float]] = field(default_factory=dict)
-    _lock: Lock = field(default_factory=Lock)
-
-    def wait_s(self, key: str, most: int) -> float:
-        """Count a try and return 0 if it may be made, else how long to wait: ``most`` in ``within_s`` may.
-
-        It is counted before it is made, so that many at once are not more.
-        """
-        with self._lock:
-            now = time.monotonic()
-            if len(self._tried) > 10_000:  # a flood of names must not fill the memory
-                self._tried.clear()
-            recent = self._tried[key] = [t for t in self._tried.get(key, []) if now - t < self.within_s]
-            if len(recent) >= most:
-                return recent[-most] + self.within_s - now
-            recent.append(now)
-            return 0.0
-
-    def succeeded(self, key: str) -> None:
-        """Take a try back."""
-        with self._lock:
-            if self._tried.get(key):
-                self._tried[key].pop()
 
 
 def hashed(password: str) -> str:
@@ -108,7 +77,7 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
 
 
 def opened_session(
-    database: Engine, guesses: Guesses, name: str, password: str, place: str, now: datetime
+    database: Engine, attempts: LoginAttempts, name: str, password: str, place: str, now: datetime
 ) -> tuple[people.User, str, str]:
     """Return the user whose password this is, a session's secret and CSRF token; who tried is noted down.
 
@@ -118,7 +87,7 @@ def opened_session(
         401 if it is nobody's, 429 after too many tries.
     """
     key = f"{place}/{name}"
-    wait = max(guesses.wait_s(place, GUESSES_FROM), guesses.wait_s(key, GUESSES))
+    wait = max(attempts.wait_s(place, ATTEMPTS_FROM), attempts.wait_s(key, ATTEMPTS))
     if wait > 0.0:
         raise ApiError(429, "too many failed logins; wait", headers={"Retry-After": str(ceil(wait))})
     with reading(database) as connection:  # it takes its time, and guesses must not hold up those who write
@@ -128,8 +97,8 @@ def opened_session(
         grant = ("", "") if user is None else new_grant(connection, name, "session", "browser", now, SESSION)
     if user is None:
         raise ApiError(401, "name or password is wrong")
-    guesses.succeeded(place)
-    guesses.succeeded(key)
+    attempts.succeeded(place)
+    attempts.succeeded(key)
     return user, *grant
 
 

@@ -13,8 +13,8 @@ from sqlalchemy import Connection
 from jackettwin.errors import InputError
 from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.web.schemas import AssetOut, VersionOut
-from jackettwin.service.work import engine
 from jackettwin.service.work.consequences import ask_known
+from jackettwin.service.workers import engine
 from jackettwin.store import assets, journal, people, records, results, work
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from jackettwin.service.web import auth, catalogue
+from jackettwin.service.web.dependencies import AssetName, Reads, Route, known_asset, known_version
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import AssetName, Reads, Transaction, known_asset, known_version
 from jackettwin.store import results
 
-router = APIRouter(include_in_schema=False, route_class=Transaction)
+router = APIRouter(include_in_schema=False, route_class=Route)
 
 _SANDBOX = {
     "Content-Security-Policy": (

@@ -14,7 +14,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
-from jackettwin.service.work.task_status import NO_ROOM, NoWorker, problem_of
+from jackettwin.service.workers.task_status import NO_ROOM, NoWorker, problem_of
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -147,6 +147,8 @@ def _disk_full(error: OSError) -> Response:
 def _http_error(error: StarletteHTTPException) -> Response:
     title = TITLES.get(error.status_code, "Error")
     headers = dict(error.headers) if error.headers else None
+    if error.status_code == 304:  # the reader has the answer
+        return Response(status_code=304, headers=headers)
     return _answer(ProblemDocument(title=title, status=error.status_code, detail=str(error.detail)), headers)
 
 

@@ -12,9 +12,10 @@ import pyarrow as pa
 from scipy.signal import welch
 
 from jackettwin.errors import InputError
+from jackettwin.service.web.dependencies import known_record
 from jackettwin.service.web.problems import ApiError
 from jackettwin.service.web.schemas import RecordOut, Signal, Spectra
-from jackettwin.store import read_waveform
+from jackettwin.store import read_waveform, reading
 from jackettwin.store.records import StoredRecord
 
 if TYPE_CHECKING:
@@ -48,8 +49,10 @@ def record_out(record: StoredRecord) -> RecordOut:
     return RecordOut(**known, raw_kept=record.waveform is not None)
 
 
-def samples(service: Service, record: StoredRecord) -> Record:
+def samples(service: Service, record_id: str) -> Record:
     """Return the samples of a record; answers 404 if they are not kept any more."""
+    with reading(service.database) as connection:
+        record = known_record(connection, record_id)
     path = None if record.waveform is None else service.settings.store / record.waveform
     if path is None or not path.exists():
         raise ApiError(404, "the samples of this record are not kept any more", field="record_id")

@@ -13,11 +13,11 @@ from jackettwin.errors import InputError
 from jackettwin.service import conditions
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
+from jackettwin.service.web.dependencies import known_record, living_asset
 from jackettwin.service.web.problems import ApiError, disk_full
-from jackettwin.service.web.routes.common import living_asset
 from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
-from jackettwin.service.work import engine
-from jackettwin.service.work.tasks import read_conditions
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
 
 if TYPE_CHECKING:
@@ -92,11 +92,13 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     return Taken(count=count, observed_again=again)
 
 
-def stabilisation(connection: Connection, service: Service, record: records.StoredRecord) -> StabilisationOut:
+def stabilisation(service: Service, record_id: str) -> StabilisationOut:
     """Return the poles of every model order of a record."""
-    if record.waveform is None:
-        raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
-    folder = twin_folder(connection, service, record.asset)
+    with reading(service.database) as connection:
+        record = known_record(connection, record_id)
+        if record.waveform is None:
+            raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
+        folder = twin_folder(connection, service, record.asset)
     waveform = str(service.settings.store / record.waveform)
     future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
     try:

@@ -1,1 +1,1 @@
-"""What workers and the server do with records."""
+"""What the server does with its queue of work: lease it, keep results, and draw the consequences."""

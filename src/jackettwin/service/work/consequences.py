@@ -15,8 +15,8 @@ from sqlalchemy import Connection, select
 
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import living
-from jackettwin.service.work import engine
-from jackettwin.service.work.tasks import Outcome, Question, Task
+from jackettwin.service.workers import engine
+from jackettwin.service.workers.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, people, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
 

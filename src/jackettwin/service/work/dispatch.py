@@ -18,8 +18,8 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.work import consequences
-from jackettwin.service.work.task_status import LOST_WORKER
-from jackettwin.service.work.tasks import Outcome, Question, Task, know, observe_stored
+from jackettwin.service.workers.task_status import LOST_WORKER
+from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
 

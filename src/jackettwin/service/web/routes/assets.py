@@ -8,19 +8,19 @@ from fastapi import APIRouter, File, Form, Path, Query, UploadFile
 
 from jackettwin.service import conditions
 from jackettwin.service.web import auth, catalogue, uploads
-from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import (
+from jackettwin.service.web.dependencies import (
+    WAITING,
     Asker,
     AssetName,
     Parts,
+    Route,
     Told,
-    Transaction,
     Writes,
     known_asset,
     known_version,
     living_asset,
-    waits,
 )
+from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
     AssetOut,
     ConditionsIn,
@@ -32,7 +32,7 @@ from jackettwin.service.web.schemas import (
 )
 from jackettwin.store import assets
 
-router = APIRouter(tags=["assets"], route_class=Transaction)
+router = APIRouter(tags=["assets"], route_class=Route)
 
 
 @router.get("/assets", dependencies=[auth.VIEWER], responses=answers(401, 422))
@@ -136,10 +136,9 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
 
 @router.post(
     "/assets/{asset}/conditions.csv",
-    dependencies=[auth.ENGINEER],
+    dependencies=[auth.ENGINEER, WAITING],
     responses=answers(400, 401, 403, 404, 409, 413, 422, 503),
 )
-@waits
 def add_table(
     asset: AssetName,
     parts: Parts,

@@ -12,15 +12,15 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from sse_starlette import EventSourceResponse, ServerSentEvent
 
 from jackettwin.service.web import auth, metrics
+from jackettwin.service.web.dependencies import Parts, Route
 from jackettwin.service.web.problems import answers
-from jackettwin.service.web.routes.common import Parts, Transaction
 from jackettwin.service.web.schemas import Health, Ready
 from jackettwin.version import __version__
 
 _TOLD_S = 600.0
 """How long one stream of events lasts."""
 
-router = APIRouter(tags=["operation"], route_class=Transaction)
+router = APIRouter(tags=["operation"], route_class=Route)
 
 
 @router.get("/health")

@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path, Query
 
 from jackettwin.service.web import auth
+from jackettwin.service.web.dependencies import Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.web.schemas import JobOut, Page
 from jackettwin.service.work import consequences
 from jackettwin.store import journal, people, records, work
 
-router = APIRouter(tags=["jobs"], route_class=Transaction)
+router = APIRouter(tags=["jobs"], route_class=Route)
 
 JobId = Annotated[int, Path(ge=1, le=2**53)]
 State = Literal["queued", "leased", "done", "failed", "set_aside", "cancelled"]

@@ -8,17 +8,17 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Response
 
 from jackettwin.service.web import answers as said, auth, signals
-from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import (
+from jackettwin.service.web.dependencies import (
     Asker,
     AssetName,
     Parts,
+    Route,
     Told,
-    Transaction,
     Writes,
     known_asset,
     known_version,
 )
+from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
     Acknowledgement,
     AlarmOut,
@@ -31,7 +31,7 @@ from jackettwin.service.web.schemas import (
 )
 from jackettwin.store import journal, people, results
 
-router = APIRouter(tags=["answers"], route_class=Transaction)
+router = APIRouter(tags=["answers"], route_class=Route)
 
 Cursor = Annotated[str | None, Query(max_length=500)]
 Limit = Annotated[int, Query(ge=1, le=10_000)]

@@ -7,20 +7,20 @@ from datetime import timedelta
 from fastapi import APIRouter, Request, Response
 
 from jackettwin.service.web import auth
+from jackettwin.service.web.dependencies import CONNECTED, Asker, Parts, Reads, Route, Writes
 from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import Asker, Parts, Reads, Transaction, Writes
 from jackettwin.service.web.schemas import Login, Me, NewToken, NewUser, Page, Token, UserOut
 from jackettwin.store import people
 
-router = APIRouter(tags=["people"], route_class=Transaction)
+router = APIRouter(tags=["people"], route_class=Route)
 
 
-@router.post("/login", responses=answers(401, 403, 422, 429))
+@router.post("/login", dependencies=[CONNECTED], responses=answers(401, 403, 422, 429))
 def login(body: Login, request: Request, response: Response, parts: Parts) -> Me:
     """Open a session: its cookie is set, and the CSRF token of what it changes is answered."""
     place = request.client.host if request.client else "?"
-    guesses, now = parts.guesses, parts.now()
-    user, secret, csrf = auth.opened_session(parts.database, guesses, body.name, body.password, place, now)
+    attempts, now = parts.login_attempts, parts.now()
+    user, secret, csrf = auth.opened_session(parts.database, attempts, body.name, body.password, place, now)
     lasts = int(auth.SESSION.total_seconds())
     secure = parts.settings.secure
     response.set_cookie(auth.COOKIE, secret, max_age=lasts, httponly=True, samesite="strict", secure=secure)

@@ -8,20 +8,19 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, File, Form, Header, Query, Response, UploadFile
 
 from jackettwin.service.web import auth, signals, uploads
-from jackettwin.service.web.problems import ApiError, answers
-from jackettwin.service.web.routes.common import (
+from jackettwin.service.web.dependencies import (
+    WAITING,
     Asker,
     AssetName,
     Parts,
-    Reads,
     RecordId,
+    Route,
     Told,
-    Transaction,
     Writes,
     known_asset,
     known_record,
-    waits,
 )
+from jackettwin.service.web.problems import ApiError, answers
 from jackettwin.service.web.schemas import (
     Acknowledgement,
     Page,
@@ -35,7 +34,7 @@ from jackettwin.service.web.schemas import (
 from jackettwin.service.work import consequences
 from jackettwin.store import people, records
 
-router = APIRouter(tags=["records"], route_class=Transaction)
+router = APIRouter(tags=["records"], route_class=Route)
 
 Status = Literal["received", "observing", "observed", "refused", "set_aside"]
 Limit = Annotated[int, Query(ge=1, le=1000)]
@@ -44,13 +43,12 @@ Limit = Annotated[int, Query(ge=1, le=1000)]
 @router.post(
     "/assets/{asset}/records",
     status_code=202,
-    dependencies=[auth.ENGINEER],
+    dependencies=[auth.ENGINEER, WAITING],
     responses={
         200: {"description": "This content is known.", "model": RecordAccepted},
         **answers(400, 401, 403, 404, 409, 413, 422, 503, 507),
     },
 )
-@waits
 def add_record(
     asset: AssetName,
     parts: Parts,
@@ -99,18 +97,16 @@ def get_record(record_id: RecordId, connection: Told) -> RecordOut:
 
 @router.get(
     "/records/{record_id}/signal",
-    dependencies=[auth.VIEWER],
+    dependencies=[auth.VIEWER, WAITING],
     response_model=Signal,
     responses={
         200: {"content": {"application/vnd.apache.arrow.stream": {}}},
         **answers(401, 404, 422),
     },
 )
-@waits
 def signal(
     record_id: RecordId,
     parts: Parts,
-    connection: Reads,
     channels: Annotated[list[str] | None, Query(max_length=100)] = None,
     since: Annotated[float, Query(alias="from", ge=0.0, le=1e9)] = 0.0,
     until: Annotated[float | None, Query(alias="to", gt=0.0, le=1e9)] = None,
@@ -118,27 +114,28 @@ def signal(
     accept: Annotated[str, Header()] = "application/json",
 ) -> Any:
     """Return the extremes of each bin of time [s after the start], as JSON or Arrow."""
-    record = signals.samples(parts, known_record(connection, record_id))
-    found = signals.extremes(record, channels, since, until, points)
+    found = signals.extremes(signals.samples(parts, record_id), channels, since, until, points)
     if "application/vnd.apache.arrow.stream" in accept:
         return Response(signals.as_arrow(found), media_type="application/vnd.apache.arrow.stream")
     return found
 
 
-@router.get("/records/{record_id}/spectrum", dependencies=[auth.VIEWER], responses=answers(401, 404, 422))
-@waits
-def spectrum(record_id: RecordId, parts: Parts, connection: Reads) -> Spectra:
+@router.get(
+    "/records/{record_id}/spectrum", dependencies=[auth.VIEWER, WAITING], responses=answers(401, 404, 422)
+)
+def spectrum(record_id: RecordId, parts: Parts) -> Spectra:
     """Return the power spectral densities of a record's channels."""
-    return signals.spectra(signals.samples(parts, known_record(connection, record_id)))
+    return signals.spectra(signals.samples(parts, record_id))
 
 
 @router.get(
-    "/records/{record_id}/stabilisation", dependencies=[auth.VIEWER], responses=answers(401, 404, 422, 503)
+    "/records/{record_id}/stabilisation",
+    dependencies=[auth.VIEWER, WAITING],
+    responses=answers(401, 404, 422, 503),
 )
-@waits
-def stabilisation(record_id: RecordId, parts: Parts, connection: Reads) -> StabilisationOut:
+def stabilisation(record_id: RecordId, parts: Parts) -> StabilisationOut:
     """Return the poles of every model order, computed anew by a worker."""
-    return uploads.stabilisation(connection, parts, known_record(connection, record_id))
+    return uploads.stabilisation(parts, record_id)
 
 
 @router.put(

@@ -22,7 +22,7 @@ from distributed.core import Status
 
 from jackettwin.errors import InputError
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.service.work.task_status import NoWorker, begun
+from jackettwin.service.workers.task_status import NoWorker, begun
 
 log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""Answers that were given, kept with the version of what they were made of, so that none is made twice."""
+"""Answers that were given, kept with the version of the store they were made of: none is made twice."""
 
 from __future__ import annotations
 
@@ -11,15 +11,20 @@ from threading import Lock
 _MOST_BYTES = 32 * 2**20
 """Memory for answers: those of some hundred turbines' pages, compressed."""
 _ENTRY_BYTES = 1024
-"""What an answer takes beside its bytes, so that many small ones fill no memory either."""
+"""What an answer takes beside its bytes: many small ones must not fill the memory either."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The body of an answer, compressed, and of which version of the store it was made."""
+    """The body of an answer, compressed, and the version of the store that it was made of."""
 
     version: int
     compressed: bytes
+
+    @classmethod
+    def of(cls, version: int, body: bytes) -> Answer:
+        """Return an answer to keep; its bytes depend on the body alone."""
+        return cls(version, gzip.compress(body, compresslevel=1, mtime=0))
 
     @property
     def body(self) -> bytes:
@@ -30,11 +35,6 @@ class Answer:
     def size(self) -> int:
         """Bytes that keeping it takes."""
         return len(self.compressed) + _ENTRY_BYTES
-
-
-def compressed(version: int, body: bytes) -> Answer:
-    """Return an answer to keep; its bytes depend on the body alone."""
-    return Answer(version, gzip.compress(body, compresslevel=1, mtime=0))
 
 
 def content_tag(body: bytes) -> str:
@@ -50,8 +50,8 @@ def has_tag(header: str | None, tag: str) -> bool:
 
 
 @dataclass
-class Rendered:
-    """Answers by what was asked, the latest asked for: as many as there is room for."""
+class AnswerCache:
+    """The answers to the questions asked last, as many as there is memory for."""
 
     _answers: OrderedDict[str, Answer] = field(default_factory=OrderedDict)
     _bytes: int = 0

@@ -8,7 +8,7 @@ from threading import Lock
 
 from sqlalchemy import Connection
 
-from jackettwin.service.work import engine
+from jackettwin.service.workers import engine
 from jackettwin.store import assets, results
 from jackettwin.twin import TwinModel
 
@@ -27,7 +27,7 @@ class DaysTold:
     state_hash: str
 
 
-class Remembered:
+class DayCache:
     """Sums of all days but the last one, which is still growing, of turbines that were asked for of late."""
 
     def __init__(self) -> None:

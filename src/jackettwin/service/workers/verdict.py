@@ -17,7 +17,7 @@ from jackettwin.change import JUDGED, Days, finding_of, judge
 from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
-from jackettwin.service.work import engine
+from jackettwin.service.workers import engine
 from jackettwin.study.measure import Measured
 from jackettwin.study.run import updated_twin
 from jackettwin.twin import OBSERVATION

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.service.work.task_status import problem_of
+from jackettwin.service.workers.task_status import problem_of
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -98,17 +98,19 @@ def about(record: Record) -> dict[str, Any]:
 def read_file(file: File) -> tuple[Parsed, ...]:
     """Read a file of any known format and keep its samples in the store.
 
-    A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it.
+    A file of more than an hour becomes records of ten minutes, as ``jackettwin identify`` reads it. What
+    another store keeps of a record is a known format too.
     """
     from jackettwin.records import read_record
     from jackettwin.records.readers import read_record_pieces
     from jackettwin.service.work.memory_limit import at_most
+    from jackettwin.store import is_waveform, read_waveform
     from jackettwin.study.many_records.long_records import LONG, PIECE_S
 
     source = Path(file.path)
     try:
         with at_most(file.memory_bytes):
-            record = read_record(source, file.unsaid)
+            record = read_waveform(source) if is_waveform(source) else read_record(source, file.unsaid)
             _check(record, file)
             long = record.duration_s > LONG * PIECE_S
             records = list(read_record_pieces(source, PIECE_S, file.unsaid)) if long else [record]
@@ -207,7 +209,7 @@ def know(question: Question) -> Outcome | None:
 
     None if it takes days that were not sent: after a change, and once a baseline is whole.
     """
-    from jackettwin.service.work import engine, verdict
+    from jackettwin.service.workers import engine, verdict
 
     if not question.identities:  # all its records were taken back
         nothing = {"known": {"status": verdict.NO_MODE, "parameters": {}}}
@@ -233,7 +235,7 @@ def know(question: Question) -> Outcome | None:
 
 def observe_stored(task: Task) -> Outcome:
     """Observe a stored record. Input that is wrong comes back as a problem, faults of ours are raised."""
-    from jackettwin.service.work.engine import load_twin, observed
+    from jackettwin.service.workers.engine import load_twin, observed
 
     try:
         model = load_twin(Path(task.twin_folder)).model

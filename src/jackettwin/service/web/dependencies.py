@@ -1,0 +1,194 @@
+"""What routes depend on: the service, a connection, who asks, and what a path names.
+
+A connection is opened before its route and closed after it, before the answer is sent (``scope="function"``):
+whoever reads an answer can rely on what it says being committed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from typing import Annotated, Any
+
+from anyio import CapacityLimiter
+from fastapi import Depends, HTTPException, Path, Request
+from fastapi.responses import Response
+from fastapi.routing import APIRoute
+from sqlalchemy import Connection
+
+from jackettwin.errors import InputError
+from jackettwin.service.answer_cache import Answer, content_tag, has_tag
+from jackettwin.service.context import Service
+from jackettwin.service.web.auth import Who
+from jackettwin.service.web.problems import ApiError
+from jackettwin.store import assets, journal, reading, records, writing
+
+_JSON = "application/json"
+
+
+async def get_service(request: Request) -> Service:
+    """Return the server's parts."""
+    service: Service = request.app.state.service
+    return service
+
+
+async def asker(request: Request) -> Who:
+    """Return who sent the request; routes ask for a role before."""
+    who: Who = request.state.who
+    return who
+
+
+def at_most(requests: int) -> Any:
+    """Return a dependency that lets only so many requests proceed at once.
+
+    FastAPI runs dependencies and routes in 40 threads, each call in any of them. A request that holds a
+    connection needs another thread to go on; if all threads waited for connections, or for SQLite's only
+    writer, it would find none. The limits below leave some free.
+    """
+    limiter = CapacityLimiter(requests)
+
+    async def proceed() -> AsyncIterator[None]:
+        async with limiter:
+            yield
+
+    return Depends(proceed, scope="function")
+
+
+CONNECTED, WAITING = at_most(12), at_most(16)
+"""Of requests that hold a connection, and of those that wait for a worker and hold none."""
+
+Parts = Annotated[Service, Depends(get_service)]
+Asker = Annotated[Who, Depends(asker)]
+AssetName = Annotated[str, Path(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$", examples=["demo"])]
+RecordId = Annotated[str, Path(pattern=r"^[0-9a-f]{8,64}$", examples=["0123456789abcdef01234567"])]
+
+
+def read(service: Parts, _: Annotated[None, CONNECTED]) -> Iterator[Connection]:
+    """Give a connection that sees the database as it was at one moment."""
+    with reading(service.database) as connection:
+        yield connection
+
+
+def write(service: Parts, _: Annotated[None, CONNECTED]) -> Iterator[Connection]:
+    """Give a connection in a transaction, which is committed if the route succeeds."""
+    with writing(service.database) as connection:
+        yield connection
+
+
+Reads = Annotated[Connection, Depends(read, scope="function")]
+Writes = Annotated[Connection, Depends(write, scope="function")]
+
+
+class KnownAnswer(Exception):
+    """Raised before a route is called whose answer is still in the cache."""
+
+    def __init__(self, answer: Answer, headers: dict[str, str]) -> None:
+        super().__init__()
+        self.answer, self.headers = answer, headers
+
+
+def read_version(request: Request, service: Parts, connection: Reads) -> Connection:
+    """Give a connection to read what changes with an event only: the newest event is the answer's version.
+
+    The route is not called if the reader has this version or the cache has its answer. The version is read
+    before the answer: an event between the two makes a new version, and the next answer is made anew.
+    """
+    version = journal.last_event(connection, request.path_params.get("asset"))
+    headers = _tagged(f'W/"{service.server_id}-{version}"')
+    if has_tag(request.headers.get("if-none-match"), headers["ETag"]):
+        raise HTTPException(304, headers=headers)
+    known = service.answers.find(_question(request), version)
+    if known is not None:
+        raise KnownAnswer(known, headers)
+    request.state.version, request.state.tag = version, headers
+    return connection
+
+
+Told = Annotated[Connection, Depends(read_version, scope="function")]
+
+
+class Route(APIRoute):
+    """A route that refuses unknown query parameters and answers each reader only what that one lacks."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return what answers a request."""
+        answer = super().get_route_handler()
+        known = {parameter.alias for parameter in self.dependant.query_params}
+
+        async def handle(request: Request) -> Response:
+            unknown = next((name for name in request.query_params if name not in known), None)
+            if unknown is not None and self.include_in_schema:
+                allowed = ", ".join(sorted(known)) or "none here"
+                raise ApiError(422, "no such query parameter", field=unknown, allowed=allowed)
+            response = await answer(request)
+            if hasattr(request.state, "version"):
+                return _versioned(request, response)
+            return _by_content(request, response) if request.method == "GET" else response
+
+        return handle
+
+
+def _versioned(request: Request, response: Response) -> Response:
+    """Return an answer with its version, and keep it in the cache if it is one in JSON."""
+    if response.media_type != _JSON:
+        response.headers.update(request.state.tag)
+        return response
+    made = Answer.of(request.state.version, bytes(response.body))
+    request.app.state.service.answers.keep(_question(request), made)
+    return sent(request, made, request.state.tag)
+
+
+def sent(request: Request, answer: Answer, headers: dict[str, str]) -> Response:
+    """Return a response with an answer of the cache, compressed if the reader can unpack it."""
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(answer.body, headers=headers, media_type=_JSON)
+    packed = {**headers, "Content-Encoding": "gzip"}
+    return Response(answer.compressed, headers=packed, media_type=_JSON)
+
+
+def _by_content(request: Request, response: Response) -> Response:
+    """Return an answer in JSON with a tag of its content; one that the reader has is not sent again."""
+    if response.media_type != _JSON or response.status_code != 200:
+        return response
+    headers = _tagged(content_tag(bytes(response.body)))
+    if has_tag(request.headers.get("if-none-match"), headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    response.headers.update(headers)
+    return response
+
+
+def _question(request: Request) -> str:
+    return f"{request.url.path}?{request.url.query}"
+
+
+def _tagged(tag: str) -> dict[str, str]:
+    return {"ETag": tag, "Cache-Control": "private, no-cache", "Vary": "Accept-Encoding"}
+
+
+def known_asset(connection: Connection, name: str) -> assets.Version:
+    """Return the adopted version of an asset; answers 404 if there is none."""
+    return known_version(connection, name, None)
+
+
+def living_asset(connection: Connection, name: str) -> None:
+    """Answer 404 if there is no such asset, 409 if it is archived."""
+    known_asset(connection, name)
+    if assets.is_archived(connection, name):
+        raise ApiError(
+            409, "the asset is archived", field="asset", value=name, remedy="POST /assets/{asset}/unarchive"
+        )
+
+
+def known_version(connection: Connection, name: str, version: int | None) -> assets.Version:
+    """Return a version of an asset, by default the adopted one; answers 404 if there is none."""
+    try:
+        return assets.found_version(connection, name, version)
+    except InputError as error:
+        raise ApiError(404, error.problem, field=error.field, value=str(error.value)) from None
+
+
+def known_record(connection: Connection, record_id: str) -> records.StoredRecord:
+    """Return a record by its number; answers 404 if there is none."""
+    found = records.records_with_id(connection, record_id)
+    if not found:
+        raise ApiError(404, "no such record", field="record_id", value=record_id)
+    return found[0]
