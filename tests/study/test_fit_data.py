@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.study.fit_data import target_modes
+from jackettwin.study.fit_data import residuals, target_modes
 from jackettwin.twin import read_twin
 
+ERROR = """update:
+  damping_of: all
+  model_error: [{modes: [1], frequency: 0.003, damping: 0.2}]
+"""
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1", "side_side_2", "fore_aft_2")
 PINNED_HZ = np.array([0.1832, 0.1859, 0.572, 0.749, 0.794])
 TWIN = "structure: jacket15\ntargets:\n  - {{mode: {}, frequency_hz: {}}}\n"
@@ -18,6 +22,20 @@ def given(folder: Path, mode: int, frequency_hz: float) -> tuple[str, ...]:
     path = folder / "twin.yaml"
     path.write_text(TWIN.format(mode, frequency_hz))
     return tuple(m.label for m in target_modes(read_twin(path), LABELS, pinned_hz=PINNED_HZ))
+
+
+def test_the_models_error_adds_to_that_of_the_data(tmp_path: Path) -> None:
+    """Variances add; the covariance of frequency and damping stays."""
+    own = "{mode: 1, frequency_hz: 0.18, frequency_std_hz: 0.00072, damping_ratio: 0.012, "
+    own += "damping_ratio_std: 0.0018, correlation: 0.5}"
+    path = tmp_path / "twin.yaml"
+    path.write_text(f"structure: jacket15\ntargets:\n  - {own}\n{ERROR}")
+    config = read_twin(path)
+    (target,) = residuals(config, target_modes(config, LABELS, pinned_hz=PINNED_HZ)).targets
+    f_std, zeta_std = np.hypot(0.00072, 0.003 * 0.18), np.hypot(0.0018, 0.2 * 0.012)
+    assert target.frequency_std_hz == pytest.approx(f_std, rel=1e-12)
+    assert target.damping_ratio_std == pytest.approx(zeta_std, rel=1e-12)
+    assert target.correlation * f_std * zeta_std == pytest.approx(0.5 * 0.00072 * 0.0018, rel=1e-12)
 
 
 @pytest.mark.parametrize(

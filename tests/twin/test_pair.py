@@ -228,6 +228,17 @@ def test_days_that_lie_apart_widen_the_mean() -> None:
     assert average(total).log_std[0] == pytest.approx(expected, rel=0.1)
 
 
+def test_the_factor_of_birge_divides_by_the_degrees_of_freedom() -> None:
+    """Two values ±a: their mean's deviation is a, whatever they state, and whatever scatters."""
+    a, stated = 0.02, 4e-3
+    low, high = (estimate(0.18 * np.exp(side * a), 0.012, stated) for side in (-1.0, 1.0))
+    # χ² = 2a²/s² on one degree of freedom, times s²/2
+    assert average(one_day_of([low, high])).log_std[0] == pytest.approx(a, rel=1e-6)
+    # thirty records each day: χ² of the days 60a²/s² on one degree of freedom, times s²/60
+    days = one_day_of([low] * 30).plus(one_day_of([high] * 30))
+    assert average(days).log_std[0] == pytest.approx(a, rel=1e-6)
+
+
 def test_a_mean_covers_the_truth_as_often_as_it_says() -> None:
     """95 % intervals of ln f over 400 sets of eight records that scatter as they say they do."""
     rng = np.random.default_rng(5)

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from calibration import are_standard, is_calibrated
+from scipy.stats import norm
 
 from jackettwin.errors import InputError
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint
@@ -50,11 +52,12 @@ def test_the_interval_is_that_of_a_weighted_regression(models: dict[str, Support
 
 def test_false_alarms_and_coverage(models: dict[str, SupportModel]) -> None:
     found = [find_drift(followed(models["maxwell-3"], 0.0, seed), START) for seed in range(16)]
-    # binomial(16, 0.05): more than 4 in one of a thousand
-    assert sum(drift.detected for drift in found) <= 4
+    assert is_calibrated(sum(not drift.detected for drift in found), len(found), 0.95)
     covered = sum(drift.interval_90[0] < 0.0 < drift.interval_90[1] for drift in found)
-    # binomial(16, 0.9): fewer than 10 in one of a thousand
-    assert covered >= 10
+    assert is_calibrated(covered, len(found), 0.9)
+    assert are_standard(np.array([drift.slope_per_day / drift.std_per_day for drift in found]))
+    low, high = found[0].interval_90  # as a normal distribution has it: 1.6449 deviations to either side
+    assert (high - low) / found[0].std_per_day == pytest.approx(2.0 * norm.ppf(0.95), rel=1e-9)
 
 
 def test_a_planted_drift_is_found_and_its_size_is_right(models: dict[str, SupportModel]) -> None:

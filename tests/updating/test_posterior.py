@@ -112,6 +112,14 @@ def test_two_hills_hold_their_shares(jacket15: Assembly) -> None:
     assert 0.2 < locked < 0.4 and within < 0.1
 
 
+@pytest.mark.parametrize("level", [0.68, 0.9])
+def test_an_interval_holds_the_share_of_draws_that_it_says(posterior: Posterior, level: float) -> None:
+    low, high = np.log(posterior.interval(level).T)
+    inside = (posterior.log_theta > low) & (posterior.log_theta < high)
+    # quantiles between draws: one draw of each side may fall either way
+    np.testing.assert_allclose(inside.mean(axis=0), level, atol=2.0 / len(inside))
+
+
 def test_the_truth_lies_inside_the_intervals(posterior: Posterior) -> None:
     low, high = posterior.interval(0.9).T
     assert (low < TRUTH).all() and (high > TRUTH).all()

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from calibration import are_standard, is_calibrated
 
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
 from jackettwin.identification.maximum_likelihood.admission import gain_of, needed_gain
@@ -108,19 +109,17 @@ def test_claimed_scatter_is_near_the_long_data_law(tower, rng):
 
 
 def test_estimates_scatter_as_they_claim():
-    """Sixty records, one mode, ζfT = 6: mean ζ within 3.5 standard errors, 60 intervals hold at least 50.
-
-    Fewer than 50 has a probability of 0.1 % at 95 % coverage (binomial).
-    """
+    """A hundred and fifty records, one mode, ζfT = 6: not biased, and scattered as claimed."""
     system = ModalSystem(np.array([0.5]), np.array([0.02]), np.array([[1.0, 0.5, -0.3]]), np.eye(1), 0.05)
     z, ratio = [], []
-    for seed in range(60):
+    for seed in range(150):
         y, shapes = of(system, np.random.default_rng([3, seed]))
         found = refined(system, y, shapes, [True])
         ratio.append(found.damping_ratio[0] / 0.02)
         z.append(np.log(ratio[-1]) / np.sqrt(found.covariance[0, 1, 1]))
-    assert abs(np.mean(ratio) - 1.0) < 3.5 * np.std(ratio) / np.sqrt(60)
-    assert np.sum(np.abs(z) < 1.96) >= 50
+    assert abs(np.mean(ratio) - 1.0) < 3.5 * np.std(ratio) / np.sqrt(150)
+    assert is_calibrated(int(np.sum(np.abs(z) < 1.96)), 150)
+    assert are_standard(np.array(z))
 
 
 def test_linear_bend_equals_second_differences(fitted, rng):

@@ -1,0 +1,168 @@
+"""Faults to plant: one line of a room, what it becomes, and the tests that ought to fail then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault to plant.
+
+    Attributes
+    ----------
+    room : package, or module without its ending, below ``jackettwin``
+    what : the fault in words
+    text, becomes : what stands once in the room, and what it is made
+    tests : files or folders of tests of the room
+    survives : why no test can or need fail on it, where that is known
+    """
+
+    room: str
+    what: str
+    text: str
+    becomes: str
+    tests: tuple[str, ...]
+    survives: str = ""
+
+
+def _of(room: str, *tests: str, rows: tuple[tuple[str, str, str], ...]) -> tuple[Fault, ...]:
+    return tuple(
+        Fault(room, what, text, becomes, tests or (f"tests/{room}",)) for what, text, becomes in rows
+    )
+
+
+FAULTS = (
+    *_of("structure", rows=(
+        ("bending stiffness has a wrong coefficient", "[(4.0 + Phi) * L**2, -6.0 * L, (2.0 - Phi) * L**2]", "[(4.0 + Phi) * L**2, -6.0 * L, (2.0 + Phi) * L**2]"),
+        ("consistent mass is 1/3 off along the axis", "pair = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0", "pair = np.array([[2.0, 1.0], [1.0, 2.0]]) / 8.0"),
+        ("geometric stiffness has the other sign", "(N / (30.0 * L))[:, None, None]", "(-N / (30.0 * L))[:, None, None]"),
+        ("inner diameter takes one wall", "d = D - 2.0 * t", "d = D - t"),
+        ("Rayleigh's mass and stiffness parts are swapped", "cls(alpha=damping_ratio * omega, beta=damping_ratio / omega)", "cls(alpha=damping_ratio / omega, beta=damping_ratio * omega)"),
+        ("Rayleigh damping without one half", "return 0.5 * (self.alpha / omega + self.beta * omega)", "return (self.alpha / omega + self.beta * omega)"),
+        ("an offset mass couples with the wrong sign", "M[:3, 3:] = -m * S", "M[:3, 3:] = m * S"),
+        ("bending stress uses half the section modulus", "p.I[:, None] / R, p.J[:, None]", "2.0 * p.I[:, None] / R, p.J[:, None]"),
+        ("shear stress is not multiplied by three", "np.sqrt(sigma**2 + 3.0 * tau**2)", "np.sqrt(sigma**2 + tau**2)"),
+    )),
+    *_of("checks", rows=(
+        ("the buckling curve starts elsewhere", "1.0 - 0.278 * lam**2, 0.9 /", "1.0 - 0.278 * lam, 0.9 /"),
+        ("the radius of gyration is that of a solid bar", "r = 0.25 * np.sqrt(D**2 + d**2)", "r = 0.25 * np.sqrt(D**2 - d**2)"),
+        ("Euler's stress without square", "f_e = np.pi**2 * E", "f_e = np.pi * E"),
+        ("bending of tubes: another slope", "[1.0, 1.13 - 2.58 * x]", "[1.0, 1.13 - 1.58 * x]"),
+        ("Q_beta has a wrong factor", "beta * (1.0 - 0.833 * beta)", "beta * (1.0 - 0.933 * beta)"),
+        ("out-of-plane strength has half the exponent", "3.2 * gamma ** (0.5 * beta**2)", "3.2 * gamma ** (beta**2)"),
+    )),
+    *_of("soil", rows=(
+        ("clay's bearing factor is 8", "J * strength_pa * z, 9.0 * strength_pa * D)", "J * strength_pa * z, 8.0 * strength_pa * D)"),
+        ("a clay shaft peaks at twice the displacement", "return TabulatedCurve(tuple(D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))", "return TabulatedCurve(tuple(2.0 * D * z for z in TZ_Z), tuple(t * share for share in (*TZ_T, residual)))"),
+        ("API's alpha has the wrong exponent", "psi ** (-0.5 if psi <= 1.0 else -0.25)", "psi ** (-0.25 if psi <= 1.0 else -0.5)"),
+        ("a springpot's derivative lacks alpha", "slope = slope + alpha * k_alpha", "slope = slope + k_alpha"),
+        ("Kelvin–Voigt's tau is inverted", "return Prony(k=(k,), tau=(c / k,))", "return Prony(k=(k,), tau=(k / c,))"),
+        ("radiation: another exponent", "(0.25 * np.pi) ** 0.75 * a0**-0.25", "(0.25 * np.pi) ** 0.75 * a0**0.25"),
+    )),
+    *_of("loads", rows=(
+        ("drag without one half", "0.5 * rho * grid.drag * D", "rho * grid.drag * D"),
+        ("waves run the other way", "np.exp(-1j * self.k * along)", "np.exp(1j * self.k * along)"),
+        ("the JONSWAP peak is twice as narrow", "gamma ** np.exp(-0.5 * ((f / fp - 1.0) / sigma) ** 2)", "gamma ** np.exp(-2.0 * ((f / fp - 1.0) / sigma) ** 2)"),
+        ("Prandtl's tip loss lacks 2/π", "F = F * 2.0 / np.pi * np.arccos(", "F = F * np.arccos("),
+        ("lift and drag are swapped in the torque", "(cl * np.sin(phi) - cd * np.cos(phi))", "(cl * np.cos(phi) - cd * np.sin(phi))"),
+        ("the coherence's decay is halved", "np.exp(-DECAY * np.hypot(", "np.exp(-0.5 * DECAY * np.hypot("),
+        ("fluctuations have half the variance", "sigma = SIGMA_RATIOS[component] * wind.sigma", "sigma = 0.7 * SIGMA_RATIOS[component] * wind.sigma"),
+        ("x and y of a wave's direction are swapped", "np.stack([u * np.cos(self.direction), u * np.sin(self.direction), w], axis=1)", "np.stack([u * np.sin(self.direction), u * np.cos(self.direction), w], axis=1)"),
+    )),
+    *_of("response", rows=(
+        ("damped frequencies are imaginary parts", "return np.abs(self.eigenvalues) / (2.0 * pi)", "return self.eigenvalues.imag / (2.0 * pi)"),
+        ("MAC without normalisation of one side", "cross / np.outer(own, np.einsum(\"ij,ij->j\", x.conj(), Mx).real)", "cross / np.outer(own, np.ones(x.shape[1]))"),
+        ("a superelement's damping takes mass for stiffness", "damping.alpha * element.M[b, b] + damping.beta * element.K[b, b]", "damping.beta * element.M[b, b] + damping.alpha * element.K[b, b]"),
+        ("own damping is added, not taken off", "matrix -= rayleigh.alpha * np.array(element.mass)", "matrix += rayleigh.alpha * np.array(element.mass)"),
+        ("the tide's slope per frequency is inverted", "self.slope_hz_m / self.frequency_hz", "self.frequency_hz / self.slope_hz_m"),
+        ("an interval of poles is a tenth narrower", "radius = 2.0 * pi * below_hz", "radius = 1.8 * pi * below_hz"),
+    )),
+    *_of("records", rows=(
+        ("yaw turns the other way", "np.cos(yaw), np.sin(yaw)", "np.cos(yaw), -np.sin(yaw)"),
+        ("resampling shifts by half a sample", "lead = -(pad * up + half) % down", "lead = -(pad * up + half + 1) % down"),
+        ("a lost stretch is given back a window late", "start, stop = max(parting.window - 2, 0) * length", "start, stop = max(parting.window, 0) * length"),
+        ("trends are added", "out: FloatArray = x - slope * t", "out: FloatArray = x + slope * t"),
+        ("rotor orders are one too low", "RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS", "RotorOrder(k, (k - 1) * low, (k - 1) * high, 0.0) for k in ORDERS"),
+        ("turns are radians", "record.sample_rate_hz / (2.0 * np.pi)", "record.sample_rate_hz / np.pi"),
+        ("a record's identity ignores its start", "float(record.sample_rate_hz), start, list", "float(record.sample_rate_hz), list"),
+        ("a spike's window is not widened by held samples", "(SPIKE_WINDOW - 1) * hold + 1", "(SPIKE_WINDOW - 1) + 1"),
+        ("a half amplitude passes for half power", "middle = np.argmax(passed >= 0.5 * passed[:, -1:], axis=1)", "middle = np.argmax(passed >= 0.9 * passed[:, -1:], axis=1)"),
+    )),
+    *_of("identification", rows=(
+        ("deviations of SSI poles are 12 % too large", "return inside, outside + self.on_others @ ((others / near + turned) * weight[n:])", "return 1.12 * inside, 1.12 * (outside + self.on_others @ ((others / near + turned) * weight[n:]))"),
+        ("fused modes are weighted by deviations, not variances", "weight = 1.0 / variances", "weight = 1.0 / np.sqrt(variances)"),
+        ("the periodogram is twice as large", "/ sample_rate_hz / np.sqrt(duration)", "/ sample_rate_hz / np.sqrt(0.5 * duration)"),
+        ("MPC without square", "np.asarray(((s_xx - s_yy) ** 2 + 4.0 * s_xy**2) / (s_xx + s_yy) ** 2)", "np.asarray(((s_xx - s_yy) ** 2 + 2.0 * s_xy**2) / (s_xx + s_yy) ** 2)"),
+        ("a decay's damping has the wrong sign", "omega * (-zeta + 1j * np.sqrt(1.0 - zeta**2))", "omega * (zeta + 1j * np.sqrt(1.0 - zeta**2))"),
+        ("Student's factor is inverted", "wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)", "wider = special.ndtri(0.975) / special.stdtrit(freedom, 0.975)"),
+        ("covariances of one lag more", "length = (n_samples - n_lags) // n_blocks", "length = (n_samples - n_lags - 1) // (2 * n_blocks)"),
+        ("real poles have the wrong rate", "a = -np.log(p.eigenvalues.real) * rate", "a = -np.log(p.eigenvalues.real) / rate"),
+        ("bias of low damping is added", "np.exp(p.log_zeta[mode] - bias[:, 1])", "np.exp(p.log_zeta[mode] + bias[:, 1])"),
+    )),
+    *_of("watching", rows=(
+        ("the threshold of alarms is divided by ten", "np.log(self.arl_years * YEAR_DAYS)", "np.log(self.arl_years * YEAR_DAYS / 10.0)"),
+        ("learning forgets to shrink the covariance", "row[j] -= part * g[j]", "row[j] -= 0.5 * part * g[j]"),
+        ("innovations are not divided by their variance", "mean[i] += g[i] * nu / s", "mean[i] += g[i] * nu"),
+        ("Bayes factors of steps lack one half", "each[k] = 0.5 * (bent / wide - np.log(wide)) + log_weight[k]", "each[k] = (bent / wide - np.log(wide)) + log_weight[k]"),
+        ("processes age with the square root of time", "np.exp(-gaps[r] * rates[k])", "np.exp(-np.sqrt(gaps[r] * rates[k]))"),
+    )),
+    *_of("updating", rows=(
+        ("a 90 % interval is one of 68 %", "half = NORMAL_90 * self.std_per_day", "half = self.std_per_day"),
+        ("posterior intervals are of 68 %", "np.quantile(self.log_theta, [0.05, 0.95], axis=0)", "np.quantile(self.log_theta, [0.16, 0.84], axis=0)"),
+        ("damping predicted with the other sign", "-damped.poles.real / size", "damped.poles.real / size"),
+        ("loss factors are storage over loss", "loss = D.imag / D.real", "loss = D.real / D.imag"),
+        ("bridge sampling weighs both samples alike", "np.log([independent, at_trial.size])", "np.log([at_trial.size, at_trial.size])"),
+        ("the slope's scatter is not squared", "scatter**2 * log_covariance", "scatter * log_covariance"),
+        ("χ² has one freedom more", "freedom = residuals.size - fitted", "freedom = residuals.size - fitted + 1"),
+        ("a kernel's density lacks its root", "- np.log(np.diag(root)).sum()", "+ np.log(np.diag(root)).sum()"),
+    )),
+    *_of("simulate", rows=(
+        ("damping is tuned on half the ratio", "np.asarray(-found.real / np.abs(found))", "np.asarray(-2.0 * found.real / np.abs(found))"),
+        ("noise of sensors is a tenth", "instrument.noise * rng.standard_normal(row.size)", "0.1 * instrument.noise * rng.standard_normal(row.size)"),
+        ("a gap of a sensor is counted in seconds", "round(rng.exponential(instrument.dropout_s) / step_s)", "round(rng.exponential(instrument.dropout_s))"),
+        ("velocities are read from displacements", "C[k, n : 2 * n] = row", "C[k, :n] = row"),
+        ("the mean stress of water is left out at rest", "load, along = load + wet.load, along + wet.along", "load, along = load, along + wet.along"),
+    )),
+    *_of("twin", rows=(
+        ("Birge's factor over days counts one day too many", "between / (days - 1)", "between / days"),
+        ("Birge's factor over records counts one too many", "records / (n - 1)", "records / n"),
+        ("the mean frequency is not weighted", "frequency_hz=exp(s.px / s.p)", "frequency_hz=exp(s.px / s.q)"),
+        ("a direction is turned by its full angle", "0.5 * atan2(self.sine, self.cosine)", "atan2(self.sine, self.cosine)"),
+        ("scatter widens variances twice", "own_f * sqrt(f.widened), own_z * sqrt(z.widened)", "own_f * f.widened, own_z * z.widened"),
+    )),
+    *_of("study", rows=(
+        ("the model's error replaces the data's", "hypot(own_f, error.frequency * f)", "error.frequency * f"),
+        ("the model's error of damping replaces the data's", "hypot(own_zeta, error.damping * zeta)", "error.damping * zeta"),
+    )),
+    *_of("change", rows=(
+        ("scour stiffens the feet", "np.exp(-_SCOUR_HORIZONTAL * chosen)", "np.exp(_SCOUR_HORIZONTAL * chosen)"),
+        ("a weakened brace keeps its stiffness", "_scaled(members, 0.7)", "_scaled(members, 1.0)"),
+    )),
+    *_of("answers", rows=(
+        ("a prior's interval is one of 68 %", "np.exp(NORMAL_90 * p.log_std)", "np.exp(p.log_std)"),
+        ("two runs' deviations are not added", "hypot(s, t)", "max(s, t)"),
+        ("a parameter's deviation is that of half the interval", "log(interval[1] / interval[0]) / (2.0 * NORMAL_90)", "log(interval[1] / interval[0]) / NORMAL_90"),
+    )),
+    *_of("intervals", "tests/test_quantities.py", "tests/identification/test_intervals.py", "tests/twin/test_pair.py", rows=(
+        ("95 % intervals are of 90 %", "math.exp(min(NORMAL_95 * float(log_std), MOST))", "math.exp(min(NORMAL_90 * float(log_std), MOST))"),
+        ("90 % of draws are 80 %", "[0.05, 0.5, 0.95]", "[0.1, 0.5, 0.9]"),
+    )),
+    *_of("report", rows=(
+        ("prefixes are of the next size", "((1e9, \"G\"), (1e6, \"M\"), (1e3, \"k\"))", "((1e9, \"M\"), (1e6, \"M\"), (1e3, \"k\"))"),
+        ("a 95 % interval is one of 68 %", "spread = math.exp(NORMAL_95 * std / value)", "spread = math.exp(std / value)"),
+    )),
+    *_of("store", rows=(
+        ("a server ends work that is another's", "work.c.state == \"leased\", work.c.owner == owner)", "work.c.state == \"leased\")"),
+        ("work is leased twice", "taken = {\"state\": \"leased\"", "taken = {\"state\": \"queued\""),
+        ("the last try is not the last", "job.tries + 1 < MOST_TRIES", "job.tries < MOST_TRIES"),
+        ("a packed step is rounded down", "np.round(x * (denominator / numerator))", "np.floor(x * (denominator / numerator))"),
+        ("a dead server's work counts as tried", "_UNTRIED = {\"state\": \"queued\", \"owner\": None, \"tries\": work.c.tries - 1}", "_UNTRIED = {\"state\": \"queued\", \"owner\": None, \"tries\": work.c.tries}"),
+        ("events are told without their lock", "if connection.dialect.name == \"postgresql\":\n        connection.execute(text(\"select pg_advisory_xact_lock(740114)\"))", "if False:\n        pass"),
+    )),
+    *_of("service", "tests/service/test_packets.py", "tests/service/test_consequences.py", "tests/service/test_watched.py", rows=(
+        ("a packet's samples land one late", "at = np.round(times).astype(int)", "at = np.round(times).astype(int) + 1"),
+        ("two servers fold an asset's days at once", ".where(tables.assets.c.name == asset).with_for_update())", ".where(tables.assets.c.name == asset))"),
+        ("a gap of one sample is bridged", "np.diff(times) > 1.5", "np.diff(times) > 2.5"),
+    )),
+)  # fmt: skip
