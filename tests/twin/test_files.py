@@ -40,7 +40,7 @@ def test_scientific_notation_without_sign_is_a_number(tmp_path: Path) -> None:
         ("ratio: 0.01,", "ratio: 1.5,", r"damping\.rayleigh\.ratio.*< 1"),
         ("jacket15", "jacket51", r"no such structure.*did you mean 'jacket15'"),
         ("tie: all", "tie: some", r"support\.tie.*horizontal-vertical"),
-        ("tie: all", "tie: per-leg, shared: [eta]", r"support\.shared.*no law has such a parameter"),
+        ("tie: all", "tie: per-leg, shared: [eta]", r"support\.shared.*no such parameter of a law"),
         ("tie: all", "scatter: {k: 0.3}", r"support\.scatter.*share all parameters already"),
         (
             "tie: all",

@@ -15,13 +15,13 @@ from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.state import ALL, TwinState
 
 RULE = OperationRule(
-    {
+    states={
         "maintenance": {"status": ("service", "maintenance")},
         "parked": {"rotor_speed_rpm": (None, 0.3)},
         "idling": {"rotor_speed_rpm": (0.3, 3.0), "power_kw": (None, 0.0)},
         "operating": {"rotor_speed_rpm": (3.0, None)},
     },
-    ("parked", "idling"),
+    updates=("parked", "idling"),
 )
 START = datetime(2025, 3, 1, tzinfo=UTC)
 TWIN = (

@@ -32,7 +32,7 @@ from jackettwin.twin import (
     read_twin,
     twin_model,
 )
-from jackettwin.twin.exact_sums import ModeSums, ModeTotal, average, of_day, of_estimate
+from jackettwin.twin.exact_sums import ModeTotal, average, of_day, of_estimate, plus
 from jackettwin.twin.state import ALL
 
 NOON = datetime(2025, 1, 1, 12, tzinfo=UTC)
@@ -195,7 +195,7 @@ def test_a_year_of_a_turbine_is_five_megabytes_at_most() -> None:
 
 def one_day_of(modes: list[ModalEstimate]) -> ModeTotal:
     """Return the total of records of ten minutes on one day."""
-    return of_day(reduce(ModeSums.plus, (of_estimate(mode, 600.0) for mode in modes)))
+    return of_day(reduce(plus, (of_estimate(mode, 600.0) for mode in modes)))
 
 
 def test_the_mean_is_that_of_the_sightings() -> None:
@@ -222,7 +222,7 @@ def test_days_that_lie_apart_widen_the_mean() -> None:
         one_day = [
             estimate(0.18 * np.exp(shift + rng.normal(0.0, record_std)), 0.012, 4e-3) for _ in range(30)
         ]
-        total = total.plus(one_day_of(one_day))
+        total = plus(total, one_day_of(one_day))
     expected = shifts.std(ddof=1) / np.sqrt(8)
     # the spread of eight numbers, and of 30 records about each
     assert average(total).log_std[0] == pytest.approx(expected, rel=0.1)

@@ -9,6 +9,7 @@ from observations import estimate, observation
 
 from jackettwin.response.sensors import Sensor
 from jackettwin.twin import Observation
+from jackettwin.twin.exact_sums import plus
 from jackettwin.twin.observation import Recognised
 from jackettwin.twin.pair_angles import pair_angles
 from jackettwin.twin.state import AngleSums
@@ -71,8 +72,8 @@ def test_the_shape_s_own_uncertainty_counts() -> None:
 def test_directions_are_as_good_as_their_opposites() -> None:
     """The mean of 88° and −88° is 90°, weighted by how well they are known."""
     one, other = (AngleSums.of(np.radians(a), 0.1) for a in (88.0, -88.0))
-    angle, std = one.plus(other).mean
+    angle, std = plus(one, other).mean
     assert abs(np.degrees(angle)) == pytest.approx(90.0)
     assert std == pytest.approx(0.1 / np.sqrt(2.0))
-    sharper = AngleSums.of(np.radians(88.0), 0.01).plus(other).mean[0]
+    sharper = plus(AngleSums.of(np.radians(88.0), 0.01), other).mean[0]
     assert np.degrees(sharper) == pytest.approx(88.0, abs=0.1)

@@ -16,7 +16,7 @@ from jackettwin.soil import family
 from jackettwin.study.result import MeasuredRelaxation
 from jackettwin.twin import TwinConfig, TwinState
 from jackettwin.twin.config import GivenRelaxation
-from jackettwin.twin.exact_sums import UNIT
+from jackettwin.twin.exact_sums import UNIT, plus
 from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums
 from jackettwin.updating import SupportModel
 from jackettwin.updating.data.relaxations import RelaxationTarget
@@ -100,7 +100,7 @@ def _distinct(rates: Mapping[str, RateSums], clearest: Mapping[str, ClearShape])
         apart = [_apart(one, group) for group in groups]
         nearest = int(np.argmin(apart)) if groups else -1
         if groups and apart[nearest] < JOINED:
-            groups[nearest] = replace(groups[nearest], sums=groups[nearest].sums.plus(sums))
+            groups[nearest] = replace(groups[nearest], sums=plus(groups[nearest].sums, sums))
         else:
             groups.append(one)
     return groups

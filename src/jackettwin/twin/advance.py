@@ -17,7 +17,7 @@ import numpy as np
 from jackettwin.errors import InputError
 from jackettwin.findings import Finding
 from jackettwin.identification import RealPole
-from jackettwin.twin.exact_sums import of_estimate, whole
+from jackettwin.twin.exact_sums import of_estimate, plus, whole
 from jackettwin.twin.observation import Observation
 from jackettwin.twin.pair_angles import pair_angles
 from jackettwin.twin.state import (
@@ -26,6 +26,7 @@ from jackettwin.twin.state import (
     ClearShape,
     ConditionSums,
     Day,
+    NumberSum,
     Operation,
     RateSums,
     TwinState,
@@ -134,7 +135,7 @@ def _operation(seen: Observation) -> Operation:
     for pole in seen.identification.real_poles:
         w, x, bin_ = (pole.rate_rad_s / pole.rate_std_rad_s) ** 2, log(pole.rate_rad_s), _bin(pole, seen)
         own = RateSums(int(bin_ not in rates), whole(w), whole(w * x), whole(w * x * x))
-        rates[bin_] = rates.get(bin_, RateSums()).plus(own)
+        rates[bin_] = plus(rates.get(bin_, RateSums()), own)
     directions = pair_angles(seen)
     angles = {
         number: AngleSums.of(*directions[known.label])
@@ -144,10 +145,10 @@ def _operation(seen: Observation) -> Operation:
     return Operation(conditions, modes, rates, _beside(seen), angles)
 
 
-def _beside(seen: Observation) -> dict[str, tuple[int, int]]:
+def _beside(seen: Observation) -> dict[str, NumberSum]:
     """Return the levels and temperatures that a record says."""
     return {
-        name: (1, whole(float(value)))
+        name: NumberSum(1, whole(float(value)))
         for name, value in sorted(seen.conditions.items())
         if BESIDE.search(name) and isinstance(value, (int, float)) and isfinite(value)
     }

@@ -16,8 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import exp, log, pi, sqrt
-from operator import add, neg
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import Average
@@ -25,10 +24,23 @@ from jackettwin.identification.many_records.fusion import Average
 UNIT = 2**24
 """Whole numbers a unit: 6e-8, three digits below what ten minutes tell of any sum."""
 
+Sums = TypeVar("Sums", bound=tuple[Any, ...])
+"""A named tuple of whole numbers, or of such tuples."""
+
 
 def whole(value: float) -> int:
     """Return a number in units of 2⁻²⁴, rounded."""
     return round(value * UNIT)
+
+
+def plus(a: Sums, b: Sums) -> Sums:
+    """Return the sums of both."""
+    return type(a)(*(plus(x, y) if isinstance(x, tuple) else x + y for x, y in zip(a, b, strict=True)))
+
+
+def negated(a: Sums) -> Sums:
+    """Return what takes sums out again when it is added."""
+    return type(a)(*(negated(x) if isinstance(x, tuple) else -x for x in a))
 
 
 class ModeSums(NamedTuple):
@@ -56,14 +68,6 @@ class ModeSums(NamedTuple):
     qzz: int = 0
     log_ratio: int = 0
     correlation: int = 0
-
-    def plus(self, other: ModeSums) -> ModeSums:
-        """Return the sums of both."""
-        return ModeSums(*map(add, self, other))
-
-    def negated(self) -> ModeSums:
-        """Return what takes the sums out again when it is added."""
-        return ModeSums(*map(neg, self))
 
 
 def of_estimate(mode: ModalEstimate, duration_s: float) -> ModeSums:
@@ -105,14 +109,6 @@ class ModeTotal(NamedTuple):
     days: int = 0
     f_days: int = 0
     z_days: int = 0
-
-    def plus(self, other: ModeTotal) -> ModeTotal:
-        """Return the total of both."""
-        return ModeTotal(self.sums.plus(other.sums), *map(add, self[1:], other[1:]))
-
-    def negated(self) -> ModeTotal:
-        """Return what takes the total out again when it is added."""
-        return ModeTotal(self.sums.negated(), *map(neg, self[1:]))
 
 
 def of_day(sums: ModeSums) -> ModeTotal:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.errors import did_you_mean, located, look_up, require
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads import SeaState
 from jackettwin.records.readers import formats
-from jackettwin.records.readers.channels import Unsaid
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.names import read_mode_label
+from jackettwin.simulate.scenario.schema import RayleighSchema
 from jackettwin.simulate.scenario.water_files import WaterSchema, depth_of, water_members
 from jackettwin.soil import DEFAULT_LAWS, Parameter, family
 from jackettwin.structure import Rayleigh, Structure
@@ -31,7 +31,7 @@ from jackettwin.twin.config import (
     UpdateSettings,
 )
 from jackettwin.twin.mode_assignment import assigned_modes
-from jackettwin.twin.schema import RefinedStructure, SupportSchema, TwinSchema
+from jackettwin.twin.schema import SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
 from jackettwin.updating import Target, numbered_modes
@@ -67,12 +67,12 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
     schema = validate(TwinSchema, given_keys, file=path)
     with located(file=path):
         given = [key for key in ("records", "targets") if getattr(schema, key)]
-        if len(given) != 1 and not (records_follow and not given):
-            raise InputError(
-                "give records or targets",
-                field="records",
-                remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
-            )
+        require(
+            len(given) == 1 or (records_follow and not given),
+            "give records or targets",
+            field="records",
+            remedy="records: [file, …] or targets: [{mode: 1, …}, …]",
+        )
         numbered = _with_numbers(schema, path)
         pairs = zip(schema.targets, numbered.targets, strict=True)
         assigned = tuple(after.number or 0 for before, after in pairs if before.is_unnamed)
@@ -81,13 +81,13 @@ def read_twin(source: str | Path, *, records_follow: bool = False) -> TwinConfig
 
 def _keys(path: Path) -> dict[str, Any]:
     """Return the keys of a twin file; of a structure or a record in its place say how one is made of it."""
-    if any(path.suffix.lower() in form.extensions for form in formats()):
-        remedy = f"jackettwin init STRUCTURE {path} writes a twin"
-        raise InputError("is a record, not a twin", file=path, remedy=remedy)
+    is_record = any(path.suffix.lower() in form.extensions for form in formats())
+    remedy = f"jackettwin init STRUCTURE {path} writes a twin"
+    require(not is_record, "is a record, not a twin", file=path, remedy=remedy)
     found = read_yaml(path, what="twin file")
-    if "structure" not in found and not _STRUCTURE_KEYS.isdisjoint(found):
-        remedy = f"jackettwin init {path} RECORD… writes a twin"
-        raise InputError("is a structure, not a twin", file=path, remedy=remedy)
+    is_twin = "structure" in found or _STRUCTURE_KEYS.isdisjoint(found)
+    remedy = f"jackettwin init {path} RECORD… writes a twin"
+    require(is_twin, "is a structure, not a twin", file=path, remedy=remedy)
     return found
 
 
@@ -118,35 +118,40 @@ def _number(name: str, labels: tuple[str, ...]) -> int:
     if name.strip().isdigit():
         return int(name)
     label = read_mode_label(name)
-    if label not in labels:
-        raise InputError(
-            "no mode of the structure is called so",
-            field="mode",
-            value=name,
-            allowed=", ".join(labels),
-            remedy=did_you_mean(label, labels) or "jackettwin modes lists them",
-        )
+    require(
+        label in labels,
+        "no mode of the structure is called so",
+        field="mode",
+        value=name,
+        allowed=", ".join(labels),
+        remedy=did_you_mean(label, labels) or "jackettwin modes lists them",
+    )
     return labels.index(label) + 1
 
 
 def _build(schema: TwinSchema, path: Path) -> TwinConfig:
-    if len({s.channel for s in schema.sensors}) != len(schema.sensors):
-        raise InputError(
-            "a channel is given twice", field="sensors", value=[s.channel for s in schema.sensors]
-        )
-    if schema.support.law:
-        with located(field="support.law"):
-            family(schema.support.law)
-    for i, law in enumerate(schema.update.laws):
-        with located(field=f"update.laws.{i}"):
-            family(law)
+    channels, folder, support = [s.channel for s in schema.sensors], path.parent, schema.support
+    require(len({*channels}) == len(channels), "a channel is given twice", field="sensors", value=channels)
+    for field, law in (("support.law", support.law), *_numbered("update.laws", schema.update.laws)):
+        with located(field=field):
+            family(law or DEFAULT_LAWS[0])
     with located(field="update"):
         _check_update(schema.update, {target.number for target in schema.targets})
     with located(field="support"):
-        _check_ties(schema.support, schema.update)
+        _check_ties(support, schema.update)
+    with located(field="logger"):
+        unsaid = schema.logger.build()
+    low, high = schema.rotor_speed_rpm or (0.0, 0.0)
+    require(
+        low <= high,
+        "the rotor's speeds are reversed",
+        field="rotor_speed_rpm",
+        value=[low, high],
+        allowed="[lowest, highest]",
+    )
     targets, relaxations = _targets(schema)
-    damping = schema.damping.rayleigh if schema.damping is not None else None
-    structure = _structure(schema, path.parent)
+    steel = RayleighSchema(ratio=0.0, frequency_hz=1.0) if schema.damping is None else schema.damping.rayleigh
+    structure = _structure(schema, folder)
     return TwinConfig(
         name=path.stem,
         path=path,
@@ -155,44 +160,31 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         rotary_inertia=schema.rotary_inertia,
         subdivide=schema.subdivide,
         gravity=schema.gravity,
-        rayleigh=Rayleigh() if damping is None else Rayleigh.minimum(damping.ratio, damping.frequency_hz),
-        rayleigh_ratio=0.0 if damping is None else damping.ratio,
-        water=_water(schema, structure, path.parent),
-        tie=schema.support.tie,
-        shared=tuple(dict.fromkeys(schema.support.shared)),
-        scatter=dict(schema.support.scatter),
-        heads=schema.support.stiffness,
+        rayleigh=Rayleigh.minimum(steel.ratio, steel.frequency_hz),
+        rayleigh_ratio=steel.ratio,
+        water=_water(schema, structure, folder),
+        tie=support.tie,
+        shared=tuple(dict.fromkeys(support.shared)),
+        scatter=dict(support.scatter),
+        heads=support.stiffness,
         sensors=tuple(sensor.build() for sensor in schema.sensors),
         calibrations=tuple(c for sensor in schema.sensors for c in sensor.history()),
-        operation=schema.operation.build(),
+        operation=schema.operation,
         watch=schema.watch,
-        records=tuple(path.parent / record for record in schema.records),
-        unsaid=_unsaid(schema),
+        records=tuple(folder / record for record in schema.records),
+        unsaid=unsaid,
         targets=targets,
         shapes=_shapes(schema, targets),
         relaxations=relaxations,
         identification=_identification(schema.identification),
-        picks=_picks(schema.identification, path.parent, [Path(record).stem for record in schema.records]),
-        update=_update_settings(schema, path.parent),
-        rotor_speed_rpm=_rotor_speed(schema),
+        picks=_picks(schema.identification, folder, [Path(record).stem for record in schema.records]),
+        update=_update_settings(schema, folder),
+        rotor_speed_rpm=schema.rotor_speed_rpm,
     )
 
 
-def _rotor_speed(schema: TwinSchema) -> tuple[float, float] | None:
-    speed = schema.rotor_speed_rpm
-    if speed is not None and speed[0] > speed[1]:
-        raise InputError(
-            "the rotor's speeds are reversed",
-            field="rotor_speed_rpm",
-            value=list(speed),
-            allowed="[lowest, highest]",
-        )
-    return speed
-
-
-def _unsaid(schema: TwinSchema) -> Unsaid:
-    with located(field="logger"):
-        return schema.logger.build()
+def _numbered(field: str, names: Iterable[str]) -> Iterator[tuple[str, str]]:
+    return ((f"{field}.{i}", name) for i, name in enumerate(names))
 
 
 def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxation, ...]]:
@@ -203,48 +195,43 @@ def _targets(schema: TwinSchema) -> tuple[tuple[Target, ...], tuple[GivenRelaxat
             built.append(target.build(channels))
     modes = tuple(target for target in built if isinstance(target, Target))
     relaxations = tuple(target for target in built if isinstance(target, GivenRelaxation))
-    if relaxations and not modes:
-        raise InputError(
-            "relaxations alone do not fix the supports of a structure",
-            field="targets",
-            value=f"{len(relaxations)} without mode",
-            remedy="give at least one mode as well: {mode: 1, frequency_hz: …}",
-        )
+    require(
+        modes or not relaxations,
+        "relaxations alone do not fix the supports of a structure",
+        field="targets",
+        value=f"{len(relaxations)} without mode",
+        remedy="give at least one mode as well: {mode: 1, frequency_hz: …}",
+    )
     return modes, relaxations
 
 
 def _shapes(schema: TwinSchema, targets: tuple[Target, ...]) -> dict[int, dict[str, complex]]:
     """Return the shapes of the targets that are modes; ``update.mac_std`` weighs them."""
     shapes = {t.number: t.shape for t in schema.targets if t.number is not None and t.mode_shape}
-    if not schema.targets:
-        return {}
-    if shapes and schema.update.mac_std is None:
-        raise InputError(
-            "shapes need the standard deviation of 1 − MAC to count beside the rest",
-            field="update.mac_std",
-            allowed="> 0",
-            remedy="e.g. mac_std: 0.02; or leave mode_shape out",
-        )
-    if schema.update.mac_std is not None and not shapes:
-        raise InputError(
-            "no target has a shape to be compared",
-            field="update.mac_std",
-            value=schema.update.mac_std,
-            remedy="give targets a mode_shape: {channel: value, …}, or leave mac_std out",
-        )
-    for t in targets:
-        if t.mode in shapes and t.frequency_hz is None:
-            raise InputError(
-                "a shape without its frequency",
-                field="targets.mode_shape",
-                value=t.mode,
-                remedy="give frequency_hz of the mode, too",
-            )
-        if t.mode in shapes and len(shapes[t.mode]) < 2:
-            raise InputError(
+    std = schema.update.mac_std
+    require(
+        not shapes or std is not None,
+        "shapes need the standard deviation of 1 − MAC to count beside the rest",
+        field="update.mac_std",
+        allowed="> 0",
+        remedy="e.g. mac_std: 0.02; or leave mode_shape out",
+    )
+    require(
+        not schema.targets or std is None or shapes,
+        "no target has a shape to be compared",
+        field="update.mac_std",
+        value=std,
+        remedy="give targets a mode_shape: {channel: value, …}, or leave mac_std out",
+    )
+    with located(field="targets.mode_shape"):
+        for t in (t for t in targets if t.mode in shapes):
+            remedy = "give frequency_hz of the mode, too"
+            require(t.frequency_hz is not None, "a shape without its frequency", value=t.mode, remedy=remedy)
+            seen = list(shapes[t.mode])
+            require(
+                len(seen) > 1,
                 "a shape at one sensor says nothing",
-                field="targets.mode_shape",
-                value=list(shapes[t.mode]),
+                value=seen,
                 allowed="two channels or more",
             )
     return shapes
@@ -258,13 +245,10 @@ def _identification(given: dict[str, Any]) -> IdentificationSettings:
 def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pick, ...]:
     """Return the picks of ``identification.picks``: a list, or the name of a file of them."""
     source = given.get("picks")
-    if isinstance(source, str):
-        path = folder / source
-        with located(file=path):
-            picks = parse_picks(read_mapping(path, what="file of picks"))
-            refuse_strangers(picks, records)
-            return picks
-    with located(field="identification"):
+    file = folder / source if isinstance(source, str) else None
+    with located(file=file, field=None if file else "identification"):
+        if file is not None:
+            source = read_mapping(file, what="file of picks")
         picks = () if source is None else parse_picks(source)
         refuse_strangers(picks, records)
         return picks
@@ -273,27 +257,19 @@ def _picks(given: dict[str, Any], folder: Path, records: list[str]) -> tuple[Pic
 def _check_ties(support: SupportSchema, update: UpdateSettings) -> None:
     sides = ("", *SIDES) if support.tie == SPLIT_LEGS else ("",)
     laws = (*DEFAULT_LAWS, *update.laws)
-    known = sorted({p.name + side for law in laws for p in family(law).parameters for side in sides})
+    known = {p.name + side: law for law in laws for p in family(law).parameters for side in sides}
     for field, names in (("shared", support.shared), ("scatter", [*support.scatter])):
         for name in names:
-            if name not in known:
-                raise InputError(
-                    "no law has such a parameter",
-                    field=field,
-                    value=name,
-                    allowed=", ".join(known),
-                    remedy=did_you_mean(name, known),
-                )
-        if names and support.tie == "all":
-            raise InputError(
-                "all supports share all parameters already",
-                field=field,
-                value=names,
-                remedy="tie: per-leg or horizontal-vertical",
-            )
-    both = set(support.shared) & set(support.scatter)
-    if both:
-        raise InputError("a parameter is shared or scatters, not both", field="scatter", value=sorted(both))
+            look_up(known, name, "parameter of a law", field=field)
+        require(
+            not names or support.tie != "all",
+            "all supports share all parameters already",
+            field=field,
+            value=names,
+            remedy="tie: per-leg or horizontal-vertical",
+        )
+    both = sorted({*support.shared} & {*support.scatter})
+    require(not both, "a parameter is shared or scatters, not both", field="scatter", value=both)
 
 
 def _check_update(update: UpdateSettings, given_modes: Container[int | None]) -> None:
@@ -305,25 +281,19 @@ def _check_update(update: UpdateSettings, given_modes: Container[int | None]) ->
     known |= {*update.water, *update.parameters}
     for field, given in (("bounds", update.bounds), ("priors", update.priors)):
         for name in given:
-            if not any(name == k or name.startswith(f"{k}_") for k in known):
-                raise InputError(
-                    "no law has such a parameter",
-                    field=f"{field}.{name}",
-                    value=name,
-                    allowed=", ".join(sorted(known)),
-                    remedy=did_you_mean(name, sorted(known)),
-                )
+            if not any(name.startswith(f"{k}_") for k in known):
+                look_up(dict.fromkeys(sorted(known)), name, "parameter of a law", field=f"{field}.{name}")
     for name, (low, high) in update.bounds.items():
         Parameter(name, low, high, "")
     beyond = [mode for mode in update.modes if mode > PAIRED_MODES and mode not in given_modes]
-    if beyond:
-        raise InputError(
-            f"measured modes are paired with the model's first {PAIRED_MODES} on pinned feet",
-            field="modes",
-            value=beyond,
-            allowed=f"1 to {PAIRED_MODES}",
-            remedy="give higher ones as targets: {mode, frequency_hz, …}",
-        )
+    require(
+        not beyond,
+        f"measured modes are paired with the model's first {PAIRED_MODES} on pinned feet",
+        field="modes",
+        value=beyond,
+        allowed=f"1 to {PAIRED_MODES}",
+        remedy="give higher ones as targets: {mode, frequency_hz, …}",
+    )
 
 
 def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
@@ -332,13 +302,8 @@ def _dashpots(update: UpdateSettings) -> tuple[str, ...]:
 
 
 def _structure(schema: TwinSchema, folder: Path) -> Structure:
-    choice = (
-        schema.structure
-        if isinstance(schema.structure, RefinedStructure)
-        else RefinedStructure(source=schema.structure)
-    )
-    structure = choice.build(folder)
-    rna = schema.rna or choice.rna
+    structure = schema.structure.build(folder)
+    rna = schema.rna or schema.structure.rna
     return structure if rna is None else rna.stand_on(structure, folder=folder)
 
 
@@ -358,11 +323,6 @@ def _water(schema: TwinSchema, structure: Structure, folder: Path) -> WaterConfi
     )
 
 
-def _beside(name: str, folder: Path) -> str:
-    """Return a file beside the twin's, or the name of a shipped one."""
-    return str(folder / name) if Path(name).suffix else name
-
-
 def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
     """Return the settings with what follows from the rest of the file."""
     u = schema.update
@@ -370,7 +330,7 @@ def _update_settings(schema: TwinSchema, folder: Path) -> UpdateSettings:
     said: dict[str, Any] = {
         "laws": tuple(dict.fromkeys([*first, *u.laws])),
         "dashpots": _dashpots(u),
-        "rotor": None if u.rotor is None else _beside(u.rotor, folder),
+        "rotor": str(folder / u.rotor) if u.rotor and Path(u.rotor).suffix else u.rotor,
         "water": tuple(dict.fromkeys(u.water)),
         "parameters": tuple(dict.fromkeys(u.parameters)),
     }

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
+
+from pydantic import model_validator
+
+from jackettwin.errors import look_up
+from jackettwin.files import Schema
 
 UNKNOWN = "unknown"
 """The state of operation of a record whose conditions are none of the rule's."""
-Limits = tuple[float | None, float | None]
-Condition = Limits | tuple[str | float | None, ...]
+Condition = tuple[float | None, float | None] | tuple[str, ...]
 """What a condition must be: between two numbers, either of which may be open, or one of some words."""
 
 
-@dataclass(frozen=True)
-class OperationRule:
-    """States of operation by their conditions, and those whose records may update the supports.
+class OperationRule(Schema):
+    """``operation`` of a twin file: states of operation, and those whose records may update the supports.
 
     Attributes
     ----------
@@ -25,8 +27,15 @@ class OperationRule:
         Of the states; the records of all others are tracked only. None lets all update.
     """
 
-    states: Mapping[str, Mapping[str, Condition]] = field(default_factory=dict)
+    states: dict[str, dict[str, Condition]] = {}
     updates: tuple[str, ...] | None = None
+
+    @model_validator(mode="after")
+    def _known_states(self) -> Self:
+        known = dict.fromkeys([*self.states, UNKNOWN])
+        for name in self.updates or () if self.states else ():
+            look_up(known, name, "state of operation", field="operation.updates")
+        return self
 
     def with_state(self, conditions: Mapping[str, Any]) -> dict[str, Any]:
         """Return conditions with the state of operation that they are."""

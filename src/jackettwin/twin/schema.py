@@ -12,7 +12,7 @@ from pydantic import AwareDatetime, BeforeValidator, Field
 
 from jackettwin.decks import read_structure
 from jackettwin.decks.structure_files import RnaSchema
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.errors import InputError, located, require
 from jackettwin.files import Schema, one_of
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
@@ -24,7 +24,7 @@ from jackettwin.simulate.scenario.water_files import WaterSchema
 from jackettwin.structure import Structure
 from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
-from jackettwin.twin.operation import UNKNOWN, OperationRule
+from jackettwin.twin.operation import OperationRule
 from jackettwin.updating import Target
 
 Vector = tuple[float, float, float]
@@ -104,34 +104,6 @@ def _since(calibration: Calibration) -> datetime:
     return calibration.from_utc or datetime.min.replace(tzinfo=UTC)
 
 
-class OperationSchema(Schema):
-    """``operation``: states of operation by their conditions, and those that may update the supports."""
-
-    states: dict[str, dict[str, tuple[float | None, float | None] | list[str]]] = {}
-    updates: list[str] | None = None
-
-    def build(self) -> OperationRule:
-        """Return the rule.
-
-        Raises
-        ------
-        InputError
-            If a state that may update is none of those there are.
-        """
-        known = [*self.states, UNKNOWN]
-        for name in self.updates or []:
-            if self.states and name not in known:
-                raise InputError(
-                    "no such state of operation",
-                    field="operation.updates",
-                    value=name,
-                    allowed=", ".join(known),
-                    remedy=did_you_mean(name, known),
-                )
-        states = {name: {k: tuple(v) for k, v in wanted.items()} for name, wanted in self.states.items()}
-        return OperationRule(states, None if self.updates is None else tuple(self.updates))
-
-
 class SensorSchema(Schema):
     """A sensor: where a channel of the record sits in the structure, and what it sees there."""
 
@@ -158,13 +130,13 @@ class SensorSchema(Schema):
         """
         found = sorted((c.build(self.build()) for c in self.calibrations), key=_since)
         for before, after in pairwise(found):
-            if before.to_utc is None or _since(after) < before.to_utc:
-                raise InputError(
-                    "two calibrations hold at the same time",
-                    field=f"sensors.{self.channel}.calibrations",
-                    value=str(after.from_utc),
-                    remedy="end the earlier one (to_utc) where the later one begins (from_utc)",
-                )
+            require(
+                before.to_utc is not None and _since(after) >= before.to_utc,
+                "two calibrations hold at the same time",
+                field=f"sensors.{self.channel}.calibrations",
+                value=str(after.from_utc),
+                remedy="end the earlier one (to_utc) where the later one begins (from_utc)",
+            )
         return tuple(found)
 
 
@@ -218,14 +190,22 @@ class TargetSchema(Schema):
         """
         given = {name for name in self.model_fields_set if getattr(self, name) is not None}
         for value, std in _STANDARD_DEVIATIONS.items():
-            if std in given and value not in given:
-                raise InputError(
-                    "a standard deviation without its value",
-                    field=std,
-                    value=getattr(self, std),
-                    remedy=f"give {value}, or leave {std} out",
-                )
-        self._check_channels(channels)
+            require(
+                std not in given or value in given,
+                "a standard deviation without its value",
+                field=std,
+                value=getattr(self, std),
+                remedy=f"give {value}, or leave {std} out",
+            )
+        strangers = [channel for channel in self.mode_shape if channel not in channels]
+        require(
+            not strangers,
+            "no sensor of the twin has this channel",
+            field="mode_shape",
+            value=strangers,
+            allowed=", ".join(channels) or None,
+            remedy="say under sensors: where it sits",
+        )
         if isinstance(self.mode, int) and not given & _OF_RELAXATIONS:
             values = self.model_dump(exclude={*_OF_RELAXATIONS, "mode", "mode_shape"})
             return Target(mode=self.mode, **values)
@@ -251,17 +231,6 @@ class TargetSchema(Schema):
     def shape(self) -> dict[str, complex]:
         """The shape at the sensors, empty if it is not given."""
         return {n: complex(*v) if isinstance(v, tuple) else complex(v) for n, v in self.mode_shape.items()}
-
-    def _check_channels(self, channels: list[str]) -> None:
-        strangers = [channel for channel in self.mode_shape if channel not in channels]
-        if strangers:
-            raise InputError(
-                "no sensor of the twin has this channel",
-                field="mode_shape",
-                value=strangers,
-                allowed=", ".join(channels) or None,
-                remedy="say under sensors: where it sits",
-            )
 
 
 class SeaSchema(Schema):
@@ -292,5 +261,5 @@ class TwinSchema(Schema):
     rotor_speed_rpm: tuple[Positive, Positive] | None = None
     identification: dict[str, Any] = {}
     update: UpdateSettings = UpdateSettings()
-    operation: OperationSchema = OperationSchema()
+    operation: OperationRule = OperationRule()
     watch: WatchSettings = WatchSettings()

@@ -11,16 +11,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from math import atan2, cos, sin, sqrt
-from operator import add, neg
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from jackettwin.arrays import ComplexArray
 from jackettwin.response import Sensor
 from jackettwin.twin.codec import StoredSchema, digest
-from jackettwin.twin.exact_sums import UNIT, ModeSums, ModeTotal, of_day, whole
+from jackettwin.twin.exact_sums import UNIT, ModeSums, ModeTotal, Sums, negated, of_day, plus, whole
 from jackettwin.twin.model import TwinModel
 
-Sums = TypeVar("Sums", ModeSums, ModeTotal, "RateSums", "AngleSums")
 ALL = "all"
 """The state of operation that holds every record."""
 UNDATED = ""
@@ -49,14 +47,6 @@ class ConditionSums(NamedTuple):
     wave_height: int = 0
     wave_period: int = 0
 
-    def plus(self, other: ConditionSums) -> ConditionSums:
-        """Return the sums of both."""
-        return ConditionSums(*map(add, self, other))
-
-    def negated(self) -> ConditionSums:
-        """Return what takes the sums out again when it is added."""
-        return ConditionSums(*map(neg, self))
-
     @property
     def wind_m_s(self) -> float | None:
         """Mean wind speed, if every record says it."""
@@ -70,6 +60,13 @@ class ConditionSums(NamedTuple):
         return self.wave_height / UNIT / self.waved, self.wave_period / UNIT / self.waved
 
 
+class NumberSum(NamedTuple):
+    """How many records say a number, and its sum as a whole number."""
+
+    n: int = 0
+    total: int = 0
+
+
 class RateSums(NamedTuple):
     """Sums over real poles of about one rate: n, Σw, Σw ln a and Σw (ln a)² with w = 1/var(ln a)."""
 
@@ -77,14 +74,6 @@ class RateSums(NamedTuple):
     w: int = 0
     wx: int = 0
     wxx: int = 0
-
-    def plus(self, other: RateSums) -> RateSums:
-        """Return the sums of both."""
-        return RateSums(*map(add, self, other))
-
-    def negated(self) -> RateSums:
-        """Return what takes the sums out again when it is added."""
-        return RateSums(*map(neg, self))
 
 
 class AngleSums(NamedTuple):
@@ -102,10 +91,6 @@ class AngleSums(NamedTuple):
         """Return what one record says of a direction [rad]."""
         w = std**-2
         return cls(whole(w), whole(w * cos(2.0 * angle)), whole(w * sin(2.0 * angle)))
-
-    def plus(self, other: AngleSums) -> AngleSums:
-        """Return the sums of both."""
-        return AngleSums(*map(add, self, other))
 
     @property
     def mean(self) -> tuple[float, float]:
@@ -142,7 +127,7 @@ class Operation:
 
     Attributes
     ----------
-    beside : {condition: (records, sum)}
+    beside : {condition: NumberSum}
         Levels and temperatures, as whole numbers: what moves frequencies besides wind and waves.
     angles : {mode: AngleSums}
         Of the lower modes of bending pairs.
@@ -151,7 +136,7 @@ class Operation:
     conditions: ConditionSums = ConditionSums()
     modes: Mapping[int, ModeSums] = field(default_factory=dict)
     rates: Mapping[str, RateSums] = field(default_factory=dict)
-    beside: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    beside: Mapping[str, NumberSum] = field(default_factory=dict)
     angles: Mapping[int, AngleSums] = field(default_factory=dict)
 
 
@@ -201,7 +186,7 @@ class OperationTotal:
         """Return the total of both; what became nothing is left out."""
         modes = _joined(self.modes, other.modes, ModeTotal())
         return OperationTotal(
-            self.conditions.plus(other.conditions),
+            plus(self.conditions, other.conditions),
             {m: total for m, total in modes.items() if total.sums.n},
             {b: sums for b, sums in _joined(self.rates, other.rates, RateSums()).items() if sums.n},
         )
@@ -209,9 +194,9 @@ class OperationTotal:
     def negated(self) -> OperationTotal:
         """Return what takes the total out again when it is added."""
         return OperationTotal(
-            self.conditions.negated(),
-            {m: total.negated() for m, total in self.modes.items()},
-            {b: sums.negated() for b, sums in self.rates.items()},
+            negated(self.conditions),
+            {m: negated(total) for m, total in self.modes.items()},
+            {b: negated(sums) for b, sums in self.rates.items()},
         )
 
 
@@ -319,17 +304,12 @@ def day_totals(day: Day) -> dict[str, OperationTotal]:
 def join(a: Operation, b: Operation) -> Operation:
     """Return what two sets of records of one day say together."""
     return Operation(
-        a.conditions.plus(b.conditions),
+        plus(a.conditions, b.conditions),
         _joined(a.modes, b.modes, ModeSums()),
         _joined(a.rates, b.rates, RateSums()),
-        {name: _both(a.beside.get(name), b.beside.get(name)) for name in sorted({*a.beside, *b.beside})},
+        _joined(a.beside, b.beside, NumberSum()),
         _joined(a.angles, b.angles, AngleSums()),
     )
-
-
-def _both(a: tuple[int, int] | None, b: tuple[int, int] | None) -> tuple[int, int]:
-    (n, x), (m, y) = a or (0, 0), b or (0, 0)
-    return n + m, x + y
 
 
 def add_totals(a: Totals, b: Totals) -> dict[str, OperationTotal]:
@@ -350,7 +330,7 @@ def clearer(a: Mapping[str, ClearShape], b: Mapping[str, ClearShape]) -> dict[st
 
 
 def _joined(a: Mapping[Any, Sums], b: Mapping[Any, Sums], none: Sums) -> dict[Any, Sums]:
-    return {key: a.get(key, none).plus(b.get(key, none)) for key in sorted({*a, *b})}
+    return {key: plus(a.get(key, none), b.get(key, none)) for key in sorted({*a, *b})}
 
 
 STATE = StoredSchema("twin_state", TwinState)
