@@ -11,11 +11,11 @@ from jackettwin.response.system import build_system
 from jackettwin.soil import pinned
 from jackettwin.structure import Section, Structure, assemble, check, jacket
 from jackettwin.structure.jacket import Lattice, Tower, TransitionPiece
-from jackettwin.structure.model import STEEL, PointMass
+from jackettwin.structure.model import PointMass
 
-LATTICE = Lattice(3, 3, 30.0, 12.0, 60.0, 1.4, 0.06, 0.04, Section(0.7, 0.02), STEEL)
-PIECE = TransitionPiece(66.0, Section(1.5, 0.05), Section(6.0, 0.08), STEEL)
-TOWER = Tower(90.0, 9, Section(6.0, 0.05), Section(4.0, 0.03), STEEL)
+LATTICE = Lattice(30.0, 12.0, 60.0, 1.4, 0.06, 0.04, Section(0.7, 0.02), legs=3, bays=3)
+PIECE = TransitionPiece(66.0, Section(1.5, 0.05), Section(6.0, 0.08))
+TOWER = Tower(90.0, Section(6.0, 0.05), Section(4.0, 0.03), elements=9)
 
 
 def build(lattice: Lattice = LATTICE, piece: TransitionPiece = PIECE, tower: Tower = TOWER) -> Structure:
@@ -54,21 +54,28 @@ def test_braces_meet_where_the_diagonals_cross() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "message"),
+    ("part", "change", "message"),
     [
-        ({"lattice": replace(LATTICE, legs=2)}, "legs: out of range .got 2."),
-        ({"lattice": replace(LATTICE, legs=10**9)}, "legs: out of range"),
-        ({"lattice": replace(LATTICE, bays=0)}, "bays: out of range"),
-        ({"lattice": replace(LATTICE, top_width_m=0.0)}, "top_width_m: out of range"),
+        (LATTICE, {"legs": 2}, "legs: out of range .got 2."),
+        (LATTICE, {"legs": 10**9}, "legs: out of range"),
+        (LATTICE, {"bays": 0}, "bays: out of range"),
+        (LATTICE, {"top_width_m": 0.0}, "top_width_m: out of range"),
         (
-            {"lattice": replace(LATTICE, leg_thickness_top_m=-0.01)},
-            "lattice.leg.thickness_m: ",
+            LATTICE,
+            {"leg_thickness_top_m": -0.01},
+            "leg_thickness_top_m: .*positive.*0 < leg_.*≤ 0.7",
         ),
-        ({"piece": replace(PIECE, top_z_m=60.0)}, "transition_piece.top_z_m: out of range .got 60.0."),
-        ({"tower": replace(TOWER, elements=0)}, "tower.elements: out of range"),
-        ({"tower": replace(TOWER, height_m=-1.0)}, "tower.height_m: out of range"),
+        (LATTICE, {"leg_thickness_bottom_m": 0.8}, "leg_thickness_bottom_m: .*at most the radius .got 0.8."),
+        (LATTICE, {"brace": (Section(0.7, 0.02),) * 2}, "brace: out of range .got 2.*one section, or 3"),
+        (TOWER, {"elements": 0}, "elements: out of range"),
+        (TOWER, {"height_m": -1.0}, "height_m: out of range"),
     ],
 )
-def test_bad_jackets_are_refused(change: dict, message: str) -> None:
+def test_bad_parts_are_refused(part: Lattice | Tower, change: dict, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        build(**change)
+        replace(part, **change)
+
+
+def test_a_transition_piece_stands_above_the_legs() -> None:
+    with pytest.raises(InputError, match="transition_piece.top_z_m: out of range .got 60.0."):
+        build(piece=replace(PIECE, top_z_m=60.0))

@@ -8,8 +8,7 @@ import click
 
 from jackettwin.cli.console import messages, output, print_json
 from jackettwin.cli.modes import support_option
-from jackettwin.decks import read_structure
-from jackettwin.decks.subdyn_writer import write_subdyn
+from jackettwin.decks import read_structure, write_subdyn
 from jackettwin.errors import InputError
 from jackettwin.response.superelement.reduction import dissipates
 from jackettwin.soil import Support, with_static_reactions

@@ -12,8 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from jackettwin.cli.console import fixed, numbers_of, output, print_json
-from jackettwin.decks import read_structure
-from jackettwin.decks.blade_files import read_flexible_rotor
+from jackettwin.decks import read_flexible_rotor, read_structure
 from jackettwin.errors import located
 from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
 from jackettwin.response.modes.labels import mode_kinds, mode_labels

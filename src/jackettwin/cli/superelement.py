@@ -12,8 +12,7 @@ from rich.table import Table
 from jackettwin.arrays import FloatArray
 from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
-from jackettwin.decks import read_structure
-from jackettwin.decks.subdyn_damping import DeckDamping, read_deck_damping
+from jackettwin.decks import DeckDamping, read_deck_damping, read_structure
 from jackettwin.errors import InputError
 from jackettwin.response import build_system
 from jackettwin.response.superelement.error import (

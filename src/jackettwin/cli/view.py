@@ -14,8 +14,7 @@ from jackettwin.checks.member_check import member_uses
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import PageFile, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
-from jackettwin.decks import read_structure
-from jackettwin.decks.sacs import is_sacs, sacs_remarks
+from jackettwin.decks import is_sacs, read_structure, sacs_remarks
 from jackettwin.errors import InputError, located
 from jackettwin.loads.members.coefficients import Coefficients, GrowthBand
 from jackettwin.records import read_record

@@ -258,7 +258,11 @@ def _own(model: type[Any]) -> dict[str, Any]:
     if issubclass(model, BaseModel):
         return dict(model.model_fields)
     hints = get_type_hints(model, include_extras=True)
-    return {f.name: SimpleNamespace(annotation=hints[f.name], metadata=[], alias=None) for f in fields(model)}
+    return {f.name: _field(hints[f.name]) for f in fields(model)}
+
+
+def _field(hint: Any) -> SimpleNamespace:
+    return SimpleNamespace(annotation=hint, metadata=getattr(hint, "__metadata__", ()), alias=None)
 
 
 def _fields(models: list[type[Any]], key: Any) -> list[Any]:

@@ -116,7 +116,7 @@ class PileSchema(Schema):
         return Pile(
             length_m=self.length_m,
             section=Section(self.outer_diameter_m, self.thickness_m),
-            material=Material.isotropic(
+            material=Material(
                 youngs_modulus_pa=self.youngs_modulus_pa,
                 poisson_ratio=self.poisson_ratio,
                 density_kg_m3=self.density_kg_m3,

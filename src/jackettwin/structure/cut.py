@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from jackettwin.errors import InputError
-from jackettwin.structure.model import Structure
+from jackettwin.errors import require
+from jackettwin.structure.model import Structure, reached_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,21 +25,21 @@ def at_interface(structure: Structure) -> tuple[Structure, Structure | None]:
         If the structure has no interface nodes, or nothing below them.
     """
     interface = set(structure.interface_nodes)
-    if not interface:
-        raise InputError(
-            "the structure has no interface",
-            field="interface_nodes",
-            value=[],
-            remedy="name the nodes that carry what stands on the foundation",
-        )
-    inside = _reached(structure, _grounded(structure) - interface, interface)
-    if not inside:
-        raise InputError(
-            "no reaction node stands below the interface",
-            field="reaction_nodes",
-            value=list(structure.reaction_nodes),
-            remedy="name the nodes that stand on the ground",
-        )
+    require(
+        interface,
+        "the structure has no interface",
+        field="interface_nodes",
+        value=[],
+        remedy="name the nodes that carry what stands on the foundation",
+    )
+    inside = reached_by(structure.joined, _grounded(structure) - interface, stop=interface)
+    require(
+        inside,
+        "no reaction node stands below the interface",
+        field="reaction_nodes",
+        value=list(structure.reaction_nodes),
+        remedy="name the nodes that stand on the ground",
+    )
     foundation = inside | interface
     below = [m.name for m in structure.members if {m.start, m.end} <= foundation]
     above = [m.name for m in structure.members if not {m.start, m.end} <= foundation]
@@ -57,21 +57,6 @@ def _grounded(structure: Structure) -> set[str]:
         return set(structure.reaction_nodes)
     tower = {node for m in structure.members if m.part == "tower" for node in (m.start, m.end)}
     return set(structure.nodes) - tower
-
-
-def _reached(structure: Structure, start: set[str], stop: set[str]) -> set[str]:
-    """Return the nodes reached from ``start`` without ``stop``."""
-    neighbours: dict[str, list[str]] = {name: [] for name in structure.nodes}
-    for a, b in structure.joined:
-        neighbours[a].append(b)
-        neighbours[b].append(a)
-    reached, stack = set(start), list(start)
-    while stack:
-        for name in neighbours[stack.pop()]:
-            if name not in reached and name not in stop:
-                reached.add(name)
-                stack.append(name)
-    return reached
 
 
 def _part(structure: Structure, nodes: set[str], members: Iterable[str]) -> Structure:

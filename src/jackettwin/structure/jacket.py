@@ -1,14 +1,43 @@
-"""A parametric jacket: legs, X-braced bays, transition piece, tower, rotor-nacelle assembly."""
+"""A parametric jacket: legs, X-braced bays, transition piece, tower, and what hangs on the legs.
+
+The classes are what a structure file gives under ``jacket``, key by key.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
+from pydantic import AfterValidator, Field
 
-from jackettwin.errors import InputError, located
-from jackettwin.structure.model import Material, Member, PointMass, Reaction, Section, Structure, Vector
+from jackettwin.errors import require, require_between
+from jackettwin.files import Placed
+from jackettwin.files.plausible import refuse_tiny
+from jackettwin.structure.model import (
+    STEEL,
+    Material,
+    Member,
+    PointMass,
+    Reaction,
+    Section,
+    Structure,
+    Vector,
+    require_wall,
+)
+
+FURTHEST_M = 20.0
+"""How far beyond the legs' ends an appurtenance may lie [m]: a boat landing, not a slip of the pen."""
+
+
+def _of_solid(material: Material) -> Material:
+    refuse_tiny("density_kg_m3", material.density_kg_m3, least=500.0, remedy="kg/m³: steel has 7850")
+    return material
+
+
+MaterialInFile = Placed[Annotated[Material, AfterValidator(_of_solid)]]
+"""A material as a file gives it: its density is nil or that of something solid."""
 
 
 @dataclass(frozen=True)
@@ -20,27 +49,39 @@ class Lattice:
     one a bay from the bottom up; the mud braces have that of the lowest bay.
     """
 
-    legs: int
-    bays: int
     base_width_m: float
     top_width_m: float
     height_m: float
     leg_diameter_m: float
     leg_thickness_bottom_m: float
     leg_thickness_top_m: float
-    brace: Section | tuple[Section, ...]
-    material: Material
+    brace: Placed[Section] | tuple[Placed[Section], ...]
+    legs: int = 4
+    bays: int = 4
+    material: MaterialInFile = STEEL
     mud_braces: bool = True
     base_z_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_between("legs", self.legs, 3, 24)
+        require_between("bays", self.bays, 1, 100)
+        for field in ("base_width_m", "top_width_m", "height_m"):
+            require_between(field, getattr(self, field), 1e-3, 1e3, "m")
+        require_between("leg_diameter_m", self.leg_diameter_m, 1e-4, 1e3, "m")
+        for field in ("leg_thickness_bottom_m", "leg_thickness_top_m"):
+            require_wall(field, getattr(self, field), self.leg_diameter_m)
+        n, one_each = len(self.braces), f"one section, or {self.bays}, one a bay"
+        require(n == self.bays, "out of range", field="brace", value=n, allowed=one_each)
 
     @property
     def top_z_m(self) -> float:
         """Z of the leg tops."""
         return self.base_z_m + self.height_m
 
-    def brace_of(self, bay: int) -> Section:
-        """Return the section of a bay's braces; bays count from 0 at the bottom."""
-        return self.brace[bay] if isinstance(self.brace, tuple) else self.brace
+    @property
+    def braces(self) -> tuple[Section, ...]:
+        """Section of every bay's braces, from the bottom up."""
+        return self.brace if isinstance(self.brace, tuple) else (self.brace,) * self.bays
 
 
 @dataclass(frozen=True)
@@ -48,9 +89,9 @@ class TransitionPiece:
     """Two tubes from each leg top to the lower and upper centre nodes, a ring, and a centre column."""
 
     top_z_m: float
-    tube: Section
-    column: Section
-    material: Material
+    tube: Placed[Section]
+    column: Placed[Section]
+    material: MaterialInFile = STEEL
 
 
 @dataclass(frozen=True)
@@ -58,10 +99,76 @@ class Tower:
     """A tapered tube in ``elements`` pieces of constant section (the mean of each piece)."""
 
     height_m: float
-    elements: int
-    bottom: Section
-    top: Section
-    material: Material
+    bottom: Placed[Section]
+    top: Placed[Section]
+    elements: int = 12
+    material: MaterialInFile = STEEL
+
+    def __post_init__(self) -> None:
+        require_between("elements", self.elements, 1, 1000)
+        require_between("height_m", self.height_m, 1e-3, 1e3, "m")
+
+
+@dataclass(frozen=True)
+class Appurtenance:
+    """A mass that carries nothing, even along the height between two levels: boat landing, anodes, growth.
+
+    ``legs`` on which it hangs count from 1; empty is all.
+    """
+
+    mass_kg: Annotated[float, Field(ge=0.0, le=1e9)]
+    bottom_z_m: float
+    top_z_m: float
+    legs: tuple[Annotated[int, Field(ge=1)], ...] = ()
+
+    def __post_init__(self) -> None:
+        low, high = self.bottom_z_m, f"up to top_z_m = {self.top_z_m:g}"
+        require(low <= self.top_z_m, "levels are reversed", field="bottom_z_m", value=low, allowed=high)
+
+    def on(self, structure: Structure, name: str) -> list[PointMass]:
+        """Return its masses on the leg nodes of a jacket.
+
+        Every leg's share goes to its nodes so that mass and centre of gravity are kept where the span lies
+        between the leg's ends: each slice is carried by the nodes above and below it, as by a lever.
+
+        Raises
+        ------
+        InputError
+            If the span is far from the legs, or there is no such leg.
+        """
+        every = _legs(structure)
+        unknown = next((leg for leg in self.legs if leg > len(every)), None)
+        require(unknown is None, "no such leg", field="legs", value=unknown, allowed=f"1 to {len(every)}")
+        chosen = [every[leg - 1] for leg in self.legs] or every
+        masses: list[PointMass] = []
+        for nodes in chosen:
+            z = np.array([structure.nodes[node][2] for node in nodes])
+            require(
+                self.bottom_z_m <= z[-1] + FURTHEST_M and self.top_z_m >= z[0] - FURTHEST_M,
+                "lies beyond the legs",
+                field="bottom_z_m",
+                value=(self.bottom_z_m, self.top_z_m),
+                allowed=f"levels from {z[0]:g} to {z[-1]:g} m",
+                remedy="give z in the structure's own frame",
+            )
+            slices = np.clip(np.linspace(self.bottom_z_m, self.top_z_m, 201), z[0], z[-1])
+            # a linear hat on each node: the lever rule
+            shares = np.array([np.interp(slices, z, row).mean() for row in np.eye(len(z))])
+            masses += [
+                PointMass(node, float(share) * self.mass_kg / len(chosen), part=name)
+                for node, share in zip(nodes, shares, strict=True)
+                if share > 0.0
+            ]
+        return masses
+
+
+def _legs(structure: Structure) -> list[list[str]]:
+    """Return the nodes of every leg from the foot up."""
+    feet = [node for node in structure.nodes if node.startswith("foot_")]
+    return [
+        [foot, *(node for node in structure.nodes if node.startswith(f"leg_{foot.removeprefix('foot_')}_"))]
+        for foot in feet
+    ]
 
 
 def jacket(
@@ -78,47 +185,30 @@ def jacket(
     Raises
     ------
     InputError
-        If fewer than three legs or no bay are asked for, or a part has no height.
+        If the transition piece does not stand above the legs.
     """
-    _require(3 <= lattice.legs <= 24, "lattice.legs", lattice.legs, "3 to 24")
-    _require(1 <= lattice.bays <= 100, "lattice.bays", lattice.bays, "1 to 100")
-    for field in ("base_width_m", "top_width_m", "height_m"):
-        value = getattr(lattice, field)
-        _require(1e-3 <= value <= 1e3, f"lattice.{field}", value, "1 mm to 1000 m")
-    _require(1 <= tower.elements <= 1000, "tower.elements", tower.elements, "1 to 1000")
-    _require(0.0 < tower.height_m <= 1e3, "tower.height_m", tower.height_m, "> 0, at most 1000 m")
-    n_braces = len(lattice.brace) if isinstance(lattice.brace, tuple) else lattice.bays
-    _require(
-        n_braces == lattice.bays, "lattice.brace", n_braces, f"one section, or {lattice.bays}, one a bay"
-    )
-    _require(
+    require(
         transition_piece.top_z_m > lattice.top_z_m,
-        "transition_piece.top_z_m",
-        transition_piece.top_z_m,
-        f"> base_z_m + height_m = {lattice.top_z_m:g}",
+        "out of range",
+        field="transition_piece.top_z_m",
+        value=transition_piece.top_z_m,
+        allowed=f"> base_z_m + height_m = {lattice.top_z_m:g}",
+        remedy="check the number and its unit",
     )
     nodes: dict[str, Vector] = {}
     members: list[Member] = []
     _add_lattice(lattice, nodes, members)
     _add_transition_piece(transition_piece, lattice, nodes, members)
     _add_tower(tower, transition_piece.top_z_m, nodes, members)
-    feet = tuple(_leg_node(leg, 0) for leg in range(lattice.legs))
     return Structure(
         name=name,
         nodes=nodes,
         members=tuple(members),
         masses=(rna,) if rna is not None else (),
-        reactions=tuple(Reaction(foot) for foot in feet),
+        reactions=tuple(Reaction(_leg_node(leg, 0)) for leg in range(lattice.legs)),
         interface_nodes=("tp_top",),
         sea_level_z_m=sea_level_z_m,
     )
-
-
-def _require(condition: bool, field: str, value: object, allowed: str) -> None:
-    if not condition:
-        raise InputError(
-            "out of range", field=field, value=value, allowed=allowed, remedy="check the number and its unit"
-        )
 
 
 def _leg_node(leg: int, level: int) -> str:
@@ -143,8 +233,7 @@ def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Membe
             nodes[_leg_node(leg, level)] = (float(radius * np.cos(angle)), float(radius * np.sin(angle)), z)
     walls = np.linspace(lattice.leg_thickness_bottom_m, lattice.leg_thickness_top_m, lattice.bays)
     for bay in range(lattice.bays):
-        with located(field="lattice.leg"):
-            leg_section = Section(lattice.leg_diameter_m, float(walls[bay]))
+        leg_section = Section(lattice.leg_diameter_m, float(walls[bay]))
         for leg in range(n):
             ends = _leg_node(leg, bay), _leg_node(leg, bay + 1)
             members.append(
@@ -154,7 +243,7 @@ def _add_lattice(lattice: Lattice, nodes: dict[str, Vector], members: list[Membe
             _add_cross(lattice, face, bay, nodes, members)
     for leg in range(n if lattice.mud_braces else 0):
         ends = _leg_node(leg, 0), _leg_node((leg + 1) % n, 0)
-        members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.brace_of(0), lattice.material, "jacket"))
+        members.append(_member(f"mud_brace_{leg + 1}", ends, lattice.braces[0], lattice.material, "jacket"))
 
 
 def _add_cross(
@@ -175,7 +264,7 @@ def _add_cross(
     nodes[centre] = (float(x), float(y), float(z))
     for k, corner in enumerate(corners, start=1):
         name = f"brace_{face + 1}_{bay + 1}_{k}"
-        members.append(_member(name, (corner, centre), lattice.brace_of(bay), lattice.material, "jacket"))
+        members.append(_member(name, (corner, centre), lattice.braces[bay], lattice.material, "jacket"))
 
 
 def _add_transition_piece(

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, did_you_mean, located, look_up, require_between
+from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
 from jackettwin.structure.two_node import TwoNodeElement
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Container, Iterable, Mapping
 
 Vector = tuple[float, float, float]
 _LONGEST_M = 5e3
@@ -23,31 +25,45 @@ Inertia = tuple[float, float, float, float, float, float]
 
 @dataclass(frozen=True)
 class Material:
-    """Linear elastic, isotropic."""
+    """Linear elastic, isotropic: G = E / (2(1 + ν)), thesis section 3.3.1. Give G, or else ν counts."""
 
-    youngs_modulus_pa: float
-    shear_modulus_pa: float
-    density_kg_m3: float
+    youngs_modulus_pa: float = 210e9
+    shear_modulus_pa: float = nan
+    density_kg_m3: float = 7850.0
+    poisson_ratio: float = field(default=0.3, compare=False)
 
     def __post_init__(self) -> None:
         # generous bounds: they only keep typing errors and overflow out
         require_between("youngs_modulus_pa", self.youngs_modulus_pa, 1e3, 1e18)
-        require_between("shear_modulus_pa", self.shear_modulus_pa, 1e3, 1e18)
         require_between("density_kg_m3", self.density_kg_m3, 0.0, 1e8)
-
-    @classmethod
-    def isotropic(cls, *, youngs_modulus_pa: float, poisson_ratio: float, density_kg_m3: float) -> Material:
-        """Return a material with G = E / (2(1 + ν)) (thesis section 3.3.1)."""
-        shear_modulus_pa = youngs_modulus_pa / (2.0 * (1.0 + poisson_ratio))
-        return cls(youngs_modulus_pa, shear_modulus_pa, density_kg_m3)
-
-    @property
-    def poisson_ratio(self) -> float:
-        """ν = E/(2G) − 1."""
-        return self.youngs_modulus_pa / (2.0 * self.shear_modulus_pa) - 1.0
+        E, G, nu = self.youngs_modulus_pa, self.shear_modulus_pa, self.poisson_ratio
+        if isnan(G):
+            require(0.0 <= nu < 0.5, "out of range", field="poisson_ratio", value=nu, allowed="≥ 0, < 0.5")
+            object.__setattr__(self, "shear_modulus_pa", E / (2.0 * (1.0 + nu)))
+        else:
+            require_between("shear_modulus_pa", G, 1e3, 1e18)
+            object.__setattr__(self, "poisson_ratio", E / (2.0 * G) - 1.0)
 
 
-STEEL = Material.isotropic(youngs_modulus_pa=210e9, poisson_ratio=0.3, density_kg_m3=7850.0)
+STEEL = Material()
+
+
+def require_wall(field: str, thickness_m: float, outer_diameter_m: float) -> None:
+    """Refuse a wall that a tube of this diameter cannot have.
+
+    Raises
+    ------
+    InputError
+        Names the field that the wall was given by.
+    """
+    require(
+        0.0 < thickness_m <= 0.5 * outer_diameter_m,
+        "thickness must be positive and at most the radius",
+        field=field,
+        value=thickness_m,
+        allowed=f"0 < {field} ≤ {0.5 * outer_diameter_m:g}",
+        remedy="give the wall in metres",
+    )
 
 
 @dataclass(frozen=True)
@@ -59,14 +75,7 @@ class Section:
 
     def __post_init__(self) -> None:
         require_between("outer_diameter_m", self.outer_diameter_m, 1e-4, 1e3)
-        if not 0.0 < self.thickness_m <= 0.5 * self.outer_diameter_m:
-            raise InputError(
-                "thickness must be positive and at most the radius",
-                field="thickness_m",
-                value=self.thickness_m,
-                allowed=f"0 < thickness_m ≤ {0.5 * self.outer_diameter_m:g}",
-                remedy="give the wall in metres",
-            )
+        require_wall("thickness_m", self.thickness_m, self.outer_diameter_m)
 
     @property
     def slenderness(self) -> float:
@@ -107,15 +116,14 @@ class PointMass:
         for value in self.cg_offset_m:
             require_between("cg_offset_m", value, -1e4, 1e4)
         inertia = self.inertia_kg_m2
-        if not np.isfinite(inertia).all() or np.linalg.eigvalsh(self.inertia_tensor).min() < -1e-6 * max(
-            np.abs(inertia)
-        ):
-            raise InputError(
-                "inertia about the centre of gravity must not be negative in any direction",
-                field="inertia_kg_m2",
-                value=inertia,
-                remedy="state it about the centre of gravity, or give both moments about the node",
-            )
+        least = -1e-6 * max(np.abs(inertia))
+        require(
+            np.isfinite(inertia).all() and np.linalg.eigvalsh(self.inertia_tensor).min() >= least,
+            "inertia about the centre of gravity must not be negative in any direction",
+            field="inertia_kg_m2",
+            value=inertia,
+            remedy="state it about the centre of gravity, or give both moments about the node",
+        )
 
     @property
     def inertia_tensor(self) -> FloatArray:
@@ -195,82 +203,65 @@ class Structure:
         names: set[str] = set()
         for member in self.members:
             place = f"members.{member.name}"
-            if member.name in names:
-                raise InputError(
-                    "two members have this name", field=place, value=member.name, remedy="rename one of them"
-                )
+            told = {"field": place, "value": member.name, "remedy": "rename one of them"}
+            require(member.name not in names, "two members have this name", **told)
             names.add(member.name)
             self._require(member.start, place)
             self._require(member.end, place)
             length = float(np.linalg.norm(np.subtract(self.nodes[member.end], self.nodes[member.start])))
-            if length > _LONGEST_M:
-                raise InputError(
-                    "member is too long",
-                    field=place,
-                    value=length,
-                    allowed=f"up to {_LONGEST_M:g} m",
-                    remedy=f"check nodes {member.start} and {member.end}: coordinates are in metres",
-                )
-            if length <= 1e-6:
-                raise InputError(
-                    "member has zero length",
-                    field=place,
-                    value=[member.start, member.end],
-                    remedy="join it to two nodes that lie apart, or make it a rigid link",
-                )
+            require(
+                length <= _LONGEST_M,
+                "member is too long",
+                field=place,
+                value=length,
+                allowed=f"up to {_LONGEST_M:g} m",
+                remedy=f"check nodes {member.start} and {member.end}: coordinates are in metres",
+            )
+            require(
+                length > 1e-6,
+                "member has zero length",
+                field=place,
+                value=[member.start, member.end],
+                remedy="join it to two nodes that lie apart, or make it a rigid link",
+            )
 
     def _check_links(self) -> None:
         followers = [link.follower for link in self.rigid_links]
         leaders = {link.leader for link in self.rigid_links}
         for name in followers:
-            if followers.count(name) > 1 or name in leaders:
-                raise InputError(
-                    "rigid links chain, loop or share a follower",
-                    field="rigid_links",
-                    value=name,
-                    remedy="let every follower have one leader that follows nobody",
-                )
+            require(
+                followers.count(name) == 1 and name not in leaders,
+                "rigid links chain, loop or share a follower",
+                field="rigid_links",
+                value=name,
+                remedy="let every follower have one leader that follows nobody",
+            )
         for name in self.reaction_nodes:
-            if name in followers or self.reaction_nodes.count(name) > 1:
-                raise InputError(
-                    "reaction node is given twice or follows another by a rigid link",
-                    field="reaction_nodes",
-                    value=name,
-                    remedy="name it once, and make it the leader of its rigid links",
-                )
+            require(
+                name not in followers and self.reaction_nodes.count(name) == 1,
+                "reaction node is given twice or follows another by a rigid link",
+                field="reaction_nodes",
+                value=name,
+                remedy="name it once, and make it the leader of its rigid links",
+            )
 
     def _check_connected(self) -> None:
         """Refuse nodes that members and rigid links do not join to the first member."""
-        if not self.joined:
-            raise InputError("a structure needs members", field="members", value=[], remedy="add members")
-        neighbours: dict[str, list[str]] = {name: [] for name in self.nodes}
-        for a, b in self.joined:
-            neighbours[a].append(b)
-            neighbours[b].append(a)
-        first = self.joined[0][0]
-        reached, stack = {first}, [first]
-        while stack:
-            for name in neighbours[stack.pop()]:
-                if name not in reached:
-                    reached.add(name)
-                    stack.append(name)
+        require(self.joined, "a structure needs members", field="members", value=[], remedy="add members")
+        reached = reached_by(self.joined, {self.joined[0][0]})
         loose = [name for name in self.nodes if name not in reached]
-        if loose:
-            raise InputError(
-                "node is not connected to the structure",
-                field=f"nodes.{loose[0]}",
-                value=loose[0] if len(loose) == 1 else loose,
-                remedy="join it by a member or a rigid link, or delete it",
-            )
+        require(
+            not loose,
+            "node is not connected to the structure",
+            field=f"nodes.{loose[0]}" if loose else None,
+            value=loose[0] if len(loose) == 1 else loose,
+            remedy="join it by a member or a rigid link, or delete it",
+        )
 
     def _require(self, node: str, place: str) -> None:
         if node not in self.nodes:
-            raise InputError(
-                "no such node",
-                field=place,
-                value=node,
-                remedy=did_you_mean(node, self.nodes) or "define it under nodes",
-            )
+            remedy = did_you_mean(node, self.nodes) or "define it under nodes"
+            raise InputError("no such node", field=place, value=node, remedy=remedy)
 
     @property
     def joined(self) -> tuple[tuple[str, str], ...]:
@@ -309,13 +300,28 @@ class Structure:
             if member.part != part:
                 return member
             m = member.material
-            return replace(
-                member,
-                material=Material(
-                    m.youngs_modulus_pa * youngs_modulus,
-                    m.shear_modulus_pa * youngs_modulus,
-                    m.density_kg_m3 * density,
-                ),
-            )
+            stiffness = m.youngs_modulus_pa * youngs_modulus, m.shear_modulus_pa * youngs_modulus
+            return replace(member, material=Material(*stiffness, m.density_kg_m3 * density))
 
         return replace(self, members=tuple(scaled(member) for member in self.members))
+
+
+def reached_by(
+    joined: Iterable[tuple[str, str]], start: Collection[str], stop: Container[str] = ()
+) -> set[str]:
+    """Return the nodes that lead to some others over pairs that are joined, without passing ``stop``.
+
+    >>> sorted(reached_by([("a", "b"), ("b", "c"), ("c", "d")], ["a"], stop={"d"}))
+    ['a', 'b', 'c']
+    """
+    neighbours: dict[str, list[str]] = defaultdict(list)
+    for a, b in joined:
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    reached, stack = set(start), list(start)
+    while stack:
+        for name in neighbours[stack.pop()]:
+            if name not in reached and name not in stop:
+                reached.add(name)
+                stack.append(name)
+    return reached

@@ -10,8 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BeforeValidator, Field
 
-from jackettwin.decks import read_structure
-from jackettwin.decks.structure_files import RnaSchema
+from jackettwin.decks import RnaSchema, read_structure
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import Schema, one_of
 from jackettwin.quantities import plain_unit, vibration_of

@@ -28,7 +28,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.decks.subdyn_damping import DeckDamping
+from jackettwin.decks import DeckDamping
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.motion.static import self_weight
 from jackettwin.response.state import Branch, factorised, maxwell_branches

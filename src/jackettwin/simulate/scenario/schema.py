@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from jackettwin.decks.structure_files import RnaSchema
+from jackettwin.decks import RnaSchema
 from jackettwin.files import Placed, Schema
 from jackettwin.files.limits import Angle, ForceCoefficient, Frequency, Height, Seed
 from jackettwin.loads.aerodynamics.wind import TOWER_DRAG

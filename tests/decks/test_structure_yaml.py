@@ -121,3 +121,62 @@ def test_missing_files_and_names(tmp_path: Path) -> None:
         read_structure(tmp_path / "binary.yaml")
     with pytest.raises(InputError, match="cannot read|no such"):
         read_structure(tmp_path)
+
+
+JACKET = """
+jacket:
+  lattice:
+    base_width_m: 28
+    top_width_m: 14
+    height_m: 62
+    bays: 2
+    leg_diameter_m: 1.4
+    leg_thickness_bottom_m: 0.045
+    leg_thickness_top_m: 0.035
+    brace: [{outer_diameter_m: 0.81, thickness_m: 0.021}, {outer_diameter_m: 0.82, thickness_m: 0.022}]
+  transition_piece:
+    top_z_m: 70
+    tube: {outer_diameter_m: 2.0, thickness_m: 0.06}
+    column: {outer_diameter_m: 7.5, thickness_m: 0.08}
+    material: {density_kg_m3: 7850}
+  tower:
+    height_m: 95
+    bottom: {outer_diameter_m: 7.5, thickness_m: 0.046}
+    top: {outer_diameter_m: 5.5, thickness_m: 0.025}
+  appurtenances:
+    landing: {mass_kg: 2e4, bottom_z_m: 40, top_z_m: 50, legs: [1]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("leg_thickness_bottom_m: 0", "leg_thickness_bottom_m: -0", "lattice.leg_thickness_bottom_m: .*-0.0"),
+        ("leg_thickness_top_m: 0", "leg_thickness_top_m: -0", "lattice.leg_thickness_top_m: .*-0.035"),
+        ("thickness_m: 0.022", "thickness_m: -0.022", "lattice.brace.1.thickness_m: .*-0.022"),
+        ("thickness_m: 0.022", "thicknes_m: 0.022", "lattice.brace.1.thicknes_m: unknown key.*'thickness_m'"),
+        ("thickness_m: 0.06}", "thickness_m: -0.06}", "transition_piece.tube.thickness_m: .*-0.06"),
+        ("thickness_m: 0.08}", "thickness_m: -0.08}", "transition_piece.column.thickness_m: .*-0.08"),
+        ("density_kg_m3: 7850", "density_kg_m3: 7.85", "transition_piece.material.density_kg_m3.*has 7850"),
+        ("thickness_m: 0.046", "thickness_m: -0.046", "tower.bottom.thickness_m: .*-0.046"),
+        ("thickness_m: 0.025", "thickness_m: -0.025", "tower.top.thickness_m: .*-0.025"),
+        ("height_m: 95", "elements: 0\n    height_m: 95", "tower.elements: out of range .got 0.*1 to 1000"),
+        ("bays: 2", "bays: 3", "lattice.brace: out of range .got 2.*one section, or 3"),
+        ("height_m: 62", "height_m: tall", "lattice.height_m: not a number .got 'tall'"),
+        ("height_m: 62", "heigth_m: 62", "lattice.heigth_m: unknown key.*did you mean 'height_m'"),
+        ("base_width_m: 28\n", "legs: 4\n", "lattice.base_width_m: required key is missing"),
+        ("top_z_m: 70", "top_z_m: 60", "transition_piece.top_z_m: out of range .got 60.*= 62"),
+        ("top_z_m: 50", "top_z_m: 30", "appurtenances.landing.bottom_z_m: levels are reversed"),
+        ("legs: [1]", "legs: [5]", "appurtenances.landing.legs: no such leg .got 5.; allowed: 1 to 4"),
+        ("legs: [1]", "legs: [0]", "appurtenances.landing.legs.0: .*allowed: ≥ 1"),
+        ("mass_kg: 2e4", "mass_kg: -2e4", "appurtenances.landing.mass_kg: .*allowed: 0 to 1e.09"),
+        ("mass_kg: 2e4", "mass_kg: true", "appurtenances.landing.mass_kg: not a number .got True"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_a_jacket_names_the_key_as_it_was_written(
+    tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    assert old in JACKET
+    assert read_structure(written(tmp_path, JACKET)).reactions
+    with pytest.raises(InputError, match=f"frame.yaml: jacket.{message}"):
+        read_structure(written(tmp_path, JACKET.replace(old, new, 1)))

@@ -1,0 +1,240 @@
+"""Structures from YAML: explicit (nodes and members) or parametric (``jacket:``)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from jackettwin.decks.blade_files import read_flexible_rotor
+from jackettwin.errors import located, look_up, require
+from jackettwin.files import Placed, Schema, read_yaml, validate
+from jackettwin.structure.jacket import (
+    Appurtenance,
+    Lattice,
+    MaterialInFile,
+    Tower,
+    TransitionPiece,
+    jacket,
+)
+from jackettwin.structure.masses import body_from_static_moments
+from jackettwin.structure.model import (
+    STEEL,
+    Inertia,
+    Member,
+    PointMass,
+    Reaction,
+    RigidLink,
+    Section,
+    Structure,
+    Vector,
+)
+from jackettwin.structure.rotor_modes import FlexibleRotor, with_rotor, without_rotor
+
+Arm = Annotated[float, Field(ge=-1e3, le=1e3)]
+"""From a node to a centre of gravity [m]."""
+
+
+class BodySchema(Schema):
+    """A rigid body: by its centre of gravity, or by static moments and inertia about its node."""
+
+    mass_kg: Annotated[float, Field(ge=0.0, le=1e9)]
+    cg_offset_m: tuple[Arm, Arm, Arm] | None = None
+    inertia_about_cg_kg_m2: Inertia | None = None
+    static_moment_kg_m: Vector | None = None
+    inertia_about_node_kg_m2: Inertia | None = None
+
+    def build(self, node: str, part: str = "", *, field: str) -> PointMass:
+        """Return the point mass on ``node``."""
+        with located(field=field):
+            if self.static_moment_kg_m is None and self.inertia_about_node_kg_m2 is None:
+                return PointMass(
+                    node,
+                    self.mass_kg,
+                    self.cg_offset_m or (0.0, 0.0, 0.0),
+                    self.inertia_about_cg_kg_m2 or (0.0,) * 6,
+                    part,
+                )
+            require(
+                self.cg_offset_m is None and self.inertia_about_cg_kg_m2 is None and self.mass_kg > 0.0,
+                "give a body either by its centre of gravity or by its moments about the node",
+                field="mass_kg",
+                value=self.mass_kg,
+                remedy="keep cg_offset_m and inertia_about_cg_kg_m2, or the other two",
+            )
+            return body_from_static_moments(
+                node=node,
+                mass_kg=self.mass_kg,
+                static_moment_kg_m=self.static_moment_kg_m or (0.0, 0.0, 0.0),
+                inertia_about_node_kg_m2=self.inertia_about_node_kg_m2 or (0.0,) * 6,
+                part=part,
+            )
+
+
+class BladesSchema(Schema):
+    """Bending blades of a rotor–nacelle assembly: a turbine's file, and how they are pitched."""
+
+    rotor: str
+    pitch_deg: Annotated[float, Field(ge=-180.0, le=180.0)] | None = None
+    damping_ratio: Annotated[float, Field(ge=0.0, le=0.5)] | None = None
+
+    def build(self, folder: Path | None) -> FlexibleRotor:
+        """Return the rotor."""
+        with located(field="rna.blades"):
+            rotor = read_flexible_rotor(self.rotor, folder=folder)
+        if self.damping_ratio is not None:
+            rotor = replace(rotor, blade=replace(rotor.blade, damping_ratio=self.damping_ratio))
+        return rotor if self.pitch_deg is None else replace(rotor, pitch=radians(self.pitch_deg))
+
+
+class RnaSchema(BodySchema):
+    """A rotor–nacelle assembly: a rigid body, blades included, and how these bend."""
+
+    blades: BladesSchema | None = None
+
+    def stand_on(self, structure: Structure, *, folder: Path | None) -> Structure:
+        """Return the structure with this in the place of what stood on its top."""
+        top = structure.top_node
+        others = tuple(mass for mass in structure.masses if mass.node != top)
+        bare = without_rotor(structure).with_masses((*others, self.build(top, part="rna", field="rna")))
+        return bare if self.blades is None else with_rotor(bare, self.blades.build(folder), top)
+
+
+class MassSchema(BodySchema):
+    """A rigid body on a named node."""
+
+    node: str
+
+
+class MemberSchema(Schema):
+    """A member: one section, or two if conical."""
+
+    name: str | None = None
+    nodes: tuple[str, str]
+    section: str | None = None
+    sections: tuple[str, str] | None = None
+    material: str = "steel"
+    part: str = ""
+
+
+class LinkSchema(Schema):
+    """A rigid link."""
+
+    leader: str
+    follower: str
+
+
+class JacketSchema(Schema):
+    """The parametric form."""
+
+    lattice: Placed[Lattice]
+    transition_piece: Placed[TransitionPiece]
+    tower: Placed[Tower]
+    rna: RnaSchema | None = None
+    appurtenances: dict[str, Placed[Appurtenance]] = {}
+
+
+class StructureSchema(Schema):
+    """A structure file."""
+
+    name: str = ""
+    sea_level_z_m: float = 0.0
+    jacket: JacketSchema | None = None
+    materials: dict[str, MaterialInFile] = {}
+    sections: dict[str, Placed[Section]] = {}
+    nodes: dict[str, Vector] = {}
+    members: list[MemberSchema] = []
+    masses: list[MassSchema] = []
+    rna: RnaSchema | None = None
+    rigid_links: list[LinkSchema] = []
+    reaction_nodes: list[str] = []
+    interface_nodes: list[str] = []
+    beam: Literal["euler-bernoulli", "timoshenko"] = "euler-bernoulli"
+    rotary_inertia: bool = False
+    subdivide: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
+def read_yaml_structure(path: Path) -> Structure:
+    """Read a structure from a YAML file.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or anything in it is wrong; the message names file, field and value.
+    """
+    schema = validate(StructureSchema, read_yaml(path, what="structure file"), file=path)
+    with located(file=path):
+        return build_structure(schema, default_name=path.stem, folder=path.parent)
+
+
+def build_structure(schema: StructureSchema, *, default_name: str, folder: Path | None = None) -> Structure:
+    """Return the structure a checked file describes."""
+    name = schema.name or default_name
+    if schema.jacket is not None:
+        own = {"nodes", "members", "sections", "materials", "rna", "rigid_links"} & schema.model_fields_set
+        require(
+            not own,
+            "a parametric jacket defines these itself",
+            field=min(own, default=None),
+            remedy="keep jacket: or the explicit form",
+        )
+        return _build_jacket(schema.jacket, schema, name=name, folder=folder)
+    remedy = "add members:, or a parametric jacket:"
+    require(schema.members, "required key is missing", field="members", remedy=remedy)
+    structure = Structure(
+        name=name,
+        nodes=schema.nodes,
+        members=tuple(_build_member(m, f"members.{i}", schema) for i, m in enumerate(schema.members)),
+        masses=tuple(m.build(m.node, field=f"masses.{i}") for i, m in enumerate(schema.masses)),
+        rigid_links=tuple(RigidLink(link.leader, link.follower) for link in schema.rigid_links),
+        reactions=tuple(Reaction(node) for node in schema.reaction_nodes),
+        interface_nodes=tuple(schema.interface_nodes),
+        sea_level_z_m=schema.sea_level_z_m,
+        subdivide=schema.subdivide,
+        beam=schema.beam,
+        rotary_inertia=schema.rotary_inertia,
+    )
+    return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
+
+
+def _build_member(m: MemberSchema, place: str, schema: StructureSchema) -> Member:
+    one = (m.section is None) != (m.sections is None)
+    require(one, "give section or sections", field=place, remedy="sections: [start, end] makes a cone")
+    start, end = (
+        look_up(schema.sections, key, "section", field=f"{place}.section", remedy="define it under sections")
+        for key in m.sections or (m.section or "",) * 2
+    )
+    materials, remedy = {"steel": STEEL} | schema.materials, "define it under materials"
+    material = look_up(materials, m.material, "material", field=f"{place}.material", remedy=remedy)
+    return Member(m.name or f"{m.nodes[0]}-{m.nodes[1]}", *m.nodes, start, end, material, m.part)
+
+
+def _build_jacket(
+    schema: JacketSchema, around: StructureSchema, *, name: str, folder: Path | None
+) -> Structure:
+    """Return a parametric jacket, with the bodies and the settings that stand around it in the file."""
+    masses: list[PointMass] = []
+    with located(field="jacket"):
+        structure = jacket(
+            name=name,
+            lattice=schema.lattice,
+            transition_piece=schema.transition_piece,
+            tower=schema.tower,
+            rna=None,
+            sea_level_z_m=around.sea_level_z_m,
+        )
+        for key, appurtenance in schema.appurtenances.items():
+            with located(field=f"appurtenances.{key}"):
+                masses += appurtenance.on(structure, key)
+    masses += [m.build(m.node, field=f"masses.{i}") for i, m in enumerate(around.masses)]
+    structure = replace(
+        structure,
+        masses=tuple(masses),
+        beam=around.beam,
+        rotary_inertia=around.rotary_inertia,
+        subdivide=around.subdivide,
+    )
+    return structure if schema.rna is None else schema.rna.stand_on(structure, folder=folder)
