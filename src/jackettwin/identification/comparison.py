@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.errors import InputError
 from jackettwin.identification.automatic import identify
@@ -85,7 +85,7 @@ def paired(
     shapes = np.array([mode.mode_shape for mode in wanted])
     apart = np.abs(np.subtract.outer(f, g)) / FREQUENCY_SCALE
     apart += 1.0 - mac(shapes, np.array([mode.mode_shape for mode in found]))
-    for i, j in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
+    for i, j in zip(*scipy.optimize.linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
         if apart[i, j] < SAME_MODE:
             out[int(i)] = found[int(j)]
     return tuple(out)

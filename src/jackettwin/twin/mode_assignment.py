@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
@@ -41,7 +41,7 @@ def assigned_modes(frequency_hz: FloatArray, pinned_hz: FloatArray, taken: Colle
     apart = np.log(np.asarray(frequency_hz)[:, None] / pinned_hz)
     distance = np.where(apart > 0.0, _ABOVE * apart, -apart) ** 2
     distance[:, [mode - 1 for mode in taken if mode <= len(pinned_hz)]] = _NEVER
-    rows, columns = linear_sum_assignment(distance)
+    rows, columns = scipy.optimize.linear_sum_assignment(distance)
     modes = dict(zip(rows.tolist(), columns.tolist(), strict=True))
     for k, f in enumerate(frequency_hz):
         if k not in modes or not LEAST_SHARE <= f / pinned_hz[modes[k]] <= MOST_SHARE:

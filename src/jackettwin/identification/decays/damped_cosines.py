@@ -26,7 +26,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft, optimize, special
+import scipy  # scipy.optimize is loaded where it is used
+from scipy import fft, special
 
 from jackettwin.arrays import ComplexArray, FloatArray
 
@@ -155,7 +156,7 @@ def _least_squares(
         q = unit * np.frombuffer(scaled)
         return _products(_projected(y, t, q)) if np.all((q > low) & (q < high)) else nowhere
 
-    found = optimize.minimize(  # type: ignore[call-overload]
+    found = scipy.optimize.minimize(  # type: ignore[call-overload]
         lambda q: at(q.tobytes())[0],
         p / unit,
         method="trust-exact",

@@ -11,11 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy import ndimage
 from scipy.fft import next_fast_len
 
 from jackettwin.arrays import FloatArray
+from jackettwin.signals import hann
 
 CYCLES = 2.0
 """Over which the power is smoothed."""
@@ -115,8 +115,9 @@ def _strongest_hz(y: FloatArray, sample_rate_hz: float) -> float | None:
     if n < 64:
         return None
     padded = next_fast_len(n, real=True)
-    f, density = scipy.signal.periodogram(y, sample_rate_hz, window="hann", nfft=padded, axis=1)
-    density = density.mean(axis=0)
+    lines = np.fft.rfft((y - y.mean(axis=1, keepdims=True)) * hann(n), padded, axis=1)
+    f = np.arange(lines.shape[1]) * (sample_rate_hz / padded)
+    density = np.mean(np.abs(lines) ** 2, axis=0)
     density[f < 4.0 * sample_rate_hz / n] = 0.0
     k = int(np.argmax(density))
     return float(f[k]) if density[k] > 0.0 else None

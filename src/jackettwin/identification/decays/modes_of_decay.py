@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
 from jackettwin.identification.mac import mac
+from jackettwin.identification.preparation.spectra import densities
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
 
 ORDERS = tuple(range(2, 26, 2))
@@ -101,8 +101,8 @@ class _Quiet:
         """Return that of the noise if there is enough of it, else that of what is left of the decay."""
         background = left if noise is None or noise.shape[1] < left.shape[1] // 2 else noise
         length = max(background.shape[1] // 4, 16)
-        f, density = scipy.signal.welch(background, sample_rate_hz, nperseg=length, axis=1)
-        return cls(f, density, sample_rate_hz)
+        seen = densities(background, sample_rate_hz, length)
+        return cls(seen.frequencies_hz, seen.density, sample_rate_hz)
 
     def power(self, f: float) -> FloatArray:
         """Return the power noise has along two cosines of unit power near a frequency, (n_channels,)."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
@@ -22,6 +21,7 @@ from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, spectral_matrix, welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.signals import local_peaks
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -75,7 +75,7 @@ def _principal(matrix: ComplexArray) -> tuple[FloatArray, ComplexArray]:
 
 def _peaks(values: FloatArray, inside: BoolArray) -> list[int]:
     level = running_median(values, max(len(values) // 10, 5))
-    found, _ = scipy.signal.find_peaks(np.log(values), prominence=np.log(2.0))
+    found = local_peaks(np.log(values), prominence=np.log(2.0))
     return [int(k) for k in found if inside[k] and values[k] > CLEAR_PEAK * level[k]]
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
@@ -202,7 +202,7 @@ def _join(
     taken: dict[int, Track] = {}
     if near:
         apart = np.array([_distance(track, seen) for track in near])
-        for t, at in zip(*linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
+        for t, at in zip(*scipy.optimize.linear_sum_assignment(np.minimum(apart, SAME_MODE)), strict=True):
             if apart[t, at] < SAME_MODE:
                 taken[int(at)] = near[int(t)]
     started = []

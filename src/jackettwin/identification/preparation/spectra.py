@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy import ndimage
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
+from jackettwin.signals import hann, local_peaks
 
 SEGMENTS = 8
 """Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""
@@ -36,9 +36,9 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
     return Spectrum(f, density, np.abs(singular))
 
 
-def densities(y: FloatArray, sample_rate_hz: float) -> Spectrum:
+def densities(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
     """Return the spectra of :func:`welch` channel by channel, without singular values: a third of it."""
-    f, x, norm = _transforms(y, sample_rate_hz, _length(y))
+    f, x, norm = _transforms(y, sample_rate_hz, segment_length or _length(y))
     density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
     return Spectrum(f, density, np.empty((0, f.size)))
 
@@ -75,7 +75,7 @@ def _transforms(
     """Return frequencies, transforms (n_channels, n_segments, n_frequencies), and √density over amplitude."""
     valid = np.isfinite(y)
     segments = _segments(np.where(valid, y, 0.0), segment_length)
-    window = scipy.signal.get_window("hann", segment_length)
+    window = hann(segment_length)
     share = np.maximum(valid.mean(axis=1), 1e-3)
     norm = np.sqrt(2.0 / (sample_rate_hz * np.sum(window**2) * share))
     f = np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length))
@@ -86,7 +86,7 @@ def lowest_peak_hz(spectrum: Spectrum) -> float | None:
     """Return the lowest frequency at which the largest singular value has a clear peak."""
     f = spectrum.frequencies_hz
     s = spectrum.singular_values[0]
-    candidates, _ = scipy.signal.find_peaks(s)
+    candidates = local_peaks(s)
     lowest = FEWEST_CYCLES / SEGMENTS * f[1]
     for k in candidates:
         around = (f > f[k] / np.sqrt(2.0)) & (f < f[k] * np.sqrt(2.0))

@@ -19,8 +19,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
-from scipy.interpolate import CubicSpline
+import scipy  # scipy.interpolate is loaded where it is used
 
 from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.preparation.spectra import densities, lowest_peak_hz
@@ -94,12 +93,12 @@ def differentiated(y: FloatArray, sample_rate_hz: float, times: int) -> FloatArr
     out = y
     if not there.all():
         t = np.arange(len(y))
-        out = np.where(there, y, CubicSpline(t[there], y[there], bc_type="natural")(t))
+        out = np.where(there, y, scipy.interpolate.CubicSpline(t[there], y[there], bc_type="natural")(t))
         first, last = np.flatnonzero(there)[[0, -1]]
         out[:first], out[last + 1 :] = y[first], y[last]
     for _ in range(times):
         padded = np.pad(out, HALF_LENGTH, mode="reflect", reflect_type="odd")
-        out = scipy.signal.oaconvolve(padded, _taps(), mode="valid") * sample_rate_hz
+        out = np.convolve(padded, _taps(), mode="valid") * sample_rate_hz
     return np.where(there, out, np.nan)
 
 

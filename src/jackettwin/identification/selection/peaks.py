@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
+from jackettwin.signals import local_peaks
 
 if TYPE_CHECKING:
     from jackettwin.identification.estimate import ModalEstimate
@@ -31,8 +31,7 @@ def clear_peaks_hz(frequency_hz: FloatArray, density: FloatArray) -> list[float]
     """Return where any channel has a peak that stands clear of the level around it, ascending."""
     found: set[int] = set()
     for row in np.maximum(density, np.finfo(float).tiny):
-        at, _ = scipy.signal.find_peaks(np.log(row), prominence=np.log(CLEAR))
-        for k in at:
+        for k in local_peaks(np.log(row), prominence=np.log(CLEAR)):
             half = max(int(0.5 * AROUND * k), FEWEST_AROUND // 2)
             if row[k] > CLEAR * np.median(row[max(k - half, 1) : k + half + 1]):
                 found.add(int(k))

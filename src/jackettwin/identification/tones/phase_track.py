@@ -17,14 +17,18 @@ the channels that drift by up to 5 % have 1,000 to 60,000.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy  # scipy.interpolate is loaded where it is used
 from scipy import fft
-from scipy.interpolate import BSpline
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.sinusoid import lines_around, regular, sinusoid
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 INTERVALS = (1, 4, 8, 16, 32)
 """Of the spline: the fewest of these that leave little more than the most."""
@@ -104,7 +108,7 @@ class PhaseTrack:
 
     @cached_property
     def _spline(self) -> BSpline:
-        return BSpline(_knots(len(self.coefficients) - DEGREE), self.coefficients, DEGREE)
+        return scipy.interpolate.BSpline(_knots(len(self.coefficients) - DEGREE), self.coefficients, DEGREE)
 
 
 def least_ratio(n_coefficients: int) -> float:
@@ -212,9 +216,19 @@ def _knots(intervals: int) -> FloatArray:
     return np.concatenate([np.zeros(DEGREE), np.linspace(0.0, 1.0, intervals + 1), np.ones(DEGREE)])
 
 
+@cache
 def _basis(n: int, intervals: int) -> FloatArray:
-    t = np.arange(n) / n
-    return np.asarray(BSpline.design_matrix(t, _knots(intervals), DEGREE).toarray())
+    """Return the B-splines at n instants, (n, intervals + DEGREE), by the recursion of Cox and de Boor."""
+    t, knots = np.arange(n)[:, None] / n, _knots(intervals)
+    basis = ((knots[:-1] <= t) & (t < knots[1:])).astype(float)
+    for degree in range(1, DEGREE + 1):
+        width = knots[degree:] - knots[:-degree]
+        share = np.divide(t - knots[:-degree], width, where=width > 0.0, out=np.zeros((n, len(width))))
+        basis = (
+            share[:, :-1] * basis[:, :-1] + np.where(width[1:] > 0.0, 1.0 - share[:, 1:], 0.0) * basis[:, 1:]
+        )
+    basis.flags.writeable = False
+    return basis
 
 
 def _fitted(basis: FloatArray, values: FloatArray, weight: FloatArray) -> FloatArray:

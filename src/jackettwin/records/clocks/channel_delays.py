@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
+import scipy  # scipy.sparse is loaded where it is used
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 
@@ -130,7 +130,7 @@ def connected(near: BoolArray) -> list[list[int]]:
     >>> connected(np.array([[1, 0, 1], [0, 1, 0], [1, 0, 1]], dtype=bool))
     [[0, 2], [1]]
     """
-    _, label = connected_components(near, directed=False)
+    _, label = scipy.sparse.csgraph.connected_components(near, directed=False)
     return [[int(i) for i in np.flatnonzero(label == k)] for k in np.unique(label)]
 
 

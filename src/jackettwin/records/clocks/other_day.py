@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse.csgraph import minimum_spanning_tree
+import scipy  # scipy.sparse is loaded where it is used
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.clocks.channel_delays import connected
@@ -40,7 +40,9 @@ def spanning_pairs(seen: Phases) -> IntArray:
     cost = np.zeros((n, n))
     # the tree of least cost; zero would be no edge
     cost[seen.pairs[:, 0], seen.pairs[:, 1]] = 1.0 / (1.0 + seen.total)
-    return np.asarray(np.stack(minimum_spanning_tree(cost).nonzero(), axis=1), dtype=np.intp)
+    return np.asarray(
+        np.stack(scipy.sparse.csgraph.minimum_spanning_tree(cost).nonzero(), axis=1), dtype=np.intp
+    )
 
 
 def may_be_compared(directions: Sequence[Sequence[float]], n: int) -> BoolArray:

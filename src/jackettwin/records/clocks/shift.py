@@ -9,7 +9,7 @@ the samples.
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+import scipy  # scipy.interpolate is loaded where it is used
 
 from jackettwin.arrays import FloatArray
 from jackettwin.records.processing.filters import bridge, remove_line
@@ -58,7 +58,7 @@ def earlier(y: FloatArray, delay: float, growth: float = 0.0) -> FloatArray:
     else:
         fine = _finer(padded)
         place = np.arange(len(fine)) / FINER - pad
-        out = make_interp_spline(place, fine, k=DEGREE)(np.clip(at, place[0], place[-1]))
+        out = scipy.interpolate.make_interp_spline(place, fine, k=DEGREE)(np.clip(at, place[0], place[-1]))
     out = out + np.interp(at, np.arange(n), line)
     missing = ~np.isfinite(y)
     below, above = np.floor(at).astype(int), np.ceil(at).astype(int)

@@ -9,9 +9,9 @@ output step do not count: what the filter passes hardly bends over so short a ti
 from __future__ import annotations
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 from scipy import ndimage
 
+from jackettwin import signals
 from jackettwin.arrays import BoolArray, FloatArray
 
 STOPBAND_DB = 80.0
@@ -53,11 +53,12 @@ def remove_slow(y: FloatArray, cutoff: float) -> FloatArray:
     """
     sigma = np.sqrt(-np.log(1.0 - np.sqrt(0.5)) / 2.0) / (np.pi * cutoff)
     half = min(int(np.ceil(5.0 * sigma)), y.shape[1] - 1)
-    kernel = np.exp(-0.5 * (np.arange(-half, half + 1) / sigma) ** 2)[None, :]
+    kernel = np.exp(-0.5 * (np.arange(-half, half + 1) / sigma) ** 2)
     x = remove_line(y)
     finite = np.isfinite(x)
-    total = scipy.signal.oaconvolve(np.where(finite, x, 0.0), kernel, mode="same", axes=1)
-    weight = scipy.signal.oaconvolve(finite.astype(float), kernel, mode="same", axes=1)
+    same = slice(half, half + y.shape[1])
+    total = signals.convolve(np.where(finite, x, 0.0), kernel)[:, same]
+    weight = signals.convolve(finite.astype(float), kernel)[:, same]
     # At a finite sample the weight is at least the kernel's centre, 1.
     slow: FloatArray = total / np.where(finite, weight, 1.0)
     return x - slow
@@ -71,9 +72,7 @@ def lowpass_taps(pass_edge: float, stop_edge: float) -> FloatArray:
     pass_edge, stop_edge : float
         Cycles per sample.
     """
-    n_taps, beta = scipy.signal.kaiserord(STOPBAND_DB, 2.0 * (stop_edge - pass_edge))
-    taps: FloatArray = scipy.signal.firwin(n_taps | 1, pass_edge + stop_edge, window=("kaiser", beta))
-    return taps
+    return signals.lowpass_taps(pass_edge, stop_edge, STOPBAND_DB)
 
 
 def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> FloatArray:
@@ -92,30 +91,20 @@ def resample(y: FloatArray, taps: FloatArray, up: int = 1, down: int = 1) -> Flo
     pad = half_length(taps, up)
     half = len(taps) // 2
     lead = -(pad * up + half) % down
-    first = (pad * up + half + lead) // down
-    n_out = (y.shape[1] - 1) * up // down + 1
-    kept = slice(first, first + n_out)
     padded_taps = np.concatenate([np.zeros(lead), taps])
+    kept = {"first": (pad * up + half + lead) // down, "n_out": (y.shape[1] - 1) * up // down + 1}
 
     missing = _long_gaps(~np.isfinite(y), shortest=down // (2 * up) + 1)
     bridged = np.pad(
         np.apply_along_axis(bridge, 1, y), ((0, 0), (pad, pad)), mode="reflect", reflect_type="odd"
     )
-    out = _filtered(up * padded_taps, bridged, up, down)[:, kept]
+    out = signals.resample(bridged, up * padded_taps, up, down, **kept)
     if missing.any():
         reflected = np.pad(missing, ((0, 0), (pad, pad)), mode="reflect").astype(float)
         weight = up * np.abs(padded_taps) / np.abs(taps).sum()
-        lost = _filtered(weight, reflected, up, down)[:, kept]
+        lost = signals.resample(reflected, weight, up, down, **kept)
         out = np.where(lost > MISSING_WEIGHT, np.nan, out)
     return out
-
-
-def _filtered(taps: FloatArray, y: FloatArray, up: int, down: int) -> FloatArray:
-    """Filter rows at ``up`` times the rate and keep every ``down``-th sample."""
-    # where every output is wanted, the transforms of long filters take fewer products
-    if up == down == 1:
-        return np.asarray(scipy.signal.oaconvolve(y, taps[None, :], axes=1))
-    return np.asarray(scipy.signal.upfirdn(taps, y, up, down, axis=1))
 
 
 def half_length(taps: FloatArray, up: int = 1) -> int:

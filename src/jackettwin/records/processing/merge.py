@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy  # scipy.interpolate is loaded where it is used
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
@@ -158,6 +158,8 @@ def _brought_to(record: Record, rate: float, begin_s: float, n: int) -> FloatArr
     last = record.data.shape[1] - 1
     below = np.clip(np.floor(position).astype(np.int64), 0, last)
     gap = ~np.isfinite(record.data)
-    spline = CubicSpline(np.arange(last + 1), np.apply_along_axis(bridge, 1, record.data), axis=1)
+    spline = scipy.interpolate.CubicSpline(
+        np.arange(last + 1), np.apply_along_axis(bridge, 1, record.data), axis=1
+    )
     out: FloatArray = np.where(gap[:, below] | gap[:, np.minimum(below + 1, last)], np.nan, spline(position))
     return out

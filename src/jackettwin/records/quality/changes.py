@@ -15,11 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy  # scipy.signal is loaded where it is used: half a second
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.records.processing.transforms import of_fast_length
 from jackettwin.records.quality.sensor_polarity import LEAST_CYCLES, strongest_line
+from jackettwin.signals import tukey
 
 PARTS = 20
 """Parts of a record over which the gain is taken."""
@@ -124,7 +124,7 @@ def _envelopes(y: FloatArray) -> list[ComplexArray]:
     n = y.shape[1]
     if n < 4 * LEAST_CYCLES:
         return out
-    taper = scipy.signal.windows.tukey(n, 1.0 / PARTS)
+    taper = tukey(n, 1.0 / PARTS)
     spectra = np.fft.rfft(np.where(np.isfinite(y), y, 0.0) * taper, axis=1)
     low = max(int(strongest_line(spectra) / np.sqrt(2.0)), LEAST_CYCLES)
     for _ in range(BANDS):

@@ -1,0 +1,101 @@
+"""The few signal-processing functions that every record needs, as ``scipy.signal`` has them.
+
+That package loads ``scipy.stats`` and, with it, half of SciPy: half a second of a command that takes two.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import fft
+
+from jackettwin.arrays import FloatArray, IntArray
+
+
+def hann(n: int) -> FloatArray:
+    """Return the periodic Hann window of n samples, for transforms of segments."""
+    return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(n) / n))
+
+
+def tukey(n: int, share: float) -> FloatArray:
+    """Return a symmetric window of n samples that is 1 but for cosine tapers over a share of its length.
+
+    >>> tukey(5, 0.5).round(12).tolist()
+    [0.0, 1.0, 1.0, 1.0, 0.0]
+    """
+    edge = np.minimum(np.arange(n), np.arange(n)[::-1]) / (0.5 * share * (n - 1))
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.minimum(edge, 1.0)))
+
+
+def lowpass_taps(pass_edge: float, stop_edge: float, attenuation_db: float) -> FloatArray:
+    """Return a symmetric low-pass filter of odd length with unit gain at zero frequency, (n_taps,).
+
+    A sinc under a Kaiser window, whose length and shape follow from the attenuation (Kaiser 1974; Oppenheim
+    & Schafer, Discrete-Time Signal Processing, 3rd ed., eqs. (7.75), (7.76)).
+
+    Parameters
+    ----------
+    pass_edge, stop_edge : float
+        Cycles per sample.
+    attenuation_db : float
+        Beyond the stop edge; above 50 dB.
+    """
+    n = int(np.ceil((attenuation_db - 7.95) / (2.285 * 2.0 * np.pi * (stop_edge - pass_edge)) + 1.0)) | 1
+    m = np.arange(n) - n // 2
+    taps = np.sinc((pass_edge + stop_edge) * m) * np.kaiser(n, 0.1102 * (attenuation_db - 8.7))
+    return np.asarray(taps / taps.sum())
+
+
+def convolve(y: FloatArray, taps: FloatArray) -> FloatArray:
+    """Return the full convolution of each row with a filter, (n_channels, n_samples + n_taps − 1).
+
+    >>> convolve(np.array([[1.0, 0.0, 2.0]]), np.array([1.0, -1.0])).round(12).tolist()
+    [[1.0, -1.0, 2.0, -2.0]]
+    """
+    n = y.shape[1] + len(taps) - 1
+    size = fft.next_fast_len(n, real=True)
+    response = np.fft.rfft(taps, size)
+    out = np.empty((len(y), n))
+    for i, row in enumerate(y):  # one at a time: the transforms of a day's channels would take gigabytes
+        out[i] = np.fft.irfft(np.fft.rfft(row, size) * response, size)[:n]
+    return out
+
+
+def resample(y: FloatArray, taps: FloatArray, up: int, down: int, *, first: int, n_out: int) -> FloatArray:
+    r"""Filter rows at ``up`` times their rate and keep every ``down``-th sample, (n_channels, n_out).
+
+    With :math:`h` the filter at the raised rate, :math:`z_k = \sum_m h_{k d - m u}\, y_m` for
+    :math:`k` from ``first`` on. Outputs whose :math:`k d` leaves the same remainder :math:`p` by :math:`u`
+    see the same taps :math:`h_p, h_{p+u}, …`, so each of the ``up`` phases is one convolution at the rate of
+    the input.
+    """
+    out = np.empty((len(y), n_out))
+    for start in range(min(up, n_out)):
+        m, p = divmod((first + start) * down, up)
+        out[:, start::up] = convolve(y, taps[p::up])[:, m::down][:, : len(range(start, n_out, up))]
+    return out
+
+
+def local_peaks(values: FloatArray, prominence: float = 0.0) -> IntArray:
+    """Return where values are higher than on both sides, by ``prominence`` above the higher of two valleys.
+
+    A valley reaches from the peak to the next higher value, or to the end. A flat top counts at its middle.
+
+    >>> local_peaks(np.array([0.0, 3.0, 2.0, 2.5, 0.0, 1.0, 1.0, 0.0]), 0.75).tolist()
+    [1, 5]
+    """
+    rise = np.diff(values)
+    turns = np.flatnonzero(rise)  # a flat top lies between the last rise and the next fall
+    tops = (rise[turns[:-1]] > 0.0) & (rise[turns[1:]] < 0.0)
+    peaks = (turns[:-1][tops] + 1 + turns[1:][tops]) // 2
+    if prominence <= 0.0:
+        return np.asarray(peaks)
+    return np.array([k for k in peaks if _prominence(values, k) >= prominence], dtype=np.intp)
+
+
+def _prominence(values: FloatArray, k: int) -> float:
+    """Return how far a peak stands above the higher of the valleys beside it."""
+    valleys = []
+    for side in (values[k::-1], values[k:]):
+        higher = np.flatnonzero(side > values[k])
+        valleys.append(side[: higher[0] if len(higher) else None].min())
+    return float(values[k] - max(valleys))
