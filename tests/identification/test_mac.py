@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import mac
-from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
+from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normalised
 
 
 def test_mac_of_orthogonal_and_parallel_shapes():

@@ -9,7 +9,7 @@ from jackettwin.errors import InputError
 from jackettwin.files import validate
 from jackettwin.identification import IdentificationSettings, identify
 from jackettwin.identification.frequency_domain.plscf import plscf_poles
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles
 from jackettwin.identification.subspace.ssi_dat import ssi_dat
 from jackettwin.identification.synthetic import simulate

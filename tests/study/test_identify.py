@@ -18,13 +18,13 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.progress import Told
 from jackettwin.records import Record, read_record, write_record
+from jackettwin.records.readers import record_files
 from jackettwin.study.many_records.document import many_document
 from jackettwin.study.many_records.export import export_modes
 from jackettwin.study.many_records.identify import Batch, observe_many
 from jackettwin.study.many_records.summary import fuse_batch
 from jackettwin.twin import TwinModel
 from jackettwin.twin.cache import KeptInFolder
-from jackettwin.twin.observe_files import record_files
 
 module = import_module("jackettwin.twin.observe_files")
 

@@ -5,32 +5,22 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.table import Table
 
-from jackettwin.cli.cache import MOST_RECORDS, keeping, kept_in
+from jackettwin.cli import cache
 from jackettwin.cli.console import FiniteFloat, PageFile, messages, number, output, print_json, progress
 from jackettwin.errors import InputError, located
-from jackettwin.files import check_room, read_mapping, read_yaml, validate, write_json
-from jackettwin.identification import IdentificationSettings
-from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
-from jackettwin.quantities import plain_unit, vibration_of
-from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.zones import read_zone
-from jackettwin.report.pages.identification import build_identification_page
-from jackettwin.report.pages.many_records import build_many_page
-from jackettwin.study import observation_document
-from jackettwin.study.many_records.document import many_document
-from jackettwin.study.many_records.export import WRITERS, export_modes, group_name
-from jackettwin.study.many_records.identify import observe_many
-from jackettwin.study.many_records.long_records import LONG, PIECE_S, without_long
-from jackettwin.study.many_records.summary import fuse_batch
-from jackettwin.twin import TwinModel, examine_file
-from jackettwin.twin.cache import KeptInFolder
-from jackettwin.twin.observe_files import record_files
+
+if TYPE_CHECKING:
+    from jackettwin.identification import IdentificationSettings
+    from jackettwin.identification.picks import Pick
+    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.twin.cache import KeptInFolder
 
 _SHOWN = 5
 """Lines of a kind printed at most; the rest is in the JSON."""
@@ -99,13 +89,23 @@ def identify_command(
 
     Several records are fused: over all of them and by wind speed, yaw and state.
     """
+    asked = (method, compare, real_poles, sample_rate, unit, gain, zone, whole)
+    place = partial(_place, records, (settings_file, picks_file), asked, out)
+    known = None if fresh or report is not None else cache.kept_document(place())
+    if known is not None:
+        messages.print("identified before, and nothing has changed since; --fresh identifies again")
+        _deliver(known, out, as_json, _print_many if "groups" in known else _print_one)
+        return
+    from jackettwin.files import check_room
+    from jackettwin.records.readers import record_files
+
     settings = _settings(settings_file, method, real_poles)
     _refuse_format(out)
     files = record_files(records)
     picks = _picks(picks_file, files)
     if compare and len(files) > 1:
-        several = f"{len(files)} records"
-        raise InputError("takes one record", field="--compare", value=several, remedy="run it once a record")
+        n = f"{len(files)} records"
+        raise InputError("takes one record", field="--compare", value=n, remedy="run it once a record")
     how: dict[str, Any] = {"picks": picks, "unsaid": _unsaid(sample_rate, unit, gain, zone)}
     for path in (out, report):
         if path is not None:
@@ -114,28 +114,42 @@ def identify_command(
         if not whole:
             files = _without_long(files, Path(passing) / "pieces", how["unsaid"])
         if len(files) == 1:
-            _deliver(
-                _one(files[0], settings, {**how, "keep": keeping(fresh=fresh)}, compare, report),
-                out,
-                as_json,
-                _print_one,
-            )
-            return
-        model = TwinModel("identify", identification=settings, picks=picks)
-        keep = _keep(out, len(files), fresh=fresh) or kept_in(Path(passing))
-        _deliver(_many(files, model, how["unsaid"], keep, workers, report), out, as_json, _print_many)
+            how["keep"] = cache.keeping(fresh=fresh)
+            document, show = _one(files[0], settings, how, compare, report), _print_one
+        else:
+            keep = _keep(out, len(files), fresh=fresh) or cache.kept_in(Path(passing))
+            document = _many(files, settings, how, keep, workers, report)
+            show = _print_many
+        if report is None and not document.get("failed"):
+            cache.keep_document(document, place())
+        _deliver(document, out, as_json, show)
+
+
+def _place(
+    records: Sequence[str], choices: Sequence[str | None], asked: tuple[object, ...], out: Path | None
+) -> Path | None:
+    """Return where the document that answers this command is kept."""
+    folder = cache.kept_folder()
+    if folder is None:
+        return None
+    chosen = [path for path in choices if path is not None]
+    beside = out / "records" if out is not None and _folder(out) else None
+    results = sorted(beside.iterdir()) if beside is not None and beside.is_dir() else beside
+    return cache.document_place(folder, [*records, *chosen], (asked, len(records), choices, results))
 
 
 def _keep(out: Path | None, n_records: int, *, fresh: bool) -> KeptInFolder | None:
     """Return where the observations of a batch are kept: in its own folder, if it has one."""
     if out is not None and _folder(out):
-        return kept_in(out / "records", fresh=fresh)
-    keep = keeping(fresh=fresh)
-    return keep if n_records <= MOST_RECORDS and isinstance(keep, KeptInFolder) else None
+        return cache.kept_in(out / "records", fresh=fresh)
+    folder = cache.kept_folder() if n_records <= cache.MOST_RECORDS else None
+    return None if folder is None else cache.kept_in(folder, fresh=fresh)
 
 
 def _without_long(files: tuple[Path, ...], folder: Path, unsaid: Unsaid) -> tuple[Path, ...]:
     """Return the files, with ten-minute pieces in the place of records longer than an hour."""
+    from jackettwin.study.many_records.long_records import LONG, PIECE_S, without_long
+
     with progress(len(files), "read") as step:
         cut = without_long(files, folder, unsaid, step)
     if len(cut) > len(files):
@@ -161,6 +175,9 @@ def _deliver(
 
 
 def _export(document: Mapping[str, Any], out: Path) -> None:
+    from jackettwin.files import write_json
+    from jackettwin.study.many_records.export import WRITERS, export_modes
+
     for path in [out / f"modes{ending}" for ending in WRITERS] if _folder(out) else [out]:
         export_modes(document, path)
         messages.print(f"wrote {path}")
@@ -175,11 +192,18 @@ def _one(
     compare: bool,
     report: Path | None,
 ) -> dict[str, Any]:
+    from jackettwin.identification.document import identification_document
+    from jackettwin.twin import examine_file
+
     with progress(1 + (report is not None), "identify") as step:
         step(f"identify {file.name}")
         seen = examine_file(file, settings, compare=compare or report is not None, **how)
-        document = observation_document(seen)
+        document = identification_document(
+            seen.identification, seen.quality.summary(), seen.record.conditions, seen.comparison
+        )
         if report is not None:
+            from jackettwin.report.pages.identification import build_identification_page
+
             step("write the report")
             build_identification_page(seen, report)
     if report is not None:
@@ -189,15 +213,21 @@ def _one(
 
 def _many(
     files: Sequence[Path],
-    model: TwinModel,
-    unsaid: Unsaid,
+    settings: IdentificationSettings,
+    how: Mapping[str, Any],
     keep: KeptInFolder,
     workers: int | None,
     report: Path | None,
 ) -> dict[str, Any]:
     """Return the document; its long lists are read from the folder's results as they are written."""
+    from jackettwin.study.many_records.document import many_document
+    from jackettwin.study.many_records.identify import observe_many
+    from jackettwin.study.many_records.summary import fuse_batch
+    from jackettwin.twin import TwinModel
+
+    model = TwinModel("identify", identification=settings, picks=how["picks"])
     with progress(len(files), "identify") as step:
-        batch = observe_many(files, model, keep=keep, unsaid=unsaid, workers=workers, progress=step)
+        batch = observe_many(files, model, keep=keep, unsaid=how["unsaid"], workers=workers, progress=step)
     if not len(batch):
         raise InputError(
             f"none of {len(batch.failed)} records could be identified; the first: {batch.failed[0].problem}",
@@ -206,12 +236,17 @@ def _many(
         )
     together = fuse_batch(batch)
     if report is not None:
+        from jackettwin.report.pages.many_records import build_many_page
+
         build_many_page(together, batch.failed, report)
         messages.print(f"wrote {report}")
     return many_document(batch, together)
 
 
 def _settings(path: str | None, method: str | None, real_poles: bool) -> IdentificationSettings:
+    from jackettwin.files import read_yaml, validate
+    from jackettwin.identification import IdentificationSettings
+
     settings = IdentificationSettings()
     if path is not None:
         settings = validate(IdentificationSettings, read_yaml(path, what="settings file"), file=path)
@@ -220,6 +255,10 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
 
 
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
+    from jackettwin.quantities import plain_unit, vibration_of
+    from jackettwin.records.readers.channels import Unsaid
+    from jackettwin.records.readers.zones import read_zone
+
     if unit is not None:
         vibration_of(plain_unit(unit), field="--unit")
     if zone is not None:
@@ -230,6 +269,9 @@ def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zon
 def _picks(path: str | None, files: Sequence[Path]) -> tuple[Pick, ...]:
     if path is None:
         return ()
+    from jackettwin.files import read_mapping
+    from jackettwin.identification.picks import parse_picks, refuse_strangers
+
     with located(file=path):
         picks = parse_picks(read_mapping(path, what="file of picks"))
         refuse_strangers(picks, [file.stem for file in files])
@@ -242,6 +284,8 @@ def _folder(out: Path) -> bool:
 
 def _refuse_format(out: Path | None) -> None:
     """Refuse an extension we do not write before the work, not after it."""
+    from jackettwin.study.many_records.export import WRITERS, export_modes
+
     if out is not None and not _folder(out) and out.suffix.lower() not in WRITERS:
         export_modes({}, out)
 
@@ -292,6 +336,8 @@ def _both(m: Mapping[str, Any]) -> str:
 
 
 def _print_many(document: Mapping[str, Any]) -> None:
+    from jackettwin.study.many_records.export import group_name
+
     n = document["records_identified"]
     _print_fused(f"{n} records fused, {document['duration_s'] / 3600:.3g} h", document["modes"], n)
     groups = document["groups"]

@@ -15,13 +15,13 @@ from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_path, check_room
 from jackettwin.records import Record, read_record
+from jackettwin.records.readers import record_files
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import UNSAID, read_zone
 from jackettwin.structure import assemble
 from jackettwin.study.draft import Draft, draft_twin
 from jackettwin.twin import read_twin
 from jackettwin.twin.examine import moving_channels
-from jackettwin.twin.observe_files import record_files
 
 _MOST_READ = 20
 """Records that are read to be described; of more the rest is only listed."""

@@ -8,11 +8,11 @@ from .estimate import (
     Stabilisation as Stabilisation,
 )
 from .frequency_domain.fdd import fdd as fdd
-from .mac import mac as mac
 from .many_records.fusion import (
     FusedIdentification as FusedIdentification,
     FusedMode as FusedMode,
     fuse as fuse,
 )
+from .mode_shapes import mac as mac
 from .settings import IdentificationSettings as IdentificationSettings
 from .subspace.ssi_cov import ssi_cov as ssi_cov

@@ -10,7 +10,7 @@ import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.errors import InputError
 from jackettwin.identification.automatic import identify
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.settings import METHODS, IdentificationSettings
 
 if TYPE_CHECKING:

@@ -1,5 +1,4 @@
 from .document import (
-    observation_document as observation_document,
     run_document as run_document,
     update_document as update_document,
 )

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
-from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification import Identification, ModalEstimate
+from jackettwin.arrays import FloatArray
 from jackettwin.identification.comparison import Comparison
-from jackettwin.identification.picks import plain_picks
-from jackettwin.identification.status import ModeStatus
+from jackettwin.identification.document import identification_document, mode_document, shape_document
 from jackettwin.intervals import interval_90
 from jackettwin.study.mode_matches import held_document
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.study.truth import truth_document
-from jackettwin.twin import Examination, Observation
+from jackettwin.twin import Observation
 from jackettwin.updating import Update, law_probability
 from jackettwin.updating.budget import SOURCES, beyond_literature
 from jackettwin.updating.posterior.scatter import leg_scatter
@@ -135,7 +132,7 @@ def _relaxation(r: MeasuredRelaxation) -> dict[str, Any]:
         "rate_std_rad_s": r.rate_std_rad_s,
         "time_constant_s": 1.0 / r.rate_rad_s,
         "records": r.records,
-        "mode_shape": _shape(r.shape, list(r.channels)) or None,
+        "mode_shape": shape_document(r.shape, list(r.channels)) or None,
     }
 
 
@@ -274,109 +271,3 @@ def _compared(measured: tuple[MeasuredMode, ...], u: Update) -> list[dict[str, A
             measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio, strict=True
         )
     ]
-
-
-def observation_document(seen: Examination) -> dict[str, Any]:
-    """Return the document of one record of ``jackettwin identify``."""
-    return identification_document(
-        seen.identification, seen.quality.summary(), seen.record.conditions, seen.comparison
-    )
-
-
-def identification_document(
-    found: Identification,
-    quality: Mapping[str, Any],
-    conditions: Mapping[str, Any],
-    compared: Comparison | None = None,
-) -> dict[str, Any]:
-    """Return the modes of one record, what was rejected, the settings used and the record's quality."""
-    names = [channel.name for channel in found.channels]
-    s = found.settings
-    return {
-        "records": list(found.records),
-        "modes": [mode_document(m, names) for m in found.modes],
-        "rejected": [
-            {
-                "frequency_hz": r.frequency_hz,
-                "damping_ratio": r.damping_ratio,
-                "reason": r.reason,
-                "status": r.status.value,
-            }
-            for r in found.rejected
-        ],
-        "settings": {
-            "lowest_frequency_hz": s.lowest_frequency_hz,
-            "highest_frequency_hz": s.highest_frequency_hz,
-            "sample_rate_hz": s.sample_rate_hz,
-            "block_rows": s.block_rows,
-            "lag_window_s": s.lag_window_s,
-            "orders": list(s.orders),
-        },
-        "real_poles": [
-            {
-                "rate_rad_s": pole.rate_rad_s,
-                "rate_std_rad_s": pole.rate_std_rad_s,
-                "rate_interval_95": pole.rate_interval_95,
-                "time_constant_s": pole.time_constant_s,
-                "order_share": pole.order_share,
-                "mode_shape": _shape(pole.mode_shape, names),
-            }
-            for pole in found.real_poles
-        ],
-        "picks": plain_picks(found.picks),
-        "duration_s": found.duration_s,
-        "quality": dict(quality),
-        "warnings": list(found.warnings),
-        "findings": [finding.document for finding in found.findings],
-        "notes": list(found.notes),
-        **({} if compared is None else {"methods": comparison_document(compared)}),
-        "conditions": dict(conditions),
-    }
-
-
-def mode_document(m: ModalEstimate, channels: list[str] | None) -> dict[str, Any]:
-    """Return one identified mode; shapes as [real, imaginary] a channel."""
-    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
-    document: dict[str, Any] = {
-        "frequency_hz": m.frequency_hz,
-        "frequency_std_hz": m.frequency_std_hz,
-        "damping_ratio": m.damping_ratio if known else None,
-        "damping_ratio_std": m.damping_ratio_std if known else None,
-        "frequency_interval_95": m.frequency_interval_95,
-        "damping_ratio_interval_95": interval if known else None,
-        "damping_ratio_at_most": None if known or interval is None else interval[1],
-        "mpc": m.mpc,
-        "method": m.method,
-        "status": m.status.value,
-        "status_reason": m.status_reason,
-        "status_codes": [finding.code for finding in m.reasons],
-        "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
-        "least_relative_std": {
-            "damping_ratio_long_data": m.damping_ratio_cov_limit,
-            "frequency_cramer_rao": None if m.cramer_rao_log_std is None else float(m.cramer_rao_log_std[0]),
-            "damping_ratio_cramer_rao": None
-            if m.cramer_rao_log_std is None
-            else float(m.cramer_rao_log_std[1]),
-        },
-    }
-    if channels is not None:
-        document["mode_shape"] = _shape(m.mode_shape, channels)
-        raw = m.mode_shape_unaligned
-        document["mode_shape_unaligned"] = None if raw is None else _shape(raw, channels)
-    return document
-
-
-def _shape(shape: ComplexArray, channels: list[str]) -> dict[str, list[float]]:
-    return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}
-
-
-def comparison_document(compared: Comparison) -> dict[str, Any]:
-    """Return what every method has for each mode of the reference, null where it has none."""
-    names = [channel.name for channel in compared.reference.channels]
-    return {
-        "modes": {
-            method: [None if m is None else mode_document(m, names) for m in modes]
-            for method, modes in compared.modes.items()
-        },
-        "refused": dict(compared.refused),
-    }

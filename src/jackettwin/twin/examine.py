@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,9 +30,11 @@ from jackettwin.records.processing.yaw import is_horizontal, knows_yaw, yaw_of
 from jackettwin.records.quality.assess import Quality
 from jackettwin.records.quality.repair import common_time
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.response import Sensor
 from jackettwin.twin.cache import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept
 from jackettwin.twin.record_checks import UNFIT, doubted, each_sample_once, too_short, zeros_in_line
+
+if TYPE_CHECKING:
+    from jackettwin.response import Sensor
 
 WORTH_SAYING = 1e-3
 """Share of a channel's power from which a tone is mentioned."""

@@ -18,7 +18,6 @@ from jackettwin.processes import in_processes
 from jackettwin.progress import SILENT, Progress
 from jackettwin.records import Record, read_record
 from jackettwin.records.identity import record_id
-from jackettwin.records.readers import formats
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.cache import NOT_KEPT, Keep, record_content
 from jackettwin.twin.codec import digest
@@ -182,34 +181,3 @@ def failure(file: Path, error: Exception) -> Failed:
     """Return a record that could not be observed, with the reason: the input, or a fault of ours."""
     ours = f"{file}: a fault of jackettwin, {type(error).__name__}: "
     return Failed(str(file), f"{'' if isinstance(error, JackettwinError) else ours}{error}")
-
-
-def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
-    """Return the files meant by paths of records and of folders of records, folders in the order of names.
-
-    Raises
-    ------
-    InputError
-        If a path does not exist or a folder holds no record.
-    """
-    known = {extension for form in formats() for extension in form.extensions}
-    files: list[Path] = []
-    for source in map(Path, sources):
-        if not source.is_dir():
-            files.append(source)
-            continue
-        shown = (p for p in source.iterdir() if p.is_file() and not p.name.startswith("."))
-        inside = sorted(p for p in shown if p.suffix.lower() in known)
-        if not inside:
-            raise InputError(
-                "folder holds no record",
-                file=source,
-                allowed=", ".join(sorted(known)),
-                remedy="give the folder that holds the files, or the files",
-            )
-        files += inside
-    if len(files) > 1:
-        for file in files:
-            if not file.exists():
-                raise InputError("no such file", file=file, remedy="check the path")
-    return tuple(files)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from jackettwin.records import Record
 from jackettwin.records.quality.length import CYCLES, SHARE, slow_share
 from jackettwin.records.quality.repetition import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
-from jackettwin.updating.data.pairing import Held
+
+if TYPE_CHECKING:
+    from jackettwin.updating.data.pairing import Held
 
 Findings = tuple[Finding, ...]
 

@@ -16,7 +16,7 @@ from jackettwin.identification.decays.damped_cosines import (
     _projected,
     damped_cosines,
 )
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 
 RATE, F, ZETA, SIGMA = 10.0, 0.3, 0.02, 0.05
 SHAPE = np.array([1.0, 0.5, -0.3])

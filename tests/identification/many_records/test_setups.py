@@ -17,8 +17,8 @@ from jackettwin.identification import (
     identify,
     mac,
 )
-from jackettwin.identification.mac import normalised
 from jackettwin.identification.many_records.setups import ShapeSum
+from jackettwin.identification.mode_shapes import normalised
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel
 

@@ -8,7 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jackettwin.identification import FusedIdentification, Identification, ModalEstimate, fuse, mac
+from jackettwin.identification import (
+    FusedIdentification,
+    Identification,
+    ModalEstimate,
+    fuse,
+    mac,
+)
 from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.many_records.tracking import PATIENCE, follow
 from jackettwin.records import Channel

@@ -9,7 +9,13 @@ import numpy.typing as npt
 import pytest
 from numpy.testing import assert_allclose
 
-from jackettwin.identification import Identification, IdentificationSettings, fuse, identify, mac
+from jackettwin.identification import (
+    Identification,
+    IdentificationSettings,
+    fuse,
+    identify,
+    mac,
+)
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import accelerated, differentiated
 from jackettwin.identification.synthetic import ModalSystem, simulate

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ssi_cov
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.subspace.covariances import covariances
 from jackettwin.identification.subspace.ssi_cov import (
     LEAST_SQUARE,

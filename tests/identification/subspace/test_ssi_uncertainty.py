@@ -10,7 +10,7 @@ from calibration import is_calibrated
 from tests.support.stacked_hankel import stacked_hankel
 
 from jackettwin.identification import identify, mac
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mode_shapes import normalised
 from jackettwin.identification.subspace.covariances import block_covariances, covariances
 from jackettwin.identification.subspace.ssi_cov import (
     balanced_subspace,

@@ -20,7 +20,7 @@ from jackettwin.identification.estimate import (
     ResolvedSettings,
     Stabilisation,
 )
-from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
+from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.resolve import FEWEST_SAMPLES, usable_channels
 from jackettwin.identification.preparation.spectra import lowest_peak_hz, welch
 from jackettwin.identification.preparation.whitening import accelerated, as_measured

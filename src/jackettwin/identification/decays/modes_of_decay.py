@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.decays.damped_cosines import DampedCosines, damped_cosines
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.spectra import densities
 from jackettwin.identification.subspace.ssi_cov import frequency_and_damping, order_poles, ssi_cov
 

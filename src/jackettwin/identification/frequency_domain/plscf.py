@@ -23,7 +23,7 @@ import numpy as np
 from scipy import linalg
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mode_shapes import normalised
 from jackettwin.identification.subspace.ssi_cov import OrderPoles
 
 if TYPE_CHECKING:

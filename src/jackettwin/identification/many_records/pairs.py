@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.mac import aligned, mac, mpc, mpd_rad, normalised
+from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -21,7 +21,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.errors import InputError
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mode_shapes import normalised
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

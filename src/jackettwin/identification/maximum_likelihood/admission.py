@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
@@ -112,5 +112,5 @@ def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatA
         return float(-np.sum(data.count * (s * b / (1.0 + s * a) - np.log1p(s * a))))
 
     middle = -np.log(np.max(h * a))
-    found = minimize_scalar(loss, bounds=(middle - 15.0, middle + 15.0), method="bounded")
+    found = scipy.optimize.minimize_scalar(loss, bounds=(middle - 15.0, middle + 15.0), method="bounded")
     return max(-float(found.fun), 0.0), float(np.exp(found.x))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.identification.mac import mpc, mpd_rad, normalised
+from jackettwin.identification.mode_shapes import mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.records import Channel

@@ -10,8 +10,8 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import ModalEstimate, Rejected
-from jackettwin.identification.mac import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.identification.mode_shapes import aligned, mpc, mpd_rad, normalised
 from jackettwin.identification.status import ModeStatus
 from jackettwin.identification.tones.drifting_tones import tones_at
 from jackettwin.identification.tones.envelopes import is_steady_tone

@@ -10,9 +10,9 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.identification.estimate import Rejected
-from jackettwin.identification.mac import mac, normalised
 from jackettwin.identification.maximum_likelihood.fits import FitStart, accepted_fits, not_refined
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
+from jackettwin.identification.mode_shapes import mac, normalised
 from jackettwin.identification.preparation.resolve import guarded_band_hz
 from jackettwin.identification.preparation.whitening import left_to_differentiate
 from jackettwin.identification.selection.candidates import (

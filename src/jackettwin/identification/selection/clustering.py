@@ -10,7 +10,7 @@ from scipy.cluster import hierarchy
 from scipy.spatial.distance import squareform
 
 from jackettwin.arrays import FloatArray, Int64Array
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

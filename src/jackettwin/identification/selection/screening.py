@@ -25,7 +25,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.findings import Finding
-from jackettwin.identification.mac import mac
+from jackettwin.identification.mode_shapes import mac
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.neighbours import apart, of_neighbours, told_twice
 from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_sensor

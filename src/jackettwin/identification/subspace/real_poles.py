@@ -17,7 +17,7 @@ from scipy.spatial.distance import squareform
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.estimate import RealPole
-from jackettwin.identification.mac import aligned, mac, normalised
+from jackettwin.identification.mode_shapes import aligned, mac, normalised
 from jackettwin.intervals import log_interval_95
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from scipy.linalg import lapack
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import NumericalError
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mode_shapes import normalised
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

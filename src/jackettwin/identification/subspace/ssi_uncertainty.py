@@ -26,7 +26,7 @@ from scipy import linalg
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
-from jackettwin.identification.mac import normalised
+from jackettwin.identification.mode_shapes import normalised
 from jackettwin.identification.subspace.ssi_cov import Factors, OrderPoles, Subspace, hankel
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Stabilisation
-from jackettwin.identification.mac import mac, normalised
+from jackettwin.identification.mode_shapes import mac, normalised
 from jackettwin.identification.subspace.ssi_cov import OrderPoles, frequency_and_damping
 
 if TYPE_CHECKING:

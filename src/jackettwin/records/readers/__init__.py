@@ -1,7 +1,14 @@
 """Files in and out: one small reader a format behind one registry."""
 
 from jackettwin.records.readers.pieces import read_record_pieces
-from jackettwin.records.readers.registry import Format, description_file, formats, read_record, write_record
+from jackettwin.records.readers.registry import (
+    Format,
+    description_file,
+    formats,
+    read_record,
+    record_files,
+    write_record,
+)
 from jackettwin.records.readers.sep005 import from_sep005, to_sep005
 
 __all__ = [
@@ -11,6 +18,7 @@ __all__ = [
     "from_sep005",
     "read_record",
     "read_record_pieces",
+    "record_files",
     "to_sep005",
     "write_record",
 ]

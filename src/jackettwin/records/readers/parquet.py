@@ -57,6 +57,8 @@ def _values(column: Any) -> npt.NDArray[Any]:
         return stamps
     if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
         return np.full(len(column), "")  # not a signal
-    numbers = column.cast(pa.float64(), safe=False).combine_chunks()
+    if not column.null_count:
+        return np.from_dlpack(column.combine_chunks()).astype(np.float64)
+    numbers = column.cast(pa.float64(), safe=False).combine_chunks()  # loads pyarrow.compute
     # ``to_numpy``, like ``read_table`` and a scalar to fill with, loads pandas: 0.2 s in every process
-    return np.from_dlpack(numbers.fill_null(np.nan) if numbers.null_count else numbers)
+    return np.from_dlpack(numbers.fill_null(np.nan))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -138,6 +138,37 @@ def description_file(path: Path) -> Path | None:
         if beside.is_file():
             return beside
     return None
+
+
+def record_files(sources: Sequence[str | Path]) -> tuple[Path, ...]:
+    """Return the files meant by paths of records and of folders of records, folders in the order of names.
+
+    Raises
+    ------
+    InputError
+        If a path does not exist or a folder holds no record.
+    """
+    known = {extension for form in formats() for extension in form.extensions}
+    files: list[Path] = []
+    for source in map(Path, sources):
+        if not source.is_dir():
+            files.append(source)
+            continue
+        shown = (p for p in source.iterdir() if p.is_file() and not p.name.startswith("."))
+        inside = sorted(p for p in shown if p.suffix.lower() in known)
+        if not inside:
+            raise InputError(
+                "folder holds no record",
+                file=source,
+                allowed=", ".join(sorted(known)),
+                remedy="give the folder that holds the files, or the files",
+            )
+        files += inside
+    if len(files) > 1:
+        for file in files:
+            if not file.exists():
+                raise InputError("no such file", file=file, remedy="check the path")
+    return tuple(files)
 
 
 def write_record(record: Record, path: Path | str) -> None:

@@ -9,8 +9,8 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from jackettwin.identification import Identification, ModalEstimate, mac
-from jackettwin.identification.mac import mpc
 from jackettwin.identification.many_records.convergence import Step
+from jackettwin.identification.mode_shapes import mpc
 from jackettwin.report.figures import style
 from jackettwin.report.tables.numbers import words
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from jackettwin.files import Streamed
 from jackettwin.identification import FusedIdentification, FusedMode
+from jackettwin.identification.document import identification_document
 from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.identification.picks import plain_picks
-from jackettwin.study.document import identification_document
 from jackettwin.study.many_records.groups import RecordGroup
 from jackettwin.study.many_records.identify import Batch
 from jackettwin.study.many_records.summary import Together

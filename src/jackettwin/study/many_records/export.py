@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import netcdf_file
+import scipy  # scipy.io is loaded where it is used
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path, write_json
@@ -118,7 +118,7 @@ def _write_netcdf(document: Mapping[str, Any], path: Path) -> None:
     channels = _channels(mode_rows(document)) or [""]  # a length of none would mean unlimited
     width = max([1, *(len(row["set"].encode()) for row in mode_rows(document))])
     layout = _row_layout(width, len(channels))
-    with netcdf_file(str(path), "w", version=2) as file:
+    with scipy.io.netcdf_file(str(path), "w", version=2) as file:
         file.createDimension("mode", None)
         file.createDimension("channel", len(channels))
         file.createDimension("set_length", width)

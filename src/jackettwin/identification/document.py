@@ -1,0 +1,100 @@
+"""The modes of one record as plain JSON data: the keys users script against."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from jackettwin.identification.picks import plain_picks
+from jackettwin.identification.status import ModeStatus
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from jackettwin.arrays import ComplexArray
+    from jackettwin.identification.comparison import Comparison
+    from jackettwin.identification.estimate import Identification, ModalEstimate
+
+
+def identification_document(
+    found: Identification,
+    quality: Mapping[str, Any],
+    conditions: Mapping[str, Any],
+    compared: Comparison | None = None,
+) -> dict[str, Any]:
+    """Return the modes of one record, what was rejected, the settings used and the record's quality."""
+    names = [channel.name for channel in found.channels]
+    return {
+        "records": list(found.records),
+        "modes": [mode_document(mode, names) for mode in found.modes],
+        "rejected": [{**asdict(one), "status": one.status.value} for one in found.rejected],
+        "settings": {**asdict(found.settings), "orders": list(found.settings.orders)},
+        "real_poles": [
+            {
+                "rate_rad_s": pole.rate_rad_s,
+                "rate_std_rad_s": pole.rate_std_rad_s,
+                "rate_interval_95": pole.rate_interval_95,
+                "time_constant_s": pole.time_constant_s,
+                "order_share": pole.order_share,
+                "mode_shape": shape_document(pole.mode_shape, names),
+            }
+            for pole in found.real_poles
+        ],
+        "picks": plain_picks(found.picks),
+        "duration_s": found.duration_s,
+        "quality": dict(quality),
+        "warnings": list(found.warnings),
+        "findings": [finding.document for finding in found.findings],
+        "notes": list(found.notes),
+        **({} if compared is None else {"methods": _comparison_document(compared)}),
+        "conditions": dict(conditions),
+    }
+
+
+def mode_document(m: ModalEstimate, channels: Sequence[str] | None) -> dict[str, Any]:
+    """Return one identified mode; shapes as [real, imaginary] a channel, left out without channels."""
+    known, interval = m.status != ModeStatus.DAMPING_UNKNOWN, m.damping_ratio_interval_95
+    bound = (None, None) if m.cramer_rao_log_std is None else map(float, m.cramer_rao_log_std)
+    frequency_bound, damping_bound = bound
+    document: dict[str, Any] = {
+        "frequency_hz": m.frequency_hz,
+        "frequency_std_hz": m.frequency_std_hz,
+        "damping_ratio": m.damping_ratio if known else None,
+        "damping_ratio_std": m.damping_ratio_std if known else None,
+        "frequency_interval_95": m.frequency_interval_95,
+        "damping_ratio_interval_95": interval if known else None,
+        "damping_ratio_at_most": None if known or interval is None else interval[1],
+        "mpc": m.mpc,
+        "method": m.method,
+        "status": m.status.value,
+        "status_reason": m.status_reason,
+        "status_codes": [finding.code for finding in m.reasons],
+        "unrefined": None if m.unrefined is None else mode_document(m.unrefined, None),
+        "least_relative_std": {
+            "damping_ratio_long_data": m.damping_ratio_cov_limit,
+            "frequency_cramer_rao": frequency_bound,
+            "damping_ratio_cramer_rao": damping_bound,
+        },
+    }
+    if channels is not None:
+        document["mode_shape"] = shape_document(m.mode_shape, channels)
+        raw = m.mode_shape_unaligned
+        document["mode_shape_unaligned"] = None if raw is None else shape_document(raw, channels)
+    return document
+
+
+def shape_document(shape: ComplexArray, channels: Sequence[str]) -> dict[str, list[float]]:
+    """Return a shape as [real, imaginary] a channel."""
+    return {name: [float(v.real), float(v.imag)] for name, v in zip(channels, shape, strict=True)}
+
+
+def _comparison_document(compared: Comparison) -> dict[str, Any]:
+    """Return what every method has for each mode of the reference, null where it has none."""
+    names = [channel.name for channel in compared.reference.channels]
+    return {
+        "modes": {
+            method: [None if m is None else mode_document(m, names) for m in modes]
+            for method, modes in compared.modes.items()
+        },
+        "refused": dict(compared.refused),
+    }
