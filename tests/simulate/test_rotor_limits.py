@@ -11,7 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads import read_rotor
 from jackettwin.loads.aerodynamics.wind import TOWER_DRAG
 from jackettwin.simulate import loads_document, read_scenario, simulate
-from jackettwin.simulate.scenario.rotor_limits import lowest_tip, rotor_notes
+from jackettwin.simulate.scenario.air import lowest_tip, rotor_notes
 
 WIND = "structure: jacket15\nsupport: pinned\nwind: {speed_m_s: 12, turbulence: none, shear: 0.0}\n"
 BRIEF = "time: {duration_s: 10, step_s: 0.05}\n"
@@ -92,7 +92,8 @@ def test_production_beyond_cut_out_is_named(
 ) -> None:
     path = written(f"rotor: {{data: iea15, state: {state}}}\n")
     path.write_text(path.read_text().replace("speed_m_s: 12", f"speed_m_s: {speed}"), encoding="utf-8")
-    notes = rotor_notes(read_scenario(path))
+    scenario = read_scenario(path)
+    notes = rotor_notes(scenario.air, scenario.turbine)
     assert len(notes) == said
     assert all("cut-in and cut-out of 3 and 25 m/s" in note for note in notes)
 

@@ -1,7 +1,7 @@
 """Warnings where Morison's equation and linear waves end."""
 
 from jackettwin.simulate import read_scenario
-from jackettwin.simulate.scenario.sea_limits import sea_warnings
+from jackettwin.simulate.scenario.sea import sea_warnings
 
 MONOPILE = """
 sea_level_z_m: 30.0

@@ -9,6 +9,7 @@ import pytest
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.loads.members.morison import point_forces
+from jackettwin.loads.members.water_files import WaterSchema, depth_of
 from jackettwin.loads.sea.given_kinematics import PRESSURE, REQUIRED
 from jackettwin.loads.sea.waves import airy_wave
 from jackettwin.simulate import read_scenario
@@ -22,7 +23,6 @@ from jackettwin.simulate.motion.water import (
     wave_field,
 )
 from jackettwin.simulate.resultant import resultants
-from jackettwin.simulate.scenario.water_files import WaterSchema, depth_of
 from jackettwin.structure import assemble
 
 FEET = {"support": "pinned", "damping": {"rayleigh": {"ratio": 0.001, "frequency_hz": 0.2}}}

@@ -11,7 +11,7 @@ from jackettwin.cli.console import output, print_json, working
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
 from jackettwin.simulate import Simulation, read_scenario, simulate
-from jackettwin.simulate.scenario.rotor_limits import rotor_notes
+from jackettwin.simulate.scenario.air import rotor_notes
 from jackettwin.structure import assemble, check
 from jackettwin.updating.budget import beyond_literature
 
@@ -37,7 +37,7 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
     asset = chosen.asset
     odd = check(assemble(asset.structure)).warnings
     notes = [
-        *rotor_notes(chosen),
+        *rotor_notes(chosen.air, chosen.turbine),
         *asset.support.notes,
         *odd,
         *_unusual_shares(done, loops=asset.foundation is not None),

@@ -103,6 +103,13 @@ class RnaSchema(BodySchema):
         return bare if self.blades is None else with_rotor(bare, self.blades.build(folder), top)
 
 
+class StructureChoice(Schema):
+    """A structure with overrides."""
+
+    source: str
+    rna: RnaSchema | None = None
+
+
 class MassSchema(BodySchema):
     """A rigid body on a named node."""
 

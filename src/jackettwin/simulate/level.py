@@ -19,9 +19,9 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
-from jackettwin.response import Sensor
 from jackettwin.simulate.motion.motion import Motion
-from jackettwin.simulate.scenario.scenario import GRID_M, Instrument, Scenario
+from jackettwin.simulate.scenario.air import GRID_M
+from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 from jackettwin.simulate.sensing import readings
 
 FIRST, BETWEEN = "first pair", "between first and second pair"
@@ -80,7 +80,7 @@ def levels(motion: Motion, scenario: Scenario) -> tuple[Level, ...]:
     f1 = sqrt(first[0].frequency_hz * first[1].frequency_hz)
     damping = {m.label.removesuffix("_1"): m.damping_ratio * m.frequency_hz for m in first}
     node = scenario.asset.structure.top_node
-    sensors = tuple(Instrument(Sensor(name, axis, node=node)) for name, axis in DIRECTIONS.items())
+    sensors = tuple(Instrument(name, axis, node=node) for name, axis in DIRECTIONS.items())
     clock = replace(scenario.clock, step_s=scenario.clock.load_step_s)
     moved = readings(motion, replace(scenario, instruments=sensors, clock=clock))
     found = []

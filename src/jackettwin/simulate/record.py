@@ -15,8 +15,7 @@ from jackettwin.quantities import quantity as quantity_of
 from jackettwin.records import Channel, Record
 from jackettwin.simulate.level import beyond_comparison, levels
 from jackettwin.simulate.motion.motion import Motion, simulate_motion
-from jackettwin.simulate.scenario.naming import in_words_of
-from jackettwin.simulate.scenario.scenario import Instrument, Scenario
+from jackettwin.simulate.scenario.scenario import Instrument, Scenario, in_words_of
 from jackettwin.simulate.sensing import flawed, readings
 from jackettwin.version import __version__
 
@@ -129,15 +128,14 @@ def _channels(instruments: tuple[Instrument, ...]) -> tuple[Channel, ...]:
 
 
 def _channel(instrument: Instrument) -> Channel:
-    sensor = instrument.sensor
-    length = float(np.linalg.norm(sensor.direction))
-    x, y, z = (float(v) / length for v in sensor.direction)
+    length = float(np.linalg.norm(instrument.direction))
+    x, y, z = (float(v) / length for v in instrument.direction)
     return Channel(
-        name=sensor.channel,
-        quantity=instrument.quantity,
-        unit=quantity_of(instrument.quantity).unit,
-        height_m=sensor.height_m,
-        node=sensor.node,
+        name=instrument.channel,
+        quantity=instrument.recorded_as,
+        unit=quantity_of(instrument.recorded_as).unit,
+        height_m=instrument.height_m,
+        node=instrument.node,
         direction=(x, y, z),
     )
 
@@ -151,7 +149,7 @@ def _signal_channel(name: str) -> Channel:
 def _signals(motion: Motion, scenario: Scenario, n_samples: int) -> dict[str, FloatArray]:
     """Return the environment's channels at the sample rate, unless a sensor has taken their name."""
     clock = scenario.clock
-    taken = {instrument.sensor.channel for instrument in scenario.instruments}
+    taken = {instrument.channel for instrument in scenario.instruments}
     t = clock.discard_s + np.arange(n_samples) * clock.step_s
     known = np.arange(motion.states.shape[0]) * motion.step_s
     signals = {name: np.interp(t, known, values) for name, values in motion.signals.items()}

@@ -15,10 +15,9 @@ from jackettwin.loads.sea.wave_series import resultant_columns
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field
-from jackettwin.simulate.scenario.naming import in_words_of
-from jackettwin.simulate.scenario.rotor_limits import rotor_notes
-from jackettwin.simulate.scenario.scenario import Air, Scenario
-from jackettwin.simulate.scenario.sea_limits import sea_warnings
+from jackettwin.simulate.scenario.air import Air, rotor_notes
+from jackettwin.simulate.scenario.scenario import Scenario, in_words_of
+from jackettwin.simulate.scenario.sea import sea_warnings
 from jackettwin.structure import Assembly, assemble
 
 _FINE_M = 0.5
@@ -101,7 +100,7 @@ def loads_document(scenario: Scenario) -> dict[str, Any]:
         "phases": _phases(scenario, parts),
         "warnings": [
             *([] if scenario.sea is None else sea_warnings(scenario.sea, scenario.asset.structure)),
-            *rotor_notes(scenario),
+            *rotor_notes(scenario.air, scenario.turbine),
         ],
     }
 

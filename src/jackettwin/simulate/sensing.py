@@ -29,7 +29,7 @@ def readings(motion: Motion, scenario: Scenario) -> FloatArray:
         yaw = air.heading(np.arange(read.shape[1], dtype=np.float64) * scenario.clock.step_s)
         cos, sin = np.cos(yaw), np.sin(yaw)
         for i, (x, y, z) in zip(turning, global_axes, strict=True):
-            d = np.asarray(instruments[i].sensor.direction) / np.linalg.norm(instruments[i].sensor.direction)
+            d = np.asarray(instruments[i].direction) / np.linalg.norm(instruments[i].direction)
             found[i] = (cos * d[0] - sin * d[1]) * x + (sin * d[0] + cos * d[1]) * y + d[2] * z
     return found
 
@@ -37,7 +37,7 @@ def readings(motion: Motion, scenario: Scenario) -> FloatArray:
 def _along(instrument: Instrument, axis: FloatArray) -> Instrument:
     """Return the instrument along a global axis."""
     x, y, z = (float(v) for v in axis)
-    return replace(instrument, sensor=replace(instrument.sensor, direction=(x, y, z)))
+    return replace(instrument, direction=(x, y, z))
 
 
 def _read(motion: Motion, scenario: Scenario, instruments: tuple[Instrument, ...]) -> FloatArray:
@@ -83,12 +83,12 @@ def _observation(motion: Motion, instruments: tuple[Instrument, ...]) -> tuple[F
     rows = np.asarray(observation_matrix(motion.model.assembly, sensors) @ motion.model.reduced.basis)
     C, D = np.zeros((rows.shape[0], space.A.shape[0])), np.zeros((rows.shape[0], n))
     for k, (row, instrument) in enumerate(zip(rows, instruments, strict=True)):
-        if instrument.quantity in ("displacement", "inclination", "strain"):
-            C[k, :n] = row
-        elif instrument.quantity == "velocity":
+        if instrument.recorded_as == "acceleration":
+            C[k], D[k] = row @ space.A[n : 2 * n], row @ space.B[n : 2 * n]
+        elif instrument.recorded_as == "velocity":
             C[k, n : 2 * n] = row
         else:
-            C[k], D[k] = row @ space.A[n : 2 * n], row @ space.B[n : 2 * n]
+            C[k, :n] = row
     return C, D
 
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.files import Schema
+from jackettwin.files.limits import Frequency
 
 
 @dataclass(frozen=True)
@@ -49,3 +53,14 @@ class Rayleigh:
         """Return ζ(ω) = α/(2ω) + βω/2."""
         omega = 2.0 * pi * np.asarray(frequency_hz)
         return 0.5 * (self.alpha / omega + self.beta * omega)
+
+
+class RayleighSchema(Schema):
+    """Steel damping in a file: a least ratio and where it stands."""
+
+    ratio: Annotated[float, Field(ge=0.0, lt=1.0)]
+    frequency_hz: Frequency
+
+    def build(self) -> Rayleigh:
+        """Return the damping."""
+        return Rayleigh.minimum(self.ratio, self.frequency_hz)

@@ -14,14 +14,12 @@ from jackettwin.errors import did_you_mean, located, look_up, require
 from jackettwin.files import find_file, read_mapping, read_yaml, shipped, validate
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
-from jackettwin.loads import SeaState
+from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.names import read_mode_label
-from jackettwin.simulate.scenario.schema import RayleighSchema
-from jackettwin.simulate.scenario.water_files import WaterSchema, depth_of, water_members
 from jackettwin.soil import DEFAULT_LAWS, Parameter, family
-from jackettwin.structure import Rayleigh, Structure
+from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.assembly import assembled
 from jackettwin.twin.config import (
     PAIRED_MODES,
@@ -160,7 +158,7 @@ def _build(schema: TwinSchema, path: Path) -> TwinConfig:
         rotary_inertia=schema.rotary_inertia,
         subdivide=schema.subdivide,
         gravity=schema.gravity,
-        rayleigh=Rayleigh.minimum(steel.ratio, steel.frequency_hz),
+        rayleigh=steel.build(),
         rayleigh_ratio=steel.ratio,
         water=_water(schema, structure, folder),
         tie=support.tie,

@@ -10,17 +10,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BeforeValidator, Field
 
-from jackettwin.decks import RnaSchema, read_structure
+from jackettwin.decks import RnaSchema, StructureChoice, read_structure
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import Schema, one_of
+from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
 from jackettwin.response import Sensor
 from jackettwin.response.sensors import sensor_kinds
-from jackettwin.simulate.scenario.schema import RayleighSchema, StructureChoice
-from jackettwin.simulate.scenario.water_files import WaterSchema
-from jackettwin.structure import Structure
+from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings
 from jackettwin.twin.operation import OperationRule

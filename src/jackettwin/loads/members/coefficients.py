@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -111,6 +112,14 @@ class GrowthBand:
         """Return where ``z`` lies within the band, and how far from its top to its bottom (0 to 1)."""
         inside = (z <= self.top_z_m) & (z >= self.bottom_z_m)
         return inside, np.asarray((self.top_z_m - z) / (self.top_z_m - self.bottom_z_m))
+
+
+def growth_bands(falling: Iterable[tuple[float, float, float]]) -> tuple[GrowthBand, ...]:
+    """Return the bands between the rows of a table from the top: z [m], thickness [m], density [kg/m³]."""
+    return tuple(
+        GrowthBand(z, below, thickness, thickness_below, density, density_below)
+        for (z, thickness, density), (below, thickness_below, density_below) in pairwise(falling)
+    )
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
+from jackettwin.files.limits import ForceCoefficient
 from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.morison import distribution
 from jackettwin.loads.sea.current import Current
@@ -45,15 +46,14 @@ _ON_THE_BED_M = 0.011
 class EndCoefficients:
     """Axial coefficients of dynamic pressure, of the water's acceleration and of drag."""
 
-    pressure: float = 0.0
-    added_mass: float = 0.0
-    drag: float = 0.0
+    pressure: ForceCoefficient = 0.0
+    added_mass: ForceCoefficient = 0.0
+    drag: ForceCoefficient = 0.0
 
     def __post_init__(self) -> None:
         for field in ("pressure", "added_mass", "drag"):
             value = getattr(self, field)
-            if not (np.isfinite(value) and value >= 0.0):
-                raise InputError("out of range", field=field, value=value, allowed="≥ 0")
+            require(0.0 <= value < np.inf, "out of range", field=field, value=value, allowed="≥ 0")
 
     @property
     def any(self) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise, takewhile
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
 from jackettwin.errors import InputError
 from jackettwin.files.yaml import read_text
-from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable
+from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable, growth_bands
 from jackettwin.loads.members.ends import EndCoefficients
 from jackettwin.structure import Structure
 
@@ -181,10 +181,7 @@ def _growth(deck: Deck) -> tuple[GrowthBand, ...]:
     """Return the bands between the heights of the table, from the top."""
     columns = ("mgdpth", "mgthck", "mgdens")
     rows = [[number(row, key, deck.path) for key in columns] for row in deck.table("NMGDepths")]
-    return tuple(
-        GrowthBand(upper[0], lower[0], upper[1], lower[1], upper[2], lower[2])
-        for upper, lower in pairwise(sorted(rows, reverse=True))
-    )
+    return growth_bands(sorted(((z, thickness, density) for z, thickness, density in rows), reverse=True))
 
 
 def _ends(deck: Deck) -> EndCoefficients:

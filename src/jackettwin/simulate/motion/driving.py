@@ -26,7 +26,9 @@ from jackettwin.simulate.motion.wind import (
     tower_points,
     wind_field,
 )
-from jackettwin.simulate.scenario.scenario import Air, Scenario, Sea, SimulationClock, Turbine
+from jackettwin.simulate.scenario.air import Air, Turbine
+from jackettwin.simulate.scenario.scenario import Scenario, SimulationClock
+from jackettwin.simulate.scenario.sea import Sea
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,10 @@ from jackettwin.response.modes.own_damping import own_damping
 from jackettwin.response.reduction import Reduced, reduced
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group
-from jackettwin.simulate.scenario.scenario import Air, Asset, Scenario, Sea, Turbine
+from jackettwin.simulate.scenario.air import Air, Turbine
+from jackettwin.simulate.scenario.asset import Asset
+from jackettwin.simulate.scenario.scenario import Scenario
+from jackettwin.simulate.scenario.sea import Sea
 from jackettwin.simulate.scenario.tuning import tuned_damping
 from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.structure import Assembly, assemble

@@ -19,7 +19,7 @@ from jackettwin.loads.sea.regular_waves import regular_wave
 from jackettwin.loads.sea.sea_series import surface_series
 from jackettwin.loads.sea.wave_series import WaveSeries, wave_series
 from jackettwin.loads.sea.waves import AirySea, Waves, irregular_sea, wave_number
-from jackettwin.simulate.scenario.scenario import Sea
+from jackettwin.simulate.scenario.sea import Sea
 from jackettwin.structure import Assembly
 
 SPACING_M = 8.0

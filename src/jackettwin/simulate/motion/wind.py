@@ -15,7 +15,7 @@ from jackettwin.loads.aerodynamics.wind import tower_drag, tower_drag_damping
 from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.morison import MorisonPoints
 from jackettwin.simulate.motion.model import Aerodynamics
-from jackettwin.simulate.scenario.scenario import Air
+from jackettwin.simulate.scenario.air import Air
 from jackettwin.structure import Assembly
 
 _UP = np.array([0.0, 0.0, 1.0])

@@ -1,85 +1,140 @@
-"""The asset of a scenario file: structure, ground, damping."""
+"""The asset of a scenario: structure, ground, damping of the steel."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, Literal
 
-from jackettwin.decks import read_structure
-from jackettwin.errors import InputError, located
+from pydantic import Field
+
+from jackettwin.decks import RnaSchema, StructureChoice, read_structure
+from jackettwin.errors import InputError, located, require
+from jackettwin.files import Placed, Schema
 from jackettwin.response import build_system, undamped_modes
-from jackettwin.simulate.scenario.scenario import Asset
-from jackettwin.simulate.scenario.schema import ScenarioSchema
-from jackettwin.soil import read_support
-from jackettwin.soil.foundation import Foundation, FoundationSchema, SoilSchema, read_foundation
+from jackettwin.soil import CurveOptions, Foundation, Radiation, Scour, Support, read_foundation, read_support
+from jackettwin.soil.foundation import FoundationDampingSchema, FoundationSchema, PileSchema, SoilSchema
+from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.support import standing
-from jackettwin.structure import Rayleigh, Structure, assemble
+from jackettwin.structure import Rayleigh, RayleighSchema, Structure, assemble
 
 
-def build_asset(schema: ScenarioSchema, folder: Path) -> Asset:
-    """Return the asset; relative paths are relative to ``folder``.
+@dataclass(frozen=True)
+class Asset:
+    """The structure on its supports."""
 
-    Raises
-    ------
-    InputError
-        If a part is missing, given twice, or wrong.
+    structure: Structure
+    support: Support
+    beam: str | None = None
+    rotary_inertia: bool | None = None
+    subdivide: int | None = None
+    gravity: bool = False
+    rayleigh: Rayleigh = Rayleigh()
+    support_text: str | None = None
+    """The support as a short form, if it was given so: parameters that an update should find again."""
+    coupled_damping: float | None = None
+    """Damping ratio to which the tower is tuned: that of the first modes of the whole asset in still air."""
+    foundation: Foundation | None = None
+    """Piles whose ground unloads and reloads in time; None if it is the support's linear law."""
+
+
+class SteelDampingSchema(Schema):
+    """``damping``: of the steel, and the ratio to which the tower is tuned in the coupled first modes."""
+
+    rayleigh: RayleighSchema | None = None
+    coupled: Annotated[float, Field(gt=0.0, lt=0.2)] | None = None
+
+
+class GroundSchema(SoilSchema):
+    """``soil``: layers or linear ground, scour, which curves, and the ground's damping or law."""
+
+    scour: Placed[Scour] | None = None
+    curves: Placed[CurveOptions] = CurveOptions()
+    damping: FoundationDampingSchema | None = None
+    law: LawSchema | None = None
+    radiation: Placed[Radiation] | None = None
+    hysteresis: bool = False
+
+
+class AssetSchema(Schema):
+    """What a scenario file says of its asset.
+
+    The ground is ``soil`` with ``piles``, or ``foundation`` (a file or a shipped name), or ``support``.
     """
-    structure, foundation = _structure(schema, folder), _foundation(schema, folder)
-    loops = schema.soil is not None and schema.soil.hysteresis
-    if loops and foundation is not None:
-        with located(field="soil"):
-            foundation.cyclic()
-    if foundation is not None:
-        structure, support = foundation.lumped(structure)
-    else:
-        support = read_support(
-            schema.support, structure, first_frequency_hz=lambda: _first_frequency(structure), folder=folder
+
+    structure: str | StructureChoice
+    rna: RnaSchema | None = None
+    beam: Literal["euler-bernoulli", "timoshenko"] | None = None
+    rotary_inertia: bool | None = None
+    subdivide: Annotated[int, Field(ge=1, le=1000)] | None = None
+    gravity: bool = False
+    damping: SteelDampingSchema = SteelDampingSchema()
+    soil: GroundSchema | None = None
+    piles: PileSchema | None = None
+    foundation: str | None = None
+    support: str | None = None
+
+    def build(self, folder: Path) -> Asset:
+        """Return the asset; relative paths are relative to ``folder``.
+
+        Raises
+        ------
+        InputError
+            If a part is missing, given twice, or wrong.
+        """
+        structure, foundation = _structure(self, folder), _foundation(self, folder)
+        loops = self.soil is not None and self.soil.hysteresis
+        if foundation is None:
+            support = read_support(
+                self.support, structure, first_frequency_hz=lambda: _first_frequency(structure), folder=folder
+            )
+        else:
+            structure, support = foundation.lumped(structure)
+            if loops:
+                with located(field="soil"):
+                    foundation.cyclic()
+        steel = self.damping.rayleigh
+        return Asset(
+            structure=structure,
+            support=support,
+            beam=self.beam,
+            rotary_inertia=self.rotary_inertia,
+            subdivide=self.subdivide,
+            gravity=self.gravity,
+            rayleigh=Rayleigh() if steel is None else steel.build(),
+            support_text=self.support,
+            coupled_damping=self.damping.coupled,
+            foundation=foundation if loops else None,
         )
-    steel = schema.damping.rayleigh
-    return Asset(
-        structure=structure,
-        support=support,
-        beam=schema.beam,
-        rotary_inertia=schema.rotary_inertia,
-        subdivide=schema.subdivide,
-        gravity=schema.gravity,
-        rayleigh=Rayleigh() if steel is None else Rayleigh.minimum(steel.ratio, steel.frequency_hz),
-        support_text=schema.support,
-        coupled_damping=schema.damping.coupled,
-        foundation=foundation if loops else None,
-    )
 
 
-def _structure(schema: ScenarioSchema, folder: Path) -> Structure:
+def _structure(schema: AssetSchema, folder: Path) -> Structure:
     choice = schema.structure
     structure = read_structure(choice if isinstance(choice, str) else choice.source, folder=folder)
     rna = schema.rna or (None if isinstance(choice, str) else choice.rna)
     return structure if rna is None else rna.stand_on(structure, folder=folder)
 
 
-def _foundation(schema: ScenarioSchema, folder: Path) -> Foundation | None:
+def _foundation(schema: AssetSchema, folder: Path) -> Foundation | None:
     given = [key for key in ("soil", "foundation", "support") if getattr(schema, key) is not None]
-    if len(given) > 1:
-        raise InputError("the ground is given twice", field=", ".join(given), remedy="keep one of them")
+    twice = "the ground is given twice"
+    require(len(given) <= 1, twice, field=", ".join(given), remedy="keep one of them")
     if schema.foundation is not None:
         name = schema.foundation
         return read_foundation(folder / name if Path(name).suffix else name)
-    if (schema.soil is None) != (schema.piles is None):
-        raise InputError(
-            "soil and piles go together",
-            field="piles" if schema.piles is None else "soil",
-            remedy="give both, or foundation, or support",
-        )
+    require(
+        (schema.soil is None) == (schema.piles is None),
+        "soil and piles go together",
+        field="piles" if schema.piles is None else "soil",
+        remedy="give both, or foundation, or support",
+    )
     if schema.soil is None or schema.piles is None:
         return None
     ground = schema.soil
+    soil = SoilSchema(layers=ground.layers, linear=ground.linear)
+    options = ("scour", "curves", "damping", "law", "radiation")
     whole = FoundationSchema(
-        pile=schema.piles,
-        soil=SoilSchema(layers=ground.layers, linear=ground.linear),
-        scour=ground.scour,
-        curves=ground.curves,
-        damping=ground.damping,
-        law=ground.law,
-        radiation=ground.radiation,
+        pile=schema.piles, soil=soil, **{name: getattr(ground, name) for name in options}
     )
     try:
         return whole.build()

@@ -1,168 +1,67 @@
-"""What is simulated: the asset, the sea, the wind, the turbine's state, the clock and the sensors."""
+"""One simulation: the asset, the sea, the wind, the turbine's state, the clock and the sensors."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from math import log, pi, sqrt
 from pathlib import Path
+from typing import Annotated, Literal
 
-import numpy as np
+from pydantic import Field
 
-from jackettwin.arrays import FloatArray
-from jackettwin.loads import Wind
-from jackettwin.loads.aerodynamics.bem import Control
-from jackettwin.loads.aerodynamics.rotor import Rotor
-from jackettwin.loads.aerodynamics.rotor_wind import PIECE_M
-from jackettwin.loads.aerodynamics.turbulence import Coherent
-from jackettwin.loads.aerodynamics.wind import TOWER_DRAG
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.ends import EndCoefficients
-from jackettwin.loads.members.water import Water
-from jackettwin.loads.sea.current import Current
-from jackettwin.loads.sea.given_kinematics import Kinematics
-from jackettwin.loads.sea.given_waves import Elevation
-from jackettwin.response import Sensor
-from jackettwin.soil import Support
-from jackettwin.soil.foundation import Foundation
-from jackettwin.structure import Rayleigh, Structure
+from jackettwin.errors import InputError, require
+from jackettwin.files import one_of
+from jackettwin.files.limits import Height
+from jackettwin.response import Sensor, sensor_kinds
+from jackettwin.simulate.scenario.air import Air, Turbine
+from jackettwin.simulate.scenario.asset import Asset
+from jackettwin.simulate.scenario.sea import Sea
 
-
-@dataclass(frozen=True)
-class Asset:
-    """The structure on its supports."""
-
-    structure: Structure
-    support: Support
-    beam: str | None = None
-    rotary_inertia: bool | None = None
-    subdivide: int | None = None
-    gravity: bool = False
-    rayleigh: Rayleigh = Rayleigh()
-    support_text: str | None = None
-    """The support as a short form, if it was given so: parameters that an update should find again."""
-    coupled_damping: float | None = None
-    """Damping ratio to which the tower is tuned: that of the first modes of the whole asset in still air."""
-    foundation: Foundation | None = None
-    """Piles whose ground unloads and reloads in time; None if it is the support's linear law."""
-
-
-REGULAR = ("airy", "stokes5", "stream")
-"""Types of waves that are one wave."""
-_HIGHEST_WAVE = sqrt(0.5 * log(1000.0))
-"""Of a random sea over Hs: the most probable highest of a thousand Rayleigh waves, 1.86."""
-
-
-@dataclass(frozen=True)
-class Sea:
-    """Still water about the asset, its waves and current.
-
-    ``height_m`` and ``period_s`` are H and T of a regular wave, Hs and Tp of a random sea.
-    """
-
-    depth_m: float
-    coefficients: Coefficients
-    water: Water | None = None
-    """What moves with the structure, if its mass does not hold it already."""
-    waves: str | None = None
-    height_m: float = 0.0
-    period_s: float = 0.0
-    direction: float = 0.0
-    seed: int = 0
-    stretching: str = "none"
-    gamma: float | None = None
-    spreading: float | None = None
-    relative_velocity: str = "linearised"
-    """How drag knows the motion of the structure: ``none``, ``linearised`` or ``full``."""
-    diffraction: bool = False
-    current: Current | None = None
-    ends: EndCoefficients = EndCoefficients()
-    elevation: Elevation | None = None
-    """Of waves that are given, from the start of what is discarded."""
-    kinematics: Kinematics | None = None
-    """Of waves whose whole motion is given; ``elevation`` is its own."""
-    celerity_m_s: float | None = None
-    """At which given kinematics travel; None is that of their peak period."""
-
-    @property
-    def regular(self) -> bool:
-        """Whether the waves repeat after their own period."""
-        return self.waves in REGULAR
-
-    @property
-    def highest_wave_m(self) -> float:
-        """H of a regular wave, 1.86 Hs of a random sea, twice the highest crest of a given one [m]."""
-        if self.elevation is not None:
-            return 2.0 * float(self.elevation.eta_m.max())
-        return self.height_m if self.regular else _HIGHEST_WAVE * self.height_m
-
-    @property
-    def crest_m(self) -> float:
-        """Height over still water that no crest passes [m]: members below it are loaded."""
-        return 1.2 * max(self.height_m, 0.5 * self.highest_wave_m)
-
-
-GRID_M = 19.1
-"""Between the nodes of the wind field that the OpenFAST records were made in [m]."""
-_HEADINGS = 9
-"""Over which the rotor's mean stiffness is averaged."""
-
-
-@dataclass(frozen=True)
-class Air:
-    """Wind along +x; ``yaw`` is the nacelle's heading, anticlockwise from +x seen from above [rad]."""
-
-    wind: Wind
-    seed: int = 0
-    yaw: float = 0.0
-    """The mean heading of a path: at which the nacelle's mass stands."""
-    yaw_path: tuple[tuple[float, float], ...] = ()
-    """Time in the record [s], first to last, and heading [rad] of rotor and sensors; straight in between."""
-    tower_drag: float = TOWER_DRAG
-    coherent: Coherent = "all"
-    """Which components of turbulence are coherent across rotor and tower."""
-    piece_m: float = PIECE_M
-    """Longest piece of a standing blade or of the tower with a wind of its own."""
-    grid_m: float | None = None
-    """Width of a grid whose nodes standing blades take their wind from instead."""
-
-    def heading(self, t: FloatArray) -> FloatArray:
-        """Return the nacelle's heading [rad] at times ``t`` [s] in the record."""
-        if not self.yaw_path:
-            return np.full(t.shape, self.yaw)
-        at, yaw = np.transpose(self.yaw_path)
-        return np.asarray(np.interp(t, at, yaw), dtype=np.float64)
-
-    def headings(self) -> FloatArray:
-        """Return headings [rad] that stand for the record, each for as much of it."""
-        if not self.yaw_path:
-            return np.array([self.yaw])
-        first, last = self.yaw_path[0][0], self.yaw_path[-1][0]
-        return self.heading(first + (last - first) * (np.arange(_HEADINGS) + 0.5) / _HEADINGS)
-
-
-@dataclass(frozen=True)
-class Turbine:
-    """The rotor and what it does: parked (shaft locked), idling (shaft free) or operating."""
-
-    rotor: Rotor
-    control: Control
-    state: str = "parked"
-    pitch: float = 0.5 * pi
-    azimuth: float = 0.0
-    name: str = ""
-    assumed: bool = False
-    """Whether nobody chose the rotor."""
+_MOST_SAMPLES = 1e7
+_LONGEST_LOAD_STEP_S = 0.05
+_MOTION = ("acceleration", "velocity", "displacement")
+"""Quantities of sensors that see motion."""
+Part = Annotated[float, Field(ge=-1e3, le=1e3)]
+"""Of a direction; its length does not count."""
 
 
 @dataclass(frozen=True)
 class SimulationClock:
-    """Length of the record, what is thrown away before it, and both steps [s]."""
+    """``time`` of a scenario: length of the record, what is thrown away before it, and both steps [s].
 
-    duration_s: float = 600.0
-    step_s: float = 0.01
-    discard_s: float = 0.0
-    load_step_s: float = 0.05
-    """Loads are evaluated this often and run straight between; a multiple of ``step_s``."""
+    Loads are evaluated every ``load_step_s`` and run straight between: a multiple of ``step_s``, by default
+    the longest up to 0.05 s.
+    """
+
+    duration_s: Annotated[float, Field(gt=0.0, le=86400.0)] = 600.0
+    step_s: Annotated[float, Field(ge=1e-4, le=1.0)] = 0.01
+    discard_s: Annotated[float, Field(ge=0.0, le=86400.0)] = 0.0
+    load_step_s: Annotated[float, Field(gt=0.0, le=1.0)] = 0.0
+
+    def __post_init__(self) -> None:
+        h = self.step_s
+        load = self.load_step_s or max(h, h * int(_LONGEST_LOAD_STEP_S / h + 1e-9))
+        object.__setattr__(self, "load_step_s", load)
+        for field, unit in (("load_step_s", h), ("duration_s", load), ("discard_s", load)):
+            value = getattr(self, field)
+            require(
+                abs(value / unit - round(value / unit)) <= 1e-6 and (value >= unit or field == "discard_s"),
+                "must be a whole number of steps",
+                field=field,
+                value=value,
+                allowed=f"multiples of {unit:g} s",
+                remedy="change it, or step_s and load_step_s",
+            )
+        samples = self.total_s / h
+        require(
+            samples <= _MOST_SAMPLES,
+            "too many samples",
+            field="step_s",
+            value=h,
+            allowed=f"{_MOST_SAMPLES:.0e} steps: ≥ {h * samples / _MOST_SAMPLES:.3g} s for this duration",
+            remedy="take longer steps or a shorter record",
+        )
 
     @property
     def total_s(self) -> float:
@@ -170,29 +69,56 @@ class SimulationClock:
         return self.duration_s + self.discard_s
 
 
+def _quantities() -> tuple[str, ...]:
+    """Return what a simulated sensor can measure."""
+    return (*_MOTION, *(name for name in sensor_kinds() if name != "motion"))
+
+
 @dataclass(frozen=True)
 class Instrument:
-    """A sensor and its flaws.
+    """A sensor of the record and its flaws, in SI units of its quantity.
 
     Attributes
     ----------
-    sensor : Sensor
-        ``direction`` is in global axes, or in the nacelle's if ``on_nacelle``.
-    quantity : ``acceleration``, ``velocity``, ``displacement``, ``inclination`` or ``strain``
-    noise : standard deviation of white noise, in SI units of the quantity
+    direction : (3,) in global axes, or in the nacelle's if that is the ``frame``
+    quantity : a kind of motion, or a kind of sensor that sees something else
+    noise : standard deviation of white noise
     bias : constant error
     limit : readings are clipped at ± this
     dropouts_per_hour, dropout_s : how often readings are missing, and for how long on average
     """
 
-    sensor: Sensor
-    quantity: str = "acceleration"
-    on_nacelle: bool = False
-    noise: float = 0.0
-    bias: float = 0.0
-    limit: float | None = None
-    dropouts_per_hour: float = 0.0
-    dropout_s: float = 1.0
+    channel: Annotated[str, Field(min_length=1)]
+    direction: tuple[Part, Part, Part]
+    node: str | None = None
+    height_m: Height | None = None
+    member: str | None = None
+    position: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    quantity: Annotated[str, one_of(_quantities)] = "acceleration"
+    frame: Literal["global", "nacelle"] = "global"
+    noise: Annotated[float, Field(ge=0.0, le=1e3)] = 0.0
+    bias: Annotated[float, Field(ge=-1e6, le=1e6)] = 0.0
+    limit: Annotated[float, Field(gt=0.0, le=1e6)] | None = None
+    dropouts_per_hour: Annotated[float, Field(ge=0.0, le=36e3)] = 0.0
+    dropout_s: Annotated[float, Field(ge=1e-3, le=86400.0)] = 1.0
+
+    @property
+    def sensor(self) -> Sensor:
+        """Where it sits and what it sees."""
+        kind = "motion" if self.quantity in _MOTION else self.quantity
+        return Sensor(
+            self.channel, self.direction, self.node, self.height_m, self.member, self.position, kind
+        )
+
+    @property
+    def on_nacelle(self) -> bool:
+        """Whether it turns with the nacelle."""
+        return self.frame == "nacelle"
+
+    @property
+    def recorded_as(self) -> str:
+        """Quantity of its channel in the record."""
+        return self.quantity if self.quantity in _MOTION else sensor_kinds()[self.quantity].recorded_as
 
 
 @dataclass(frozen=True)
@@ -213,3 +139,32 @@ class Scenario:
     def heading_rad(self) -> float:
         """Mean heading of the nacelle, anticlockwise from x seen from above; zero in calm."""
         return 0.0 if self.air is None else self.air.yaw
+
+
+_KEYS = {
+    "Hs": "waves.hs_m",
+    "Tp": "waves.tp_s",
+    "height": "waves.height_m",
+    "period": "waves.period_s",
+    "theory": "waves.type",
+    "depth": "water.depth_m",
+    "flooded": "water.flooded",
+}
+"""What the sea calls its numbers, and a scenario does."""
+
+
+@contextmanager
+def in_words_of(scenario: Scenario) -> Iterator[None]:
+    """Fill file and key of every input error raised inside."""
+    try:
+        yield
+    except InputError as error:
+        field = _KEYS.get(error.field or "", error.field)
+        raise type(error)(
+            error.problem,
+            file=error.file or scenario.path,
+            field=field,
+            value=error.value,
+            allowed=error.allowed,
+            remedy=error.remedy,
+        ) from None

@@ -18,7 +18,8 @@ from pydantic import AwareDatetime, Field
 from jackettwin.errors import InputError, located
 from jackettwin.files import Schema, find_file, read_yaml, shipped, validate
 from jackettwin.files.limits import Angle
-from jackettwin.simulate.scenario.schema import Period, SignificantHeight, WindSpeed
+from jackettwin.simulate.scenario.air import WindSpeed
+from jackettwin.simulate.scenario.sea import Period, SignificantHeight
 from jackettwin.version import __version__
 
 Heading = Annotated[float, Field(ge=-180.0, le=180.0)]

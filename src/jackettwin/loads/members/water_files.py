@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from jackettwin.errors import InputError, located
-from jackettwin.files import Schema
+from jackettwin.errors import InputError, located, require
+from jackettwin.files import Placed, Schema
 from jackettwin.files.limits import ForceCoefficient, Height
 from jackettwin.loads.members.coefficients import (
     GROWTH_KG_M3,
@@ -18,6 +18,7 @@ from jackettwin.loads.members.coefficients import (
     GrowthBand,
     Strip,
     StripTable,
+    growth_bands,
     require_members,
 )
 from jackettwin.loads.members.ends import EndCoefficients
@@ -63,14 +64,6 @@ class TableSchema(Schema):
     at: list[HeightSchema] = Field(min_length=1)
 
 
-class EndsSchema(Schema):
-    """``water.ends``: axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
-
-    pressure: ForceCoefficient = 0.0
-    added_mass: ForceCoefficient = 0.0
-    drag: ForceCoefficient = 0.0
-
-
 class WaterSchema(Schema):
     """``water``: coefficients of all members and tables of others (C_M = C_p + C_a), growth, flooding."""
 
@@ -84,7 +77,8 @@ class WaterSchema(Schema):
     marine_growth: list[GrowthSchema] = []
     growth_density: Growth = GROWTH_KG_M3
     flooded: bool | list[str] = []
-    ends: EndsSchema = EndsSchema()
+    ends: Placed[EndCoefficients] = EndCoefficients()
+    """Axial coefficients at the ends of members (HydroDyn's AxCp, AxCa, AxCd)."""
     hydrodyn: str | None = None
     """A HydroDyn input file that says all of this, but depth, density and ``adds_mass``."""
     adds_mass: bool | None = None
@@ -111,16 +105,11 @@ def water_members(w: WaterSchema, structure: Structure, folder: Path) -> Members
         If members or parts are not the structure's, or a HydroDyn file is given beside its own content.
     """
     if w.hydrodyn is None:
-        ends = EndCoefficients(w.ends.pressure, w.ends.added_mass, w.ends.drag)
-        coefficients, flooded = _coefficients(w, structure), _flooded(w, structure)
+        coefficients, ends, flooded = _coefficients(w, structure), w.ends, _flooded(w, structure)
     else:
         twice = sorted(w.model_fields_set - {"hydrodyn", "depth_m", "density", "adds_mass"})
-        if twice:
-            raise InputError(
-                "given by the HydroDyn file already",
-                field=f"water.{twice[0]}",
-                remedy="leave one of them out",
-            )
+        field = f"water.{twice[0]}" if twice else None
+        require(not twice, "given by the HydroDyn file already", field=field, remedy="leave one of them out")
         with located(field="water.hydrodyn"):
             coefficients, ends, flooded = read_hydrodyn(
                 folder / w.hydrodyn, structure, density_kg_m3=w.density
@@ -151,11 +140,8 @@ def _flooded(w: WaterSchema, structure: Structure) -> tuple[str, ...]:
 
 
 def _strip(given: StripSchema | None, default: Strip) -> Strip:
-    def one(name: str) -> float:
-        value = None if given is None else getattr(given, name)
-        return getattr(default, name) if value is None else float(value)
-
-    return Strip(one("drag"), one("added_mass"), one("pressure"))
+    said = {} if given is None else given.model_dump(include={"drag", "added_mass", "pressure"})
+    return replace(default, **{name: value for name, value in said.items() if value is not None})
 
 
 def _table(table: TableSchema, bare: Strip, grown: Strip) -> StripTable:
@@ -167,30 +153,18 @@ def _table(table: TableSchema, bare: Strip, grown: Strip) -> StripTable:
 
 def _growth(w: WaterSchema) -> tuple[GrowthBand, ...]:
     """Return bands, from bands or from a table of heights."""
-    tabulated = [g for g in w.marine_growth if g.z_m is not None]
-    if not tabulated:
-        return tuple(_band(g, g.density or w.growth_density) for g in w.marine_growth)
-    if len(tabulated) < max(len(w.marine_growth), 2) or any(
-        g.top_z_m is not None or g.bottom_z_m is not None for g in tabulated
-    ):
-        raise InputError(
-            "a table of growth needs z_m at every height, two at least",
-            field="z_m",
-            value=[g.z_m for g in w.marine_growth],
-            remedy="give z_m and thickness_m everywhere, or top_z_m, bottom_z_m and thickness_m",
-        )
-    falling = sorted(tabulated, key=lambda g: -(g.z_m or 0.0))
-    return tuple(
-        GrowthBand(
-            upper.z_m or 0.0,
-            lower.z_m or 0.0,
-            upper.thickness_m,
-            lower.thickness_m,
-            upper.density or w.growth_density,
-            lower.density or w.growth_density,
-        )
-        for upper, lower in pairwise(falling)
+    rows = w.marine_growth
+    if all(g.z_m is None for g in rows):
+        return tuple(_band(g, g.density or w.growth_density) for g in rows)
+    require(
+        len(rows) >= 2 and all(g.z_m is not None and g.top_z_m is g.bottom_z_m is None for g in rows),
+        "a table of growth needs z_m at every height, two at least",
+        field="z_m",
+        value=[g.z_m for g in rows if g.z_m is not None],
+        remedy="give z_m and thickness_m everywhere, or top_z_m, bottom_z_m and thickness_m",
     )
+    table = ((g.z_m or 0.0, g.thickness_m, g.density or w.growth_density) for g in rows)
+    return growth_bands(sorted(table, reverse=True))
 
 
 def _band(g: GrowthSchema, density: float) -> GrowthBand:
@@ -207,20 +181,20 @@ def depth_of(w: WaterSchema, structure: Structure) -> float:
     """Return the depth [m] as stated; else down to the lowest foot."""
     feet = structure.reaction_nodes or tuple(structure.nodes)
     reach = structure.sea_level_z_m - min(structure.nodes[node][2] for node in feet)
-    if w.depth_m is not None and w.depth_m <= reach + _GAP_M:
-        return w.depth_m
     if w.depth_m is not None:
-        raise InputError(
+        require(
+            w.depth_m <= reach + _GAP_M,
             "the structure does not reach the bed",
             field="water.depth_m",
             value=w.depth_m,
             allowed=f"up to {reach + _GAP_M:g} m; its feet stand {reach:g} m below still water",
             remedy="state the depth of this structure or its sea_level_z_m, or leave the depth out",
         )
-    if not reach > 0.0:
-        raise InputError(
-            "water depth is not known",
-            field="water.depth_m",
-            remedy="state it, or sea_level_z_m in the structure's file",
-        )
+        return w.depth_m
+    require(
+        reach > 0.0,
+        "water depth is not known",
+        field="water.depth_m",
+        remedy="state it, or sea_level_z_m in the structure's file",
+    )
     return reach
