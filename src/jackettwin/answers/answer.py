@@ -22,10 +22,7 @@ from jackettwin.intervals import NORMAL_90, interval_90
 from jackettwin.soil import Parameter, families, law_parameter
 from jackettwin.study import TwinResult
 from jackettwin.study.result import MeasuredMode
-from jackettwin.updating import Update, law_probability
-from jackettwin.updating.budget import SOURCES
-from jackettwin.updating.law_choice import approximate_probability, recommended
-from jackettwin.updating.posterior.identifiability import USABLE
+from jackettwin.updating import SOURCES, USABLE, Update, approximate_probability, law_probability, recommended
 
 PRECISION = 0.2
 """A damping ratio known to ± so much (90 %) tells a design with half a per cent more from one without."""

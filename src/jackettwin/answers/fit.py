@@ -11,8 +11,7 @@ from scipy.optimize import brentq
 
 from jackettwin.answers.result import FitAnswer, ModeAnswer
 from jackettwin.study.result import MeasuredMode
-from jackettwin.updating import Residuals, Target, Update
-from jackettwin.updating.data.misfit import misfit
+from jackettwin.updating import Residuals, Target, Update, misfit
 
 _LARGEST = 1.0
 """Relative error up to which one that covers the misfit is sought: beyond it the model says nothing."""

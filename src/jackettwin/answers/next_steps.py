@@ -16,10 +16,7 @@ from jackettwin.answers.result import NextStep
 from jackettwin.arrays import FloatArray
 from jackettwin.intervals import NORMAL_90
 from jackettwin.study.result import MeasuredMode
-from jackettwin.updating import Problem, Residuals, Target, Update
-from jackettwin.updating.nuisance_parameters import DASHPOTS
-from jackettwin.updating.posterior.identifiability import USABLE, information
-from jackettwin.updating.problem import State
+from jackettwin.updating import DASHPOTS, USABLE, Problem, Residuals, State, Target, Update, information
 
 _POINTS = 6
 """Draws of the posterior at which the information is computed: their mean is of interest, not their tails."""

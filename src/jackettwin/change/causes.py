@@ -18,12 +18,17 @@ from scipy.optimize import least_squares
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
 from jackettwin.errors import InputError
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.water import Water, mass_per_level
-from jackettwin.response import UndampedModes, build_system, undamped_modes
-from jackettwin.response.modes.labels import LOCAL, mode_kinds, mode_labels
-from jackettwin.response.modes.tracking import track_modes
-from jackettwin.response.motion.tide import tide_slopes
+from jackettwin.loads import Coefficients, Water, mass_per_level
+from jackettwin.response import (
+    LOCAL,
+    UndampedModes,
+    build_system,
+    mode_kinds,
+    mode_labels,
+    tide_slopes,
+    track_modes,
+    undamped_modes,
+)
 from jackettwin.soil import Spring, Support
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.twin.pair_angles import principal_direction

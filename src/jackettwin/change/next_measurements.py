@@ -15,7 +15,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.change.causes import MODES, SeenCauses
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
-from jackettwin.response.modes.labels import LOCAL
+from jackettwin.response import LOCAL
 from jackettwin.watching import Cause, CauseVerdict, Diagnosis, History, Watch, expected_information
 from jackettwin.watching.explained import unexplained_std
 from jackettwin.watching.history import typical

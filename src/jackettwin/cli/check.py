@@ -17,13 +17,15 @@ from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print
 from jackettwin.cli.modes import support_option
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.loads import morison_points
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.water import Water, outside_pressure, still_water as still_water_loads
-from jackettwin.response import build_system
-from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
-from jackettwin.simulate import read_scenario
-from jackettwin.simulate.members import scenario_uses, water_notes
+from jackettwin.loads import (
+    Coefficients,
+    Water,
+    morison_points,
+    outside_pressure,
+    still_water as still_water_loads,
+)
+from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
+from jackettwin.simulate import read_scenario, scenario_uses, water_notes
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.check import few
 from jackettwin.structure.forces import element_weight

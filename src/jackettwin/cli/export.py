@@ -10,7 +10,7 @@ from jackettwin.cli.console import messages, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.decks import read_structure, write_subdyn
 from jackettwin.errors import InputError
-from jackettwin.response.superelement.reduction import dissipates
+from jackettwin.response import dissipates
 from jackettwin.soil import Support, with_static_reactions
 from jackettwin.structure import Structure, assemble
 from jackettwin.structure.cut import at_interface

@@ -14,10 +14,17 @@ from rich.table import Table
 from jackettwin.cli.console import fixed, numbers_of, output, print_json
 from jackettwin.decks import read_flexible_rotor, read_structure
 from jackettwin.errors import located
-from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
-from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.modes.own_damping import own_damping
-from jackettwin.response.modes.tracking import track_modes
+from jackettwin.response import (
+    DampedModes,
+    System,
+    build_system,
+    damped_modes,
+    mode_kinds,
+    mode_labels,
+    own_damping,
+    track_modes,
+    undamped_modes,
+)
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
 from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check

@@ -11,7 +11,7 @@ from rich.table import Table
 from jackettwin.cli.console import output, print_json
 from jackettwin.errors import located
 from jackettwin.study.refinement import read_refinement, refinement_document
-from jackettwin.updating.steel.refinement import refine
+from jackettwin.updating import refine
 
 
 @click.command("refine")

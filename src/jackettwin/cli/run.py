@@ -16,8 +16,7 @@ from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, check_room, write_json
 from jackettwin.report import build_report
-from jackettwin.simulate.batch import pending_cases, record_path, run_set
-from jackettwin.simulate.scenario.sets import read_set
+from jackettwin.simulate import pending_cases, read_set, record_path, run_set
 from jackettwin.study import count_steps, run_document, run_twin
 from jackettwin.study.modes_in_time import MODES_IN_TIME, rows_of_records, write_modes_in_time
 from jackettwin.study.truth import true_parameters

@@ -10,10 +10,9 @@ from rich.table import Table
 from jackettwin.cli.console import output, print_json, working
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
-from jackettwin.simulate import Simulation, read_scenario, simulate
-from jackettwin.simulate.scenario.air import rotor_notes
+from jackettwin.simulate import Simulation, read_scenario, rotor_notes, simulate
 from jackettwin.structure import assemble, check
-from jackettwin.updating.budget import beyond_literature
+from jackettwin.updating import beyond_literature
 
 DEFAULT_SCENARIO = "parked"
 

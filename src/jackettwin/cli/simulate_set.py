@@ -7,8 +7,7 @@ from pathlib import Path
 import click
 
 from jackettwin.cli.console import output, print_json, progress
-from jackettwin.simulate.batch import pending_cases, run_set
-from jackettwin.simulate.scenario.sets import read_set
+from jackettwin.simulate import pending_cases, read_set, run_set
 
 
 @click.command("simulate-set")

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from jackettwin.cli.console import number as show, output, print_json
 from jackettwin.decks import read_structure
-from jackettwin.updating.steel.stages import Stage, stages
+from jackettwin.updating import Stage, stages
 from jackettwin.verify import published
 
 Reference = dict[str, tuple[float, ...]]

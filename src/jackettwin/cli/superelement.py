@@ -14,29 +14,27 @@ from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, pr
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.decks import DeckDamping, read_deck_damping, read_structure
 from jackettwin.errors import InputError
-from jackettwin.response import build_system
-from jackettwin.response.superelement.error import (
+from jackettwin.response import (
+    DEFAULT,
+    INTERFACE,
+    LAYOUTS,
+    RUNGE_KUTTA,
+    Layout,
     ReducedModes,
+    Superelement,
+    build_system,
     damping_ratio,
     default_band_hz,
+    fixed_interface_frequencies,
     hertz,
-    reduced_modes,
-)
-from jackettwin.response.superelement.extptfm_layouts import DEFAULT, LAYOUTS, Layout
-from jackettwin.response.superelement.files import (
     is_superelement,
     read_superelement,
+    reduced_modes,
     require_format,
-    write_superelement,
-)
-from jackettwin.response.superelement.reduction import (
-    INTERFACE,
-    RUNGE_KUTTA,
-    Superelement,
-    fixed_interface_frequencies,
     slowed,
     superelement,
     with_deck_damping,
+    write_superelement,
 )
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.structure.cut import at_interface

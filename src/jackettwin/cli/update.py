@@ -12,8 +12,7 @@ from jackettwin.soil import family
 from jackettwin.study import DampingExcess, TwinResult, count_steps, run_twin, update_document
 from jackettwin.study.result import MeasuredMode
 from jackettwin.twin import read_twin
-from jackettwin.updating import Update
-from jackettwin.updating.posterior.scatter import leg_scatter
+from jackettwin.updating import Update, leg_scatter
 
 DEFAULT_TWIN = "openfast_pile"
 

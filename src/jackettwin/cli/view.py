@@ -16,7 +16,7 @@ from jackettwin.cli.console import PageFile, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.decks import is_sacs, read_structure, sacs_remarks
 from jackettwin.errors import InputError, located
-from jackettwin.loads.members.coefficients import Coefficients, GrowthBand
+from jackettwin.loads import Coefficients, GrowthBand
 from jackettwin.records import read_record
 from jackettwin.report.view.motions import (
     DrawnMotion,
@@ -26,11 +26,22 @@ from jackettwin.report.view.motions import (
     wave_motion,
 )
 from jackettwin.report.view.page import ColouredQuantity, View, thickness_quantities, write_view
-from jackettwin.response import Sensor, System, UndampedModes, build_system, damped_modes, undamped_modes
-from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.motion.passage import wave_passage
-from jackettwin.response.motion.playback import playback, record_sensors
-from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
+from jackettwin.response import (
+    Sensor,
+    System,
+    UndampedModes,
+    build_system,
+    damped_modes,
+    mode_kinds,
+    mode_labels,
+    nodal_load,
+    playback,
+    record_sensors,
+    self_weight,
+    static_displacement,
+    undamped_modes,
+    wave_passage,
+)
 from jackettwin.structure import Assembly, assemble, check
 from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
 

@@ -1,9 +1,77 @@
+from .condensation.condensed import (
+    Condensed as Condensed,
+    condense as condense,
+    strongest_beta as strongest_beta,
+    widest_band_hz as widest_band_hz,
+)
+from .condensation.mode_numbers import (
+    NumberedModes as NumberedModes,
+    Points as Points,
+    numbered_poles as numbered_poles,
+)
+from .condensation.relaxation import Relaxation as Relaxation, nearest_relaxation as nearest_relaxation
+from .modes.labels import LOCAL as LOCAL, mode_kinds as mode_kinds, mode_labels as mode_labels
 from .modes.modal import (
     DampedModes as DampedModes,
     UndampedModes as UndampedModes,
     damped_modes as damped_modes,
     undamped_modes as undamped_modes,
 )
-from .motion.time import free_decay as free_decay
-from .sensors import Sensor as Sensor, observation_matrix as observation_matrix, sensor_kinds as sensor_kinds
-from .system import System as System, build_system as build_system
+from .modes.multiple import aligned as aligned, aligned_coordinates as aligned_coordinates
+from .modes.names import read_mode_label as read_mode_label
+from .modes.own_damping import own_damping as own_damping
+from .modes.tracking import near_degenerate as near_degenerate, track_modes as track_modes
+from .motion.passage import Passage as Passage, wave_passage as wave_passage
+from .motion.playback import Playback as Playback, playback as playback, record_sensors as record_sensors
+from .motion.static import (
+    nodal_load as nodal_load,
+    self_weight as self_weight,
+    static_displacement as static_displacement,
+)
+from .motion.tide import tide_slopes as tide_slopes
+from .motion.time import (
+    Feedback as Feedback,
+    Hold as Hold,
+    StateSpace as StateSpace,
+    first_order_hold as first_order_hold,
+    free_decay as free_decay,
+    march as march,
+    march_with_feedback as march_with_feedback,
+    periodic_start as periodic_start,
+    state_space as state_space,
+)
+from .reduction import Reduced as Reduced, reduced as reduced
+from .sdof import poles as poles, sdof as sdof
+from .sensors import (
+    Sensor as Sensor,
+    observation_matrix as observation_matrix,
+    sees as sees,
+    sensor_kinds as sensor_kinds,
+    sensor_positions as sensor_positions,
+)
+from .state import state_matrix as state_matrix
+from .superelement.error import (
+    ReducedModes as ReducedModes,
+    damping_ratio as damping_ratio,
+    default_band_hz as default_band_hz,
+    hertz as hertz,
+    reduced_modes as reduced_modes,
+)
+from .superelement.extptfm_layouts import DEFAULT as DEFAULT, LAYOUTS as LAYOUTS, Layout as Layout
+from .superelement.files import (
+    is_superelement as is_superelement,
+    read_superelement as read_superelement,
+    require_format as require_format,
+    write_superelement as write_superelement,
+)
+from .superelement.reduction import (
+    INTERFACE as INTERFACE,
+    RUNGE_KUTTA as RUNGE_KUTTA,
+    Superelement as Superelement,
+    dissipates as dissipates,
+    fixed_interface_frequencies as fixed_interface_frequencies,
+    slowed as slowed,
+    superelement as superelement,
+    with_deck_damping as with_deck_damping,
+)
+from .system import Group as Group, Matrix as Matrix, System as System, build_system as build_system

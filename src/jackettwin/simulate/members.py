@@ -10,11 +10,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.checks.member_check import DesignBasis, FrameUse, frame_use
-from jackettwin.loads.members.morison import loads_along
-from jackettwin.loads.members.water import outside_pressure, still_water
-from jackettwin.loads.sea.waves import wave_number
-from jackettwin.response import build_system
-from jackettwin.response.motion.static import self_weight, static_displacement
+from jackettwin.loads import loads_along, outside_pressure, still_water, wave_number
+from jackettwin.response import build_system, self_weight, static_displacement
 from jackettwin.simulate.motion.motion import Motion, simulate_motion
 from jackettwin.simulate.motion.water import water_loads, water_points
 from jackettwin.simulate.scenario.scenario import Scenario

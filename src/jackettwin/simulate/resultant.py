@@ -9,9 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
-from jackettwin.loads import morison_points
-from jackettwin.loads.members.water import Water, water_weights
-from jackettwin.loads.sea.wave_series import resultant_columns
+from jackettwin.loads import Water, morison_points, resultant_columns, water_weights
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.water import water_ends, water_loads, water_points, wave_field
 from jackettwin.simulate.motion.wind import rotor_loads_in, tower_loads, tower_points, wind_field

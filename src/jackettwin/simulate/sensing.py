@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response import observation_matrix
-from jackettwin.response.motion.time import StateSpace, first_order_hold
+from jackettwin.response import StateSpace, first_order_hold, observation_matrix
 from jackettwin.simulate.motion.motion import Motion
 from jackettwin.simulate.scenario.scenario import Instrument, Scenario
 

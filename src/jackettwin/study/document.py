@@ -12,10 +12,7 @@ from jackettwin.study.mode_matches import held_document
 from jackettwin.study.result import MeasuredMode, MeasuredRelaxation, TwinResult
 from jackettwin.study.truth import truth_document
 from jackettwin.twin import Observation
-from jackettwin.updating import Update, law_probability
-from jackettwin.updating.budget import SOURCES, beyond_literature
-from jackettwin.updating.posterior.scatter import leg_scatter
-from jackettwin.updating.update import Uncertainty
+from jackettwin.updating import SOURCES, Uncertainty, Update, beyond_literature, law_probability, leg_scatter
 from jackettwin.version import __version__
 
 

@@ -8,8 +8,7 @@ from jackettwin.progress import SILENT, Progress
 from jackettwin.twin.cache import NOT_KEPT, Keep, kept
 from jackettwin.twin.codec import StoredSchema, digest
 from jackettwin.twin.config import UpdateSettings
-from jackettwin.updating import Problem, Update, update
-from jackettwin.updating.update import Fit, with_posterior
+from jackettwin.updating import Fit, Problem, Update, update, with_posterior
 from jackettwin.version import __version__
 
 FIT = StoredSchema("fit", Fit)

@@ -28,12 +28,16 @@ from jackettwin.twin.cache import NOT_KEPT, Keep
 from jackettwin.twin.codec import digest
 from jackettwin.twin.observe_files import observe_files, sorted_out, undated
 from jackettwin.twin.state import ALL, UNDATED, ConditionSums
-from jackettwin.updating import Problem, SupportModel
-from jackettwin.updating.drift import Drift, find_drift
-from jackettwin.updating.joint import Growth
-from jackettwin.updating.posterior.laplace import laplace_draws
-from jackettwin.updating.search.solutions import search
-from jackettwin.updating.update import posterior_or_status
+from jackettwin.updating import (
+    Drift,
+    Growth,
+    Problem,
+    SupportModel,
+    find_drift,
+    laplace_draws,
+    posterior_or_status,
+    search,
+)
 
 Each = Literal["day", "record"]
 

@@ -12,7 +12,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.soil import parameter_words
 from jackettwin.twin import TwinState
 from jackettwin.twin.codec import StoredSchema
-from jackettwin.updating.drift import Drift
+from jackettwin.updating import Drift
 
 FEWEST_DAYS = 3
 """Days with data before a drift is looked for."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.data.pairing import LEAST_MAC, Held
+from jackettwin.updating import LEAST_MAC, Held
 
 
 def unpaired_finding(mode: ModalEstimate, held: Held, labels: tuple[str, ...]) -> Finding | None:

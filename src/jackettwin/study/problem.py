@@ -16,11 +16,18 @@ from jackettwin.study.rotor import RotorDamping, States
 from jackettwin.twin import TwinConfig, TwinState
 from jackettwin.twin.state import ALL
 from jackettwin.twin.water import in_the_records_sea, water_effects
-from jackettwin.updating import Problem, Residuals, SupportModel, joint, support_model
-from jackettwin.updating.data.relaxations import RelaxationTarget
-from jackettwin.updating.data.shapes import ShapeTarget
-from jackettwin.updating.joint import Growth
-from jackettwin.updating.nuisance_parameters import NuisanceParameters, matrix_of
+from jackettwin.updating import (
+    Growth,
+    NuisanceParameters,
+    Problem,
+    RelaxationTarget,
+    Residuals,
+    ShapeTarget,
+    SupportModel,
+    joint,
+    matrix_of,
+    support_model,
+)
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from jackettwin.errors import located
 from jackettwin.files import Schema, read_yaml, validate
 from jackettwin.structure import Structure
 from jackettwin.twin.schema import StructureOrName
-from jackettwin.updating.steel.refinement import Refinement, RefinementStage
-from jackettwin.updating.steel.update import Factor
+from jackettwin.updating import Factor, Refinement, RefinementStage
 
 WORSE = 1e-3
 """Relative misfit by which a mode must be met worse than before to be named: least squares trade less."""

@@ -18,8 +18,7 @@ from jackettwin.twin import TwinConfig, TwinState
 from jackettwin.twin.config import GivenRelaxation
 from jackettwin.twin.exact_sums import UNIT, plus
 from jackettwin.twin.state import ALL, ClearShape, OperationTotal, RateSums
-from jackettwin.updating import SupportModel
-from jackettwin.updating.data.relaxations import RelaxationTarget
+from jackettwin.updating import RelaxationTarget, SupportModel
 
 _LEAST_SHARE = 0.5
 """A relaxation that fewer of the records show is left out."""

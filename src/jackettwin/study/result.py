@@ -10,8 +10,7 @@ from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin import Examination, Observation
-from jackettwin.updating import Update
-from jackettwin.updating.data.pairing import Held
+from jackettwin.updating import Held, Update
 
 
 @dataclass(frozen=True)

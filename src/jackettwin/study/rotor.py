@@ -9,16 +9,14 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import located
-from jackettwin.loads import linearise, read_rotor
-from jackettwin.loads.aerodynamics.rotor import Rotor
+from jackettwin.loads import Rotor, linearise, read_rotor
 from jackettwin.response import UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.study.measure import mean_target
 from jackettwin.study.result import MeasuredMode
 from jackettwin.twin import TwinConfig, TwinState
 from jackettwin.twin.state import ALL, OperationTotal
-from jackettwin.updating import Residuals, Target
-from jackettwin.updating.nuisance_parameters import DASHPOTS
+from jackettwin.updating import DASHPOTS, Residuals, Target
 
 _LOG_STD = {"c_fore_aft": 0.8, "c_side_side": 0.4}
 """How far it may be off: blades bend, air lags, turbulence takes 11–18 %; drag is small."""

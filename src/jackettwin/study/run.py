@@ -21,8 +21,7 @@ from jackettwin.study.result import DampingExcess, MeasuredMode, TwinResult
 from jackettwin.study.rotor import mean_wind, operating_states, rotor_damping, rotor_speed_hz
 from jackettwin.twin import TwinConfig, TwinModel, TwinState, twin_model
 from jackettwin.twin.cache import NOT_KEPT, Keep
-from jackettwin.updating import Update
-from jackettwin.updating.law_choice import likely
+from jackettwin.updating import Update, likely
 
 Posteriors = Literal["all", "likely"]
 log = logging.getLogger(__name__)

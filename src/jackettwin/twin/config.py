@@ -21,8 +21,7 @@ from jackettwin.structure import Rayleigh, Structure
 from jackettwin.twin.calibration import Calibrations
 from jackettwin.twin.operation import OperationRule
 from jackettwin.twin.water import WaterConfig
-from jackettwin.updating import Target
-from jackettwin.updating.search.solutions import MOST_EVALUATIONS
+from jackettwin.updating import MOST_EVALUATIONS, Target
 
 Positive = Annotated[float, Field(gt=0.0)]
 Ratio = Annotated[float, Field(ge=0.0, lt=1.0)]

@@ -16,8 +16,7 @@ from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick, parse_picks, refuse_strangers
 from jackettwin.loads import SeaState, WaterSchema, depth_of, water_members
 from jackettwin.records.readers import formats
-from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.modes.names import read_mode_label
+from jackettwin.response import mode_kinds, mode_labels, read_mode_label
 from jackettwin.soil import DEFAULT_LAWS, Parameter, family
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.assembly import assembled
@@ -32,9 +31,15 @@ from jackettwin.twin.mode_assignment import assigned_modes
 from jackettwin.twin.schema import SupportSchema, TwinSchema
 from jackettwin.twin.targets_table import read_targets_table
 from jackettwin.twin.water import WaterConfig
-from jackettwin.updating import Target, numbered_modes
-from jackettwin.updating.nuisance_parameters import DASHPOTS, NuisanceParameters, matrix_of
-from jackettwin.updating.tie_groups import SIDES, SPLIT_LEGS
+from jackettwin.updating import (
+    DASHPOTS,
+    SIDES,
+    SPLIT_LEGS,
+    NuisanceParameters,
+    Target,
+    matrix_of,
+    numbered_modes,
+)
 
 _STRUCTURE_KEYS = {"jacket", "members"}
 """Either is in every structure file and in no twin."""

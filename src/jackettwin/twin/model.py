@@ -11,9 +11,7 @@ from jackettwin.errors import located
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record
-from jackettwin.response import Sensor, UndampedModes, observation_matrix
-from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.sensors import sees
+from jackettwin.response import Sensor, UndampedModes, mode_kinds, mode_labels, observation_matrix, sees
 from jackettwin.structure import Assembly
 from jackettwin.twin.assembly import assembled
 from jackettwin.twin.calibration import Calibrations, sensors_at
@@ -21,9 +19,7 @@ from jackettwin.twin.codec import digest
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.operation import OperationRule
-from jackettwin.updating import numbered_modes
-from jackettwin.updating.data.mode_candidates import Feet, softer_feet
-from jackettwin.updating.data.pairing import pairing_score
+from jackettwin.updating import Feet, numbered_modes, pairing_score, softer_feet
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
 from jackettwin.twin.codec import StoredSchema
-from jackettwin.updating.data.pairing import Held
+from jackettwin.updating import Held
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ from jackettwin.twin.operation import UNKNOWN
 from jackettwin.twin.record_checks import unlike_model
 from jackettwin.twin.sea_forced import sea_share
 from jackettwin.twin.sensor_polarity import sensor_polarity
-from jackettwin.updating.data.mode_candidates import Feet
-from jackettwin.updating.data.pairing import Held, held_against, pair
+from jackettwin.updating import Feet, Held, held_against, pair
 from jackettwin.version import __version__
 
 TRUTH = ("true_modes", "true_support")

@@ -18,7 +18,7 @@ from jackettwin.records.quality.repetition import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
 
 if TYPE_CHECKING:
-    from jackettwin.updating.data.pairing import Held
+    from jackettwin.updating import Held
 
 Findings = tuple[Finding, ...]
 

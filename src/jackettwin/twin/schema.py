@@ -17,8 +17,7 @@ from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.zones import read_zone
-from jackettwin.response import Sensor
-from jackettwin.response.sensors import sensor_kinds
+from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.calibration import Calibration, Calibrations
 from jackettwin.twin.config import GivenRelaxation, Positive, UpdateSettings, WatchSettings

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import ModalEstimate
 from jackettwin.structure import Assembly
-from jackettwin.updating.data.mode_candidates import Feet
+from jackettwin.updating import Feet
 
 LOSS = 0.02
 """Loss factor η of every mode: it only keeps a force at a mode's own frequency finite."""

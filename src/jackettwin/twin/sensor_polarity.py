@@ -12,7 +12,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.data.pairing import subspace_mac_nearby
+from jackettwin.updating import subspace_mac_nearby
 
 LEAST_GAIN = 0.15
 """Rise of the subspace MAC, summed over the modes, below which nothing is said."""

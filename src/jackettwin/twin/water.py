@@ -8,11 +8,15 @@ from dataclasses import dataclass, replace
 import scipy.sparse as sp
 
 from jackettwin.errors import InputError
-from jackettwin.loads import SeaState, morison_points
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.drag_damping import sea_drag_damping
-from jackettwin.loads.members.morison import MorisonPoints
-from jackettwin.loads.members.water import Water, water_mass
+from jackettwin.loads import (
+    Coefficients,
+    MorisonPoints,
+    SeaState,
+    Water,
+    morison_points,
+    sea_drag_damping,
+    water_mass,
+)
 from jackettwin.structure import Assembly
 
 _SPACING_M = 4.0

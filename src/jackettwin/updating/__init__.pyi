@@ -1,8 +1,48 @@
+from .budget import SOURCES as SOURCES, beyond_literature as beyond_literature
 from .build import support_model as support_model
+from .data.misfit import misfit as misfit
+from .data.mode_candidates import Feet as Feet, softer_feet as softer_feet
+from .data.pairing import (
+    LEAST_MAC as LEAST_MAC,
+    Held as Held,
+    held_against as held_against,
+    pair as pair,
+    pairing_score as pairing_score,
+    subspace_mac_nearby as subspace_mac_nearby,
+)
+from .data.relaxations import RelaxationTarget as RelaxationTarget
+from .data.shapes import ShapeTarget as ShapeTarget
 from .data.targets import Residuals as Residuals, Target as Target
-from .joint import joint as joint, single as single
+from .drift import Drift as Drift, find_drift as find_drift
+from .joint import Growth as Growth, joint as joint, single as single
+from .law_choice import (
+    approximate_probability as approximate_probability,
+    likely as likely,
+    recommended as recommended,
+)
 from .model import SupportModel as SupportModel
+from .nuisance_parameters import (
+    DASHPOTS as DASHPOTS,
+    NuisanceParameters as NuisanceParameters,
+    matrix_of as matrix_of,
+)
+from .posterior.identifiability import USABLE as USABLE, information as information
+from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.sampling import Posterior as Posterior
-from .problem import Problem as Problem
+from .posterior.scatter import leg_scatter as leg_scatter
+from .problem import Problem as Problem, State as State
+from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS, search as search
 from .steel.band import numbered_modes as numbered_modes
-from .update import Update as Update, law_probability as law_probability, update as update
+from .steel.refinement import Refinement as Refinement, RefinementStage as RefinementStage, refine as refine
+from .steel.stages import Stage as Stage, stages as stages
+from .steel.update import Factor as Factor, only_parts as only_parts
+from .tie_groups import SIDES as SIDES, SPLIT_LEGS as SPLIT_LEGS
+from .update import (
+    Fit as Fit,
+    Uncertainty as Uncertainty,
+    Update as Update,
+    law_probability as law_probability,
+    posterior_or_status as posterior_or_status,
+    update as update,
+    with_posterior as with_posterior,
+)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.condensation.mode_numbers import NumberedModes, Points
+from jackettwin.response import NumberedModes, Points
 from jackettwin.soil.laws.coefficients import law_stiffness
 from jackettwin.updating.model import SupportModel
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import pi, sqrt
 
 from jackettwin.errors import InputError
-from jackettwin.response.condensation.condensed import strongest_beta
+from jackettwin.response import strongest_beta
 from jackettwin.soil import Family, Parameter, Support
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.model import SupportModel

@@ -11,10 +11,18 @@ import numpy.typing as npt
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.errors import InputError
-from jackettwin.response import DampedModes, System, build_system, damped_modes, undamped_modes
-from jackettwin.response.condensation.condensed import Condensed
-from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, numbered_poles
-from jackettwin.response.modes.tracking import track_modes
+from jackettwin.response import (
+    Condensed,
+    DampedModes,
+    NumberedModes,
+    Points,
+    System,
+    build_system,
+    damped_modes,
+    numbered_poles,
+    track_modes,
+    undamped_modes,
+)
 from jackettwin.soil import Family, Parameter
 from jackettwin.soil.laws.viscoelastic import Law
 from jackettwin.structure import Assembly, Rayleigh

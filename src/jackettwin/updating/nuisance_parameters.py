@@ -16,7 +16,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import look_up, require
 from jackettwin.plugins import plugins_of_type
-from jackettwin.response.system import Matrix
+from jackettwin.response import Matrix
 from jackettwin.soil import Parameter, Spring
 from jackettwin.soil.laws.coefficients import K0, MASS, OMEGA0, C
 from jackettwin.soil.laws.viscoelastic import Law, Prony

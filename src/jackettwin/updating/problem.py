@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
-from jackettwin.response.condensation.mode_numbers import NumberedModes
-from jackettwin.response.condensation.relaxation import Relaxation
+from jackettwin.response import NumberedModes, Relaxation
 from jackettwin.soil import Parameter
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget

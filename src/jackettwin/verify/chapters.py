@@ -9,16 +9,14 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.decks import read_structure
-from jackettwin.response import build_system, undamped_modes
-from jackettwin.response.sdof import poles, sdof
+from jackettwin.response import build_system, poles, sdof, undamped_modes
 from jackettwin.soil import clamped
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.laws.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
 from jackettwin.structure import Assembly, Material, Rayleigh, Section, Structure, assemble
 from jackettwin.structure.masses import rigid_body_mass
 from jackettwin.structure.model import STEEL, Member, Reaction
-from jackettwin.updating import numbered_modes
-from jackettwin.updating.steel.update import only_parts
+from jackettwin.updating import numbered_modes, only_parts
 from jackettwin.verify.rows import Computed
 
 _L, _E, _RHO, _G = 10.0, 210e9, 7850.0, 81e9

@@ -12,8 +12,7 @@ from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.report.figures import style
 from jackettwin.report.figures.svg import Canvas
 from jackettwin.report.tables.numbers import fixed, words
-from jackettwin.response import Sensor, observation_matrix
-from jackettwin.response.sensors import sensor_positions
+from jackettwin.response import Sensor, observation_matrix, sensor_positions
 from jackettwin.structure import Assembly
 from jackettwin.study import TwinResult
 from jackettwin.study.result import MeasuredMode

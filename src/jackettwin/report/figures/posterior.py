@@ -11,8 +11,7 @@ from plotly.subplots import make_subplots
 from jackettwin.arrays import FloatArray
 from jackettwin.report.figures import style
 from jackettwin.soil import Parameter
-from jackettwin.updating import Update
-from jackettwin.updating.update import Uncertainty
+from jackettwin.updating import Uncertainty, Update
 
 _BINS = 24
 _POINTS = 300

@@ -11,9 +11,7 @@ from jackettwin.report.pages.page import Block, PageTable, Plot, Text
 from jackettwin.report.tables import updating as tables
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.study import TwinResult
-from jackettwin.updating import Update
-from jackettwin.updating.law_choice import recommended
-from jackettwin.updating.update import Uncertainty
+from jackettwin.updating import Uncertainty, Update, recommended
 
 
 def every_law(result: TwinResult) -> list[Block]:

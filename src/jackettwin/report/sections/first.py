@@ -8,7 +8,7 @@ from jackettwin.report.figures.drawings_shapes import shape_drawings
 from jackettwin.report.pages.page import Block, Drawing, FirstPage
 from jackettwin.report.tables.sentences import MARGIN, Said
 from jackettwin.study import TwinResult
-from jackettwin.updating.law_choice import recommended
+from jackettwin.updating import recommended
 
 MODEL, GROUND, DAMPING, NEXT = (
     "Is the model right?",

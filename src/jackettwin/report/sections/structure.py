@@ -9,7 +9,7 @@ from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.report.view.motions import damped_motion
 from jackettwin.report.view.page import View, render_view, thickness_quantities
 from jackettwin.study import TwinResult
-from jackettwin.updating.law_choice import recommended
+from jackettwin.updating import recommended
 
 _STEEL = (210e9, 7850.0)
 """Young's modulus [Pa] and density [kg/m³] of structural steel."""

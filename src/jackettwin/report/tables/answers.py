@@ -9,7 +9,7 @@ from jackettwin.report.tables.sentences import span_words, step_words, verdict_w
 from jackettwin.report.tables.sentences_fit import value_words
 from jackettwin.soil import parameter_words
 from jackettwin.study import TwinResult
-from jackettwin.updating.budget import SOURCES
+from jackettwin.updating import SOURCES
 
 
 def modes_table(a: Answers, result: TwinResult) -> PageTable:

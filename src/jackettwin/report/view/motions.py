@@ -8,8 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.response.motion.passage import Passage
-from jackettwin.response.motion.playback import Playback
+from jackettwin.response import Passage, Playback
 from jackettwin.structure import Assembly
 
 

@@ -19,11 +19,10 @@ from markupsafe import Markup
 from jackettwin.arrays import FloatArray
 from jackettwin.files import atomic_path
 from jackettwin.files.json import null_for_nan
-from jackettwin.loads.members.coefficients import Coefficients
+from jackettwin.loads import Coefficients
 from jackettwin.report.view.dimensions import dimensions
 from jackettwin.report.view.motions import DrawnMotion
-from jackettwin.response import Sensor
-from jackettwin.response.sensors import sensor_positions
+from jackettwin.response import Sensor, sensor_positions
 from jackettwin.structure import Assembly
 
 _LINES = ("cable", "spring", "beam")

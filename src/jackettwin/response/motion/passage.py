@@ -8,9 +8,15 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.loads import airy_wave, morison_points
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.morison import MorisonPoints, nodal_loads, point_forces, wetness
+from jackettwin.loads import (
+    Coefficients,
+    MorisonPoints,
+    airy_wave,
+    morison_points,
+    nodal_loads,
+    point_forces,
+    wetness,
+)
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads.aerodynamics.rotor_wind import RotorWind
+from jackettwin.loads import RotorWind
 from jackettwin.simulate.motion.model import Aerodynamics, Model, aerodynamics, build_model, with_aerodynamics
 from jackettwin.simulate.motion.water import (
     RelativeDrag,

@@ -8,17 +8,28 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.loads import linearise, morison_points
-from jackettwin.loads.aerodynamics.bem import OperatingPoint, operating_damping, operating_point
-from jackettwin.loads.aerodynamics.rotor import Linearised, in_global_axes, rotation
-from jackettwin.loads.members.water import water_mass
-from jackettwin.response import build_system
-from jackettwin.response.modes.labels import mode_kinds, mode_labels
-from jackettwin.response.modes.multiple import aligned
-from jackettwin.response.modes.own_damping import own_damping
-from jackettwin.response.reduction import Reduced, reduced
-from jackettwin.response.state import state_matrix
-from jackettwin.response.system import Group
+from jackettwin.loads import (
+    Linearised,
+    OperatingPoint,
+    in_global_axes,
+    linearise,
+    morison_points,
+    operating_damping,
+    operating_point,
+    rotation,
+    water_mass,
+)
+from jackettwin.response import (
+    Group,
+    Reduced,
+    aligned,
+    build_system,
+    mode_kinds,
+    mode_labels,
+    own_damping,
+    reduced,
+    state_matrix,
+)
 from jackettwin.simulate.scenario.air import Air, Turbine
 from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.simulate.scenario.scenario import Scenario

@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response.motion.time import (
+from jackettwin.response import (
     Feedback,
     Hold,
     StateSpace,

@@ -14,7 +14,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError
 from jackettwin.loads.kernels import blade_elements, compiled
-from jackettwin.response.motion.time import Hold
+from jackettwin.response import Hold
 from jackettwin.simulate.motion.wind import RotorLoads
 
 

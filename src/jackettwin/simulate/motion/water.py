@@ -10,15 +10,26 @@ from scipy.interpolate import CubicSpline
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.loads import airy_wave, morison_points
-from jackettwin.loads.members.ends import Ends, member_ends
-from jackettwin.loads.members.morison import MorisonPoints, drag_damping
-from jackettwin.loads.sea.given_kinematics import Kinematics, TravellingKinematics
-from jackettwin.loads.sea.given_waves import given_sea, require_cover
-from jackettwin.loads.sea.regular_waves import regular_wave
-from jackettwin.loads.sea.sea_series import surface_series
-from jackettwin.loads.sea.wave_series import WaveSeries, wave_series
-from jackettwin.loads.sea.waves import AirySea, Waves, irregular_sea, wave_number
+from jackettwin.loads import (
+    AirySea,
+    Ends,
+    Kinematics,
+    MorisonPoints,
+    TravellingKinematics,
+    Waves,
+    WaveSeries,
+    airy_wave,
+    drag_damping,
+    given_sea,
+    irregular_sea,
+    member_ends,
+    morison_points,
+    regular_wave,
+    require_cover,
+    surface_series,
+    wave_number,
+    wave_series,
+)
 from jackettwin.simulate.scenario.sea import Sea
 from jackettwin.structure import Assembly
 

@@ -8,12 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.loads import morison_points
-from jackettwin.loads.aerodynamics.rotor import AIR_KG_M3, CompiledRotor, compiled_rotor, rotation
-from jackettwin.loads.aerodynamics.rotor_wind import RotorWind, rotor_wind
-from jackettwin.loads.aerodynamics.wind import tower_drag, tower_drag_damping
-from jackettwin.loads.members.coefficients import Coefficients
-from jackettwin.loads.members.morison import MorisonPoints
+from jackettwin.loads import (
+    AIR_KG_M3,
+    Coefficients,
+    CompiledRotor,
+    MorisonPoints,
+    RotorWind,
+    compiled_rotor,
+    morison_points,
+    rotation,
+    rotor_wind,
+    tower_drag,
+    tower_drag_damping,
+)
 from jackettwin.simulate.motion.model import Aerodynamics
 from jackettwin.simulate.scenario.air import Air
 from jackettwin.structure import Assembly

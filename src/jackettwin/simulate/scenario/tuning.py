@@ -19,11 +19,7 @@ import scipy.linalg as la
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
-from jackettwin.response.modes.labels import mode_kinds
-from jackettwin.response.modes.multiple import aligned, aligned_coordinates
-from jackettwin.response.reduction import Reduced
-from jackettwin.response.state import state_matrix
-from jackettwin.response.system import Group
+from jackettwin.response import Group, Reduced, aligned, aligned_coordinates, mode_kinds, state_matrix
 from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.structure import Assembly
 

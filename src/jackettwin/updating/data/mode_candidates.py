@@ -15,8 +15,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response import UndampedModes, build_system, undamped_modes
-from jackettwin.response.modes.tracking import track_modes
+from jackettwin.response import UndampedModes, build_system, track_modes, undamped_modes
 from jackettwin.soil import on_translations
 from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import standing

@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.identification import ModalEstimate, mac
-from jackettwin.response.modes.tracking import near_degenerate
+from jackettwin.response import near_degenerate
 
 Verdict = Literal["paired", "shape", "frequency", "taken"]
 

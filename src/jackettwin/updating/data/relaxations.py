@@ -16,8 +16,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response import Sensor, observation_matrix
-from jackettwin.response.condensation.relaxation import Relaxation, nearest_relaxation
+from jackettwin.response import Relaxation, Sensor, nearest_relaxation, observation_matrix
 from jackettwin.updating.model import SupportModel
 
 

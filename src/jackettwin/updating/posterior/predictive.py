@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.condensation.mode_numbers import NumberedModes, numbered_poles
+from jackettwin.response import NumberedModes, numbered_poles
 from jackettwin.soil.laws.coefficients import law_stiffness, static_rows
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.model import SupportModel

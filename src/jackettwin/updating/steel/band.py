@@ -8,8 +8,14 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response import UndampedModes, build_system, undamped_modes
-from jackettwin.response.condensation.condensed import Condensed, condense, widest_band_hz
+from jackettwin.response import (
+    Condensed,
+    UndampedModes,
+    build_system,
+    condense,
+    undamped_modes,
+    widest_band_hz,
+)
 from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.soil.support import standing
 from jackettwin.structure import Assembly, Rayleigh

@@ -11,8 +11,7 @@ from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.response import UndampedModes
-from jackettwin.response.modes.tracking import track_modes
+from jackettwin.response import UndampedModes, track_modes
 from jackettwin.structure import Structure, assemble
 from jackettwin.updating.steel.band import numbered_modes
 
