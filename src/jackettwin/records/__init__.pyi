@@ -1,5 +1,7 @@
+from .processing.filters import remove_line as remove_line
 from .processing.merge import merge as merge, shared_channels as shared_channels
 from .processing.prepare import bandpass as bandpass, decimate as decimate, detrend as detrend
+from .processing.spectra import spectral_matrix as spectral_matrix, welch_densities as welch_densities
 from .processing.yaw import to_global_axes as to_global_axes, to_rotor_axes as to_rotor_axes
 from .quality.assess import assess as assess
 from .quality.repair import repair as repair

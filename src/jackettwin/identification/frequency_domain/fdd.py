@@ -18,9 +18,10 @@ from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.mode_shapes import aligned, mac, mpc, mpd_rad, normalised
 from jackettwin.identification.preparation.prepared import prepare
-from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, spectral_matrix, welch
+from jackettwin.identification.preparation.spectra import CLEAR_PEAK, running_median, welch
 from jackettwin.identification.preparation.whitening import as_measured
 from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.records import spectral_matrix
 from jackettwin.signals import local_peaks
 
 if TYPE_CHECKING:

@@ -19,9 +19,10 @@ import numpy as np
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray
 from jackettwin.identification.estimate import Spectrum
 from jackettwin.identification.preparation.prepared import prepare
-from jackettwin.identification.preparation.spectra import SEGMENTS, spectral_matrix
+from jackettwin.identification.preparation.spectra import SEGMENTS
 from jackettwin.identification.preparation.whitening import as_measured, left_to_differentiate
 from jackettwin.identification.settings import IdentificationSettings
+from jackettwin.records import spectral_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

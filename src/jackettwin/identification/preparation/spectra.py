@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Spectrum
-from jackettwin.signals import hann, local_peaks
+from jackettwin.records import spectral_matrix, welch_densities
+from jackettwin.signals import local_peaks
 
 SEGMENTS = 8
 """Segments of a record in Welch's method (half overlapping): a resolution of 8 cycles a record."""
@@ -20,15 +21,14 @@ FEWEST_CYCLES = 20.0
 
 
 def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
-    """Return the spectra of a record; samples that are missing count as zero.
+    """Return the spectra of a record by Welch's method (``records.processing.spectra``).
 
     Parameters
     ----------
     y : (n_channels, n_samples)
         Zero-mean samples; NaN marks a missing one.
     """
-    length = segment_length or _length(y)
-    f, matrix = spectral_matrix(y, sample_rate_hz, length)
+    f, matrix = spectral_matrix(y, sample_rate_hz, segment_length or _length(y))
     density = np.asarray(np.einsum("faa->af", matrix).real)
     scale = np.sqrt(np.nanmean(y**2, axis=1))
     # of a positive Hermitian matrix these are the singular values, at a third of their cost
@@ -38,48 +38,13 @@ def welch(y: FloatArray, sample_rate_hz: float, segment_length: int | None = Non
 
 def densities(y: FloatArray, sample_rate_hz: float, segment_length: int | None = None) -> Spectrum:
     """Return the spectra of :func:`welch` channel by channel, without singular values: a third of it."""
-    f, x, norm = _transforms(y, sample_rate_hz, segment_length or _length(y))
-    density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
+    f, density = welch_densities(y, sample_rate_hz, segment_length or _length(y))
     return Spectrum(f, density, np.empty((0, f.size)))
-
-
-def spectral_matrix(
-    y: FloatArray, sample_rate_hz: float, segment_length: int
-) -> tuple[FloatArray, ComplexArray]:
-    """Return frequencies and one-sided spectral matrices by Welch's method, Hann, half overlapping.
-
-    Parameters
-    ----------
-    y : (n_channels, n_samples)
-        Zero-mean samples; NaN marks a missing one, which counts as zero with the power scaled back.
-
-    Returns
-    -------
-    (n_frequencies,), (n_frequencies, n_channels, n_channels)
-    """
-    f, x, norm = _transforms(y, sample_rate_hz, segment_length)
-    x = x.transpose(2, 0, 1)
-    matrix = x @ x.conj().transpose(0, 2, 1) / x.shape[2]
-    matrix *= np.multiply.outer(norm, norm)
-    return f, np.asarray(matrix)
 
 
 def _length(y: FloatArray) -> int:
     """Return the samples of a segment."""
     return max(int(y.shape[1]) // SEGMENTS, 16)
-
-
-def _transforms(
-    y: FloatArray, sample_rate_hz: float, segment_length: int
-) -> tuple[FloatArray, ComplexArray, FloatArray]:
-    """Return frequencies, transforms (n_channels, n_segments, n_frequencies), and √density over amplitude."""
-    valid = np.isfinite(y)
-    segments = _segments(np.where(valid, y, 0.0), segment_length)
-    window = hann(segment_length)
-    share = np.maximum(valid.mean(axis=1), 1e-3)
-    norm = np.sqrt(2.0 / (sample_rate_hz * np.sum(window**2) * share))
-    f = np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length))
-    return f, np.fft.rfft(segments * window, axis=-1), norm
 
 
 def lowest_peak_hz(spectrum: Spectrum) -> float | None:
@@ -101,8 +66,3 @@ def running_median(values: FloatArray, width: int) -> FloatArray:
     """Return the running median along the last axis, odd ``width``, ends reflected."""
     size = [1] * (values.ndim - 1) + [width | 1]
     return np.asarray(ndimage.median_filter(values, size=size, mode="reflect"))
-
-
-def _segments(y: FloatArray, length: int) -> FloatArray:
-    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)
-    return np.asarray(windows[:, :: max(length // 2, 1)])

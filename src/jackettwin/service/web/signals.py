@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
-from scipy.signal import welch
 
 from jackettwin.errors import InputError
+from jackettwin.records import remove_line, welch_densities
 from jackettwin.service.web.dependencies import known_record
 from jackettwin.service.web.problems import ApiError
 from jackettwin.service.web.schemas import RecordOut, Signal, Spectra
@@ -97,10 +97,9 @@ def as_arrow(signal: Signal) -> bytes:
 
 
 def spectra(record: Record) -> Spectra:
-    """Return the power spectral densities of a record by Welch's method, gaps left at zero."""
+    """Return the power spectral densities of a record by Welch's method, which allows for missing samples."""
     n = min(int(_SEGMENT_S * record.sample_rate_hz), record.data.shape[1])
-    filled = np.nan_to_num(record.data - np.nanmean(record.data, axis=1, keepdims=True))
-    frequency, density = welch(filled, record.sample_rate_hz, nperseg=n)
+    frequency, density = welch_densities(remove_line(record.data), record.sample_rate_hz, n)
     return Spectra(
         frequency_hz=frequency.tolist(),
         channels={c.name: row.tolist() for c, row in zip(record.channels, density, strict=True)},

@@ -1,0 +1,95 @@
+r"""Welch's estimate of power spectral densities, for channels with and without missing samples.
+
+A sample that is missing counts as zero, and the power of all segments is divided by the window's energy over
+the samples that are there,
+
+.. math:: S(f) = \frac{2}{f_s}\,
+          \frac{\sum_m \big|\sum_k w_k\, x_{mk}\, e^{-2\pi i f k/f_s}\big|^2}{\sum_m \sum_k w_k^2\, a_{mk}},
+
+with w the Hann window, x the samples of segment m (half overlapping), and a = 1 where a sample is there, 0
+where it is missing. By Parseval's theorem the density integrates to the variance of the samples that are
+there, and white noise has its level, however much is missing. Samples that are missing here and there move
+their share of a line's power to all frequencies; a gap moves it to the neighbouring ones.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.signals import hann
+
+
+def welch_densities(
+    y: FloatArray, sample_rate_hz: float, segment_length: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return frequencies [Hz] and one-sided power spectral densities, (n_channels, n_frequencies).
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one.
+    segment_length : int
+        Samples of a segment, at most those of the record.
+
+    Examples
+    --------
+    >>> t = np.arange(6000) / 10.0
+    >>> f, density = welch_densities(np.sin(2 * np.pi * 0.5 * t)[None], 10.0, 1000)
+    >>> round(float(density.sum() * f[1]), 6)
+    0.5
+    """
+    f, x, norm = _transforms(y, sample_rate_hz, segment_length)
+    density = np.mean(x.real**2 + x.imag**2, axis=1) * norm[:, None] ** 2
+    return f, density * _one_sided(segment_length)
+
+
+def spectral_matrix(
+    y: FloatArray, sample_rate_hz: float, segment_length: int
+) -> tuple[FloatArray, ComplexArray]:
+    """Return frequencies and one-sided spectral matrices, whose diagonals are the :func:`welch_densities`.
+
+    Parameters
+    ----------
+    y : (n_channels, n_samples)
+        Zero-mean samples; NaN marks a missing one.
+
+    Returns
+    -------
+    (n_frequencies,), (n_frequencies, n_channels, n_channels)
+    """
+    f, x, norm = _transforms(y, sample_rate_hz, segment_length)
+    x = x.transpose(2, 0, 1)
+    matrix = x @ x.conj().transpose(0, 2, 1) / x.shape[2]
+    matrix *= np.multiply.outer(norm, norm)
+    matrix *= _one_sided(segment_length)[:, None, None]
+    return f, np.asarray(matrix)
+
+
+def _transforms(
+    y: FloatArray, sample_rate_hz: float, segment_length: int
+) -> tuple[FloatArray, ComplexArray, FloatArray]:
+    """Return frequencies, transforms (n_channels, n_segments, n_frequencies), and √density over amplitude."""
+    there = np.isfinite(y)
+    window = hann(segment_length)
+    x = np.fft.rfft(_segments(np.where(there, y, 0.0), segment_length) * window, axis=-1)
+    if there.all():
+        energy = np.full(len(y), np.sum(window**2))
+    else:
+        energy = np.mean(_segments(there, segment_length) @ window**2, axis=1)
+    norm = np.where(energy > 0.0, 1.0 / np.sqrt(sample_rate_hz * np.where(energy > 0.0, energy, 1.0)), 0.0)
+    return np.asarray(np.arange(segment_length // 2 + 1) * (sample_rate_hz / segment_length)), x, norm
+
+
+def _one_sided(segment_length: int) -> FloatArray:
+    """Return how often each line counts: the mean and the Nyquist line stand for themselves alone."""
+    times = np.full(segment_length // 2 + 1, 2.0)
+    times[0] = 1.0
+    if segment_length % 2 == 0:
+        times[-1] = 1.0
+    return times
+
+
+def _segments(y: np.ndarray, length: int) -> np.ndarray:
+    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)
+    return np.asarray(windows[:, :: max(length // 2, 1)])
