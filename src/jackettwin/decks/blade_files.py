@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
-from jackettwin.errors import InputError, located
+from jackettwin.decks.openfast import Deck, read_deck, to_float
+from jackettwin.errors import located, require
 from jackettwin.files import find_file, read_yaml
 from jackettwin.files.windio import Part, WindIO, windio
-from jackettwin.files.yaml import read_text
 from jackettwin.structure.blades import BladeStructure
 from jackettwin.structure.rotor_modes import FlexibleRotor
 
@@ -95,28 +94,29 @@ def _entry(part: Part, k: int) -> list[float]:
 
 
 def _elastodyn(path: Path) -> FlexibleRotor:
-    deck = Deck(path, tuple(read_text(path, what="ElastoDyn file").splitlines()))
-    _require_three(int(_value(deck, "NumBl")))
-    name = next((s for key in ("BldFile1", "BldFile(1)") if (s := deck.scalar(key, ""))), "")
-    if not name:
-        raise InputError(
-            "not an ElastoDyn input file",
-            file=path,
-            field="BldFile1",
-            remedy="give the one that names the blades",
+    deck = read_deck(path, "ElastoDyn file")
+    with located(file=path):
+        _require_three(int(deck.number("NumBl")))
+        name = _either(deck, "BldFile1", "BldFile(1)")
+        remedy = "give the one that names the blades"
+        require(name, "not an ElastoDyn input file", field="BldFile1", remedy=remedy)
+        tilt, overhang = radians(deck.number("ShftTilt")), deck.number("OverHang")
+        hub_radius = deck.number("HubRad")
+        blade = path.parent / name.replace("\\", "/")
+        return FlexibleRotor(
+            blade=read_elastodyn_blade(blade, length=deck.number("TipRad") - hub_radius),
+            hub_radius=hub_radius,
+            overhang=-overhang * cos(tilt),
+            hub_height=deck.number("Twr2Shft") + overhang * sin(tilt),
+            tilt=-tilt,
+            cone=-radians(deck.number("PreCone(1)")),
+            pitch=radians(deck.number("BlPitch(1)")),
         )
-    tilt, overhang = radians(_value(deck, "ShftTilt")), _value(deck, "OverHang")
-    hub_radius = _value(deck, "HubRad")
-    blade = path.parent / name.replace("\\", "/")
-    return FlexibleRotor(
-        blade=read_elastodyn_blade(blade, length=_value(deck, "TipRad") - hub_radius),
-        hub_radius=hub_radius,
-        overhang=-overhang * cos(tilt),
-        hub_height=_value(deck, "Twr2Shft") + overhang * sin(tilt),
-        tilt=-tilt,
-        cone=-radians(_value(deck, "PreCone(1)")),
-        pitch=radians(_value(deck, "BlPitch(1)")),
-    )
+
+
+def _either(deck: Deck, *keywords: str) -> str:
+    """Return the value before the first of some keywords that the file has; they changed with its format."""
+    return next((value for key in keywords if (value := deck.scalar(key, ""))), "")
 
 
 def read_elastodyn_blade(path: Path, *, length: float) -> BladeStructure:
@@ -127,56 +127,31 @@ def read_elastodyn_blade(path: Path, *, length: float) -> BladeStructure:
     InputError
         If the file is missing or lacks its table.
     """
-    deck = Deck(path, tuple(read_text(path, what="ElastoDyn blade file").splitlines()))
-    rows = _stations(deck)
-    columns = {
-        key: np.array([number(row, key, path) for row in rows])
-        for key in ("blfract", "strctwst", "bmassden", "flpstff", "edgstff")
-    }
-    factors = {key: to_float(deck.scalar(key, "1"), path, key) for key in ("AdjBlMs", "AdjFlSt", "AdjEdSt")}
-    ratio = next((s for key in ("BldFlDmp1", "BldFlDmp(1)") if (s := deck.scalar(key, ""))), "")
+    deck = read_deck(path, "ElastoDyn blade file")
     with located(file=path):
+        rows = deck.table_below("BlFract", int(deck.number("NBlInpSt")))
+        require(rows, "table is missing", field="BlFract", remedy="give an ElastoDyn blade file")
+        names = ("blfract", "strctwst", "bmassden", "flpstff", "edgstff")
+        z, twist, mass, flap, edge = np.array([row.numbers(*names) for row in rows]).T
+        factors = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
+        of_mass, of_flap, of_edge = (to_float(deck.scalar(key, "1"), key) for key in factors)
+        percent = _either(deck, "BldFlDmp1", "BldFlDmp(1)")
         return BladeStructure(
-            z=columns["blfract"] * length,
-            mass_kg_m=columns["bmassden"] * factors["AdjBlMs"],
-            flap_n_m2=columns["flpstff"] * factors["AdjFlSt"],
-            edge_n_m2=columns["edgstff"] * factors["AdjEdSt"],
-            twist=np.radians(columns["strctwst"]),
-            damping_ratio=0.01 * to_float(ratio, path, "BldFlDmp1") if ratio else DEFAULT_RATIO,
+            z=z * length,
+            mass_kg_m=mass * of_mass,
+            flap_n_m2=flap * of_flap,
+            edge_n_m2=edge * of_edge,
+            twist=np.radians(twist),
+            damping_ratio=0.01 * to_float(percent, "BldFlDmp1") if percent else DEFAULT_RATIO,
         )
-
-
-def _stations(deck: Deck) -> list[SubdynRow]:
-    """Return the rows of the distributed properties: their table stands apart from its count."""
-    for at, line in enumerate(deck.lines):
-        header = line.lower().split()
-        if header[:1] == ["blfract"]:
-            count = int(_value(deck, "NBlInpSt"))
-            found = [deck.lines[k].split() for k in range(at + 2, min(at + 2 + count, len(deck.lines)))]
-            return [
-                SubdynRow(dict(zip(header, row, strict=False)) | {"#": str(at + 3 + k)}, deck.path)
-                for k, row in enumerate(found)
-            ]
-    raise InputError(
-        "table is missing", file=deck.path, field="BlFract", remedy="give an ElastoDyn blade file"
-    )
-
-
-def _value(deck: Deck, keyword: str) -> float:
-    text = deck.scalar(keyword, "")
-    if not text:
-        raise InputError(
-            "keyword is missing", file=deck.path, field=keyword, remedy="give an ElastoDyn input file"
-        )
-    return to_float(text, deck.path, keyword)
 
 
 def _require_three(blades: int) -> None:
-    if blades != 3:
-        raise InputError(
-            "bending blades are modelled for three of them",
-            field="number_of_blades",
-            value=blades,
-            allowed="3",
-            remedy="leave blades: out",
-        )
+    require(
+        blades == 3,
+        "bending blades are modelled for three of them",
+        field="number_of_blades",
+        value=blades,
+        allowed="3",
+        remedy="leave blades: out",
+    )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from jackettwin.decks.openfast_tables import Deck, SubdynRow, number
-from jackettwin.errors import InputError
-from jackettwin.structure.model import RigidLink, Vector
+from jackettwin.decks.openfast import Deck, Row
+from jackettwin.errors import require
+from jackettwin.structure.model import RigidLink, Vector, reached_by
 from jackettwin.structure.two_node import TwoNodeElement, spring_matrix, two_node_element
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ _RIGIDLY, _UNIVERSAL, _PIN, _BALL = "1", "2", "3", "4"
 Ends = dict[str, tuple[str, str]]
 
 
-def joint_rows(deck: Deck) -> tuple[SubdynRow, ...]:
+def joint_rows(deck: Deck) -> tuple[Row, ...]:
     """Return the rows of the table of joints."""
     return deck.table(
         "NJoints",
@@ -30,7 +29,7 @@ def joint_rows(deck: Deck) -> tuple[SubdynRow, ...]:
     )
 
 
-def member_rows(deck: Deck) -> tuple[SubdynRow, ...]:
+def member_rows(deck: Deck) -> tuple[Row, ...]:
     """Return the rows of the table of members.
 
     The number behind a member's type is a cosine matrix up to OpenFAST 4.0, then a beam's spin; only the
@@ -50,9 +49,8 @@ def read_joints(deck: Deck) -> dict[str, Vector]:
     nodes: dict[str, Vector] = {}
     for row in joint_rows(deck):
         name = row["jointid"]
-        if name in nodes:
-            raise InputError("joint is given twice", file=deck.path, field="JointID", value=name)
-        x, y, z = (number(row, key, deck.path) for key in ("jointxss", "jointyss", "jointzss"))
+        require(name not in nodes, "joint is given twice", field="JointID", value=name)
+        x, y, z = row.numbers("jointxss", "jointyss", "jointzss")
         nodes[name] = (x, y, z)
     return nodes
 
@@ -63,14 +61,13 @@ def member_ends(deck: Deck, nodes: dict[str, Vector]) -> Ends:
     for row in member_rows(deck):
         ends[row["memberid"]] = pair = (row["mjointid1"], row["mjointid2"])
         for joint in pair:
-            if joint not in nodes:
-                raise InputError(
-                    "no such joint",
-                    file=deck.path,
-                    field=f"MemberID {row['memberid']}",
-                    value=joint,
-                    remedy="name a JointID of the table of joints, or add it there",
-                )
+            require(
+                joint in nodes,
+                "no such joint",
+                field=f"MemberID {row['memberid']}",
+                value=joint,
+                remedy="name a JointID of the table of joints, or add it there",
+            )
     return ends
 
 
@@ -88,7 +85,7 @@ def with_hinges(
         joint, kind = row["jointid"], row.get("jointtype", _RIGIDLY)
         if kind == _RIGIDLY:
             continue
-        axes = _free_axes(deck, row, kind)
+        axes = _free_axes(row, kind)
         others = [name for name in beams if joint in ends[name]][1:]
         at = [joint, *(f"{joint}@{name}" for name in others)]
         for name, node in zip(others, at[1:], strict=True):
@@ -96,39 +93,35 @@ def with_hinges(
             links.append(RigidLink(joint, node, axes))
             start, end = ends[name]
             ends[name] = (node if start == joint else start, node if end == joint else end)
-        springs += _joint_springs(deck, row, axes, at)
+        springs += _joint_springs(row, axes, at)
     return nodes, ends, links, springs
 
 
-def _free_axes(deck: Deck, row: SubdynRow, kind: str) -> tuple[Vector, ...]:
+def _free_axes(row: Row, kind: str) -> tuple[Vector, ...]:
     place = f"JointID {row['jointid']}"
     if kind == _BALL:
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    if kind != _PIN:
-        raise InputError(
-            "unsupported joint (universal)" if kind == _UNIVERSAL else "unknown joint",
-            file=deck.path,
-            field=f"{place}.JointType",
-            value=kind,
-            allowed="1 (cantilever), 3 (revolute), 4 (spherical)",
-        )
-    axis = np.array([number(row, key, deck.path) for key in ("jointdirx", "jointdiry", "jointdirz")])
+    require(
+        kind == _PIN,
+        "unsupported joint (universal)" if kind == _UNIVERSAL else "unknown joint",
+        field=f"{place}.JointType",
+        value=kind,
+        allowed="1 (cantilever), 3 (revolute), 4 (spherical)",
+    )
+    axis = np.array(row.numbers("jointdirx", "jointdiry", "jointdirz"))
     length = float(np.linalg.norm(axis))
-    if length == 0.0:
-        raise InputError(
-            "a revolute joint needs an axis",
-            file=deck.path,
-            field=f"{place}.JointDir",
-            value=axis.tolist(),
-            remedy="give JointDirX, JointDirY, JointDirZ",
-        )
+    require(
+        length > 0.0,
+        "a revolute joint needs an axis",
+        field=f"{place}.JointDir",
+        value=axis.tolist(),
+        remedy="give JointDirX, JointDirY, JointDirZ",
+    )
     return (cast("Vector", tuple(float(value) / length for value in axis)),)
 
 
-def _joint_springs(
-    deck: Deck, row: SubdynRow, axes: tuple[Vector, ...], nodes: list[str]
-) -> list[TwoNodeElement]:
-    stiffness = number(row, "jointstiff", deck.path) if "jointstiff" in row else 0.0
+def _joint_springs(row: Row, axes: tuple[Vector, ...], nodes: list[str]) -> list[TwoNodeElement]:
+    stiffness = row.number("jointstiff", 0.0)
     if stiffness == 0.0:
         return []
     k = np.zeros((6, 6))
@@ -143,21 +136,13 @@ def _joint_springs(
 
 def link_groups(deck: Deck, pairs: list[tuple[str, str]]) -> list[RigidLink]:
     """Return links from one leader a rigid group to everybody else in it; a reaction joint leads."""
-    neighbours: dict[str, set[str]] = defaultdict(set)
-    for a, b in pairs:
-        neighbours[a].add(b)
-        neighbours[b].add(a)
+    joined = dict.fromkeys(joint for pair in pairs for joint in pair)
     leaders_first = [row["rjointid"] for row in deck.table("NReact", columns=("rjointid",))]
     seen: set[str] = set()
     links = []
-    for leader in [*(name for name in leaders_first if name in neighbours), *neighbours]:
-        if leader in seen:
-            continue
-        group, stack = {leader}, [leader]
-        while stack:
-            for joint in neighbours[stack.pop()] - group:
-                group.add(joint)
-                stack.append(joint)
-        seen |= group
-        links += [RigidLink(leader, follower) for follower in sorted(group - {leader})]
+    for leader in [*(name for name in leaders_first if name in joined), *joined]:
+        if leader not in seen:
+            group = reached_by(pairs, [leader])
+            seen |= group
+            links += [RigidLink(leader, follower) for follower in sorted(group - {leader})]
     return links

@@ -12,9 +12,9 @@ from typing import cast
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
+from jackettwin.decks.openfast import Deck, Row, to_float
 from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.structure import Material, Section
 from jackettwin.structure.model import Member, RigidLink, Vector
 from jackettwin.structure.rectangles import rectangular_section
@@ -65,7 +65,7 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
     nodes = read_joints(deck)
     beams = [row["memberid"] for row in rows if _kind(row) in _BEAMS]
     nodes, ends, links, springs = with_hinges(deck, nodes, member_ends(deck, nodes), beams)
-    pieces = {row["memberid"]: _pieces(deck, row, nodes, ends, divisions) for row in rows}
+    pieces = {row["memberid"]: _pieces(row, nodes, ends, divisions) for row in rows}
     alike = all(pieces[row["memberid"]] == divisions for row in rows if _kind(row) in _TUBE)
     parts = Parts(nodes, elements=springs, links=links, subdivide=divisions if alike else 1)
     tables = _tables(deck)
@@ -85,19 +85,18 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
             rigid.append((start, end))
             parts.elements += _rigid_mass(parts, tables, row, (start, end))
         else:
-            raise _unsupported(deck, row, kind)
+            raise _unsupported(row, kind)
     parts.links += link_groups(deck, rigid)
     return parts
 
 
-def _kind(row: SubdynRow) -> str:
+def _kind(row: Row) -> str:
     return row.get("mtype", "1").lower().strip("\"'")
 
 
-def _unsupported(deck: Deck, row: SubdynRow, kind: str) -> InputError:
+def _unsupported(row: Row, kind: str) -> InputError:
     return InputError(
         f"unsupported member type ({_REFUSED.get(kind, 'unknown')})",
-        file=deck.path,
         field=f"MemberID {row['memberid']}.MType",
         value=kind,
         allowed="1, 1c (circular beam), 1r (rectangle), 2 (cable), 3 (rigid link), 4 (any beam), 5 (spring)",
@@ -109,36 +108,23 @@ def _unsupported(deck: Deck, row: SubdynRow, kind: str) -> InputError:
 class _Tables:
     """Property tables of a deck, by number."""
 
-    deck: Deck
-    tubes: dict[str, SubdynRow]
-    rectangles: dict[str, SubdynRow]
-    arbitrary: dict[str, SubdynRow]
-    cables: dict[str, SubdynRow]
-    rigid: dict[str, SubdynRow]
-    springs: dict[str, SubdynRow]
-    cosines: dict[str, SubdynRow]
+    tubes: dict[str, Row]
+    rectangles: dict[str, Row]
+    arbitrary: dict[str, Row]
+    cables: dict[str, Row]
+    rigid: dict[str, Row]
+    springs: dict[str, Row]
+    cosines: dict[str, Row]
 
-    def find(self, table: dict[str, SubdynRow], row: SubdynRow, key: str) -> SubdynRow:
+    def find(self, table: dict[str, Row], row: Row, key: str) -> Row:
         """Return the property set that a member names."""
-        if row[key] not in table:
-            raise InputError(
-                "no such property set",
-                file=self.deck.path,
-                field=f"MemberID {row['memberid']}",
-                value=row[key],
-                allowed=", ".join(table) or None,
-            )
-        return table[row[key]]
-
-    def values(self, row: SubdynRow, *keys: str) -> list[float]:
-        """Return numbers of a row."""
-        return [number(row, key, self.deck.path) for key in keys]
+        return look_up(table, row[key], "property set", field=f"MemberID {row['memberid']}")
 
 
 def _tables(deck: Deck) -> _Tables:
     def rows(
         *keywords: str, columns: tuple[str, ...], optional: tuple[str, ...] = (), nth: int = 0
-    ) -> dict[str, SubdynRow]:
+    ) -> dict[str, Row]:
         found = deck.table(*keywords, columns=columns, optional=optional, nth=nth)
         return {row[columns[0]]: row for row in found}
 
@@ -146,7 +132,6 @@ def _tables(deck: Deck) -> _Tables:
     named = deck.find("NPropSetsRec") is not None
 
     return _Tables(
-        deck,
         tubes=rows("NPropSetsCyl", "NPropSets", columns=("propsetid", *_TUBE_KEYS)),
         rectangles=rows(
             "NPropSetsRec" if named else "NPropSets",
@@ -161,16 +146,14 @@ def _tables(deck: Deck) -> _Tables:
     )
 
 
-def _pieces(
-    deck: Deck, row: SubdynRow, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int
-) -> int:
+def _pieces(row: Row, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int) -> int:
     """Return how many elements a beam has: MDivSize overrides NDiv."""
     size = row.get("mdivsize", "")
     if _kind(row) not in _BEAMS or not size[:1].isdigit():
         return divisions
     start, end = ends[row["memberid"]]
     length = float(np.linalg.norm(np.subtract(nodes[end], nodes[start])))
-    longest = to_float(size, deck.path, f"line {row['#']}.MDivSize")
+    longest = to_float(size, row.place("MDivSize"))
     return divisions if longest == 0.0 else ceil(length / longest - 1e-9)
 
 
@@ -183,23 +166,22 @@ def _along(parts: Parts, name: str, ends: tuple[str, str], pieces: int) -> list[
     return [ends[0], *names, ends[1]]
 
 
-def _add_tube(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str], pieces: int) -> None:
+def _add_tube(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int) -> None:
     name = row["memberid"]
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
         properties = tables.find(tables.tubes, row, key)
-        E, G, rho, D, t = tables.values(properties, *_TUBE_KEYS)
-        with located(file=tables.deck.path, field=f"PropSetID {row[key]}"):
+        E, G, rho, D, t = properties.numbers(*_TUBE_KEYS)
+        with located(field=f"PropSetID {row[key]}"):
             # SubDyn takes a wall of zero as solid
             sections.append(Section(D, t or 0.5 * D))
             materials.append(Material(E, G, rho))
-    if materials[0] != materials[1]:
-        raise InputError(
-            "E, G and density must be the same at both ends of a member",
-            file=tables.deck.path,
-            field=f"MemberID {name}",
-            value=[row["mpropsetid1"], row["mpropsetid2"]],
-        )
+    require(
+        materials[0] == materials[1],
+        "E, G and density must be the same at both ends of a member",
+        field=f"MemberID {name}",
+        value=[row["mpropsetid1"], row["mpropsetid2"]],
+    )
     first, last = sections
     nodes = _along(parts, name, ends, pieces)
     for k in range(pieces):
@@ -218,17 +200,13 @@ def _between(a: Section, b: Section, share: float) -> Section:
 
 
 def _add_beam(
-    parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str], pieces: int, *, shear: bool
+    parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int, *, shear: bool
 ) -> None:
     """Add a beam of any section as elements; both ends must name one property set."""
     name = row["memberid"]
-    if row["mpropsetid1"] != row["mpropsetid2"]:
-        raise InputError(
-            "such a section cannot change along a member",
-            file=tables.deck.path,
-            field=f"MemberID {name}",
-            value=[row["mpropsetid1"], row["mpropsetid2"]],
-        )
+    sets = [row["mpropsetid1"], row["mpropsetid2"]]
+    place = f"MemberID {name}"
+    require(sets[0] == sets[1], "such a section cannot change along a member", field=place, value=sets)
     (E, G, rho), section = _rectangle(tables, row) if _kind(row) == _RECTANGLE else _any_section(tables, row)
     nodes = _along(parts, name, ends, pieces)
     axes = _axes(parts, tables, row, ends)
@@ -241,70 +219,69 @@ def _add_beam(
         parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
 
 
-def _any_section(tables: _Tables, row: SubdynRow) -> tuple[list[float], BeamSection]:
+def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of an arbitrary beam."""
     p = tables.find(tables.arbitrary, row, "mpropsetid1")
-    E, G, rho, A, A_x, A_y, I_x, I_y, I_p = tables.values(p, *_ARBITRARY_KEYS)
+    E, G, rho, A, A_x, A_y, I_x, I_y, I_p = p.numbers(*_ARBITRARY_KEYS)
     # decks before OpenFAST 4.1 have one number for inertia and torsion
-    J = tables.values(p, "xsecjt")[0] if "xsecjt" in p else I_p
+    J = p.number("xsecjt", I_p)
     return [E, G, rho], BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
 
 
-def _rectangle(tables: _Tables, row: SubdynRow) -> tuple[list[float], BeamSection]:
+def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of a rectangular beam."""
     p = tables.find(tables.rectangles, row, "mpropsetid1")
-    E, G, rho, a, b, t = tables.values(p, *_RECTANGLE_KEYS)
-    with located(file=tables.deck.path, field=f"PropSetID {row['mpropsetid1']}"):
+    E, G, rho, a, b, t = p.numbers(*_RECTANGLE_KEYS)
+    with located(field=f"PropSetID {row['mpropsetid1']}"):
         return [E, G, rho], rectangular_section(a, b, t, poisson_ratio=0.5 * E / G - 1.0)
 
 
-def _axes(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> FloatArray:
+def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> FloatArray:
     """Return (3, 3): along the member, then the section's x and y, in rows."""
     spin, chosen = row.get("mspin/cosmid", row.get("cosmid/mspin", "0")), row.get("cosmid", "-1")
     if chosen != "-1" and chosen in tables.cosines:
         keys = [f"cosm{i}{j}" for i in (3, 1, 2) for j in (1, 2, 3)]
-        return np.array(tables.values(tables.cosines[chosen], *keys)).reshape(3, 3)
+        return np.array(tables.cosines[chosen].numbers(*keys)).reshape(3, 3)
     a, b = (np.array(parts.nodes[node]) for node in ends)
     z = (b - a) / np.linalg.norm(b - a)
     level = float(np.hypot(z[0], z[1]))
     x = np.array([z[1], -z[0], 0.0]) / level if level > 0.0 else np.array([1.0, 0.0, 0.0])
     y = np.cross(z, x)
-    angle = np.radians(0.0 if "cosmid" in row else to_float(spin, tables.deck.path, f"line {row['#']}.MSpin"))
+    angle = np.radians(0.0 if "cosmid" in row else to_float(spin, row.place("MSpin")))
     return np.array([z, np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x])
 
 
-def _cable(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> TwoNodeElement:
+def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.cables, row, "mpropsetid1")
-    EA, rho, T = tables.values(p, "ea", "matdens", "t0")
+    EA, rho, T = p.numbers("ea", "matdens", "t0")
     a, b = (np.array(parts.nodes[node]) for node in ends)
     K, M = cable_matrices(a, b, EA=EA, tension=T, mass_per_m=rho)
     return two_node_element(row["memberid"], "cable", ends, K, M)
 
 
-def _spring(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> TwoNodeElement:
+def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.springs, row, "mpropsetid1")
     k = np.zeros((6, 6))
-    k[np.triu_indices(6)] = tables.values(p, *_SPRING_KEYS)
+    k[np.triu_indices(6)] = p.numbers(*_SPRING_KEYS)
     k = k + np.triu(k, 1).T
     chosen = row.get("cosmid", row.get("mspin/cosmid", row.get("cosmid/mspin", "-1")))
     apart = np.linalg.norm(np.subtract(parts.nodes[ends[1]], parts.nodes[ends[0]])) > 0.0
-    if chosen not in tables.cosines and not apart:
-        raise InputError(
-            "a spring between joints at one place needs its axes",
-            file=tables.deck.path,
-            field=f"MemberID {row['memberid']}.COSMID",
-            value=chosen,
-            allowed=", ".join(tables.cosines) or None,
-            remedy="give a cosine matrix",
-        )
-    axes = _axes(parts, tables, SubdynRow({**row, "cosmid": chosen}, row.path), ends)
+    require(
+        chosen in tables.cosines or apart,
+        "a spring between joints at one place needs its axes",
+        field=f"MemberID {row['memberid']}.COSMID",
+        value=chosen,
+        allowed=", ".join(tables.cosines) or None,
+        remedy="give a cosine matrix",
+    )
+    axes = _axes(parts, tables, Row({**row, "cosmid": chosen}, row.line), ends)
     # a spring's own order is x, y, z with z along it
     return two_node_element(row["memberid"], "spring", ends, spring_matrix(k, np.roll(axes, -1, axis=0)))
 
 
-def _rigid_mass(parts: Parts, tables: _Tables, row: SubdynRow, ends: tuple[str, str]) -> list[TwoNodeElement]:
+def _rigid_mass(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> list[TwoNodeElement]:
     p = tables.rigid.get(row["mpropsetid1"])
-    density = tables.values(p, "matdens")[0] if p else 0.0
+    density = p.number("matdens") if p else 0.0
     if density == 0.0:
         return []
     a, b = (np.array(parts.nodes[node]) for node in ends)

@@ -15,9 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.decks.openfast_tables import Deck, SubdynRow, number, to_float
-from jackettwin.errors import InputError
-from jackettwin.files.yaml import read_text
+from jackettwin.decks import Deck, Row, read_deck, to_float
+from jackettwin.errors import located, require
 from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable, growth_bands
 from jackettwin.loads.members.ends import EndCoefficients
 from jackettwin.structure import Structure
@@ -40,7 +39,7 @@ class HydroDynMembers(NamedTuple):
 class _Tubes:
     """The file's members: rows, ends (n, 2, 3) [m] from still water, and the structure's members they are."""
 
-    rows: tuple[SubdynRow, ...]
+    rows: tuple[Row, ...]
     ends: Mapping[str, FloatArray]
     names: Mapping[str, str]
 
@@ -54,33 +53,31 @@ def read_hydrodyn(path: Path, structure: Structure, *, density_kg_m3: float) -> 
         If the file is missing or lacks a table, if its members are not the structure's where that matters, or
         if it asks for what is not modelled: different ends, part-filled members, potential flow.
     """
-    deck = Deck(path, tuple(read_text(path, what="HydroDyn file").splitlines()))
-    tubes = _tubes(deck, structure)
-    bare, grown = _simple(deck)
-    tables = (*_by_depth(deck, tubes), *_by_member(deck, tubes))
-    coefficients = Coefficients(
-        bare.drag, bare.added_mass, bare.pressure, _growth(deck), grown, tables, density_kg_m3
-    )
-    return HydroDynMembers(coefficients, _ends(deck), _flooded(deck, tubes, density_kg_m3))
+    deck = read_deck(path, "HydroDyn file")
+    with located(file=path):
+        tubes = _tubes(deck, structure)
+        bare, grown = _simple(deck)
+        tables = (*_by_depth(deck, tubes), *_by_member(deck, tubes))
+        coefficients = Coefficients(
+            bare.drag, bare.added_mass, bare.pressure, _growth(deck), grown, tables, density_kg_m3
+        )
+        return HydroDynMembers(coefficients, _ends(deck), _flooded(deck, tubes, density_kg_m3))
 
 
 def _tubes(deck: Deck, structure: Structure) -> _Tubes:
     joints = {
-        row["jointid"]: np.array([number(row, f"joint{axis}i", deck.path) for axis in "xyz"])
+        row["jointid"]: np.array(row.numbers("jointxi", "jointyi", "jointzi"))
         for row in deck.table("NJoints", required=True)
     }
     rows = deck.table("NMembers", required=True)
     ends = {}
     for row in rows:
-        at = f"line {row['#']}"
-        if row.get("proppot", "F").strip('"').upper().startswith("T"):
-            raise InputError("potential flow is not modelled", file=deck.path, field=f"{at}.PropPot")
-        try:
-            ends[row["memberid"]] = np.array([joints[row["mjointid1"]], joints[row["mjointid2"]]])
-        except KeyError as missing:
-            raise InputError(
-                "no such joint", file=deck.path, field=f"{at}.MJointID", value=missing.args[0]
-            ) from None
+        potential = row.get("proppot", "F").strip('"').upper().startswith("T")
+        require(not potential, "potential flow is not modelled", field=row.place("PropPot"))
+        pair = row["mjointid1"], row["mjointid2"]
+        for joint in pair:
+            require(joint in joints, "no such joint", field=row.place("MJointID"), value=joint)
+        ends[row["memberid"]] = np.array([joints[joint] for joint in pair])
     return _Tubes(rows, ends, _matched(ends, structure))
 
 
@@ -101,17 +98,13 @@ def _matched(ends: Mapping[str, FloatArray], structure: Structure) -> dict[str, 
 
 def _simple(deck: Deck) -> tuple[Strip, Strip]:
     """Return the simple coefficients without and with growth."""
-    for at, line in enumerate(deck.lines):
-        header = line.lower().split()
-        if header[:1] == ["simplcd"] and at + 2 < len(deck.lines):
-            words = dict(zip(header, deck.lines[at + 2].split(), strict=False))
-            row = SubdynRow(words | {"#": str(at + 3)}, deck.path)
-            return _strip(deck, row, "simpl", ""), _strip(deck, row, "simpl", "mg")
-    raise InputError("table is missing", file=deck.path, field="SimplCd", remedy="give a HydroDyn input file")
+    rows = deck.table_below("SimplCd", 1)
+    require(rows, "table is missing", field="SimplCd", remedy="give a HydroDyn input file")
+    return _strip(rows[0], "simpl", ""), _strip(rows[0], "simpl", "mg")
 
 
-def _strip(deck: Deck, row: SubdynRow, prefix: str, suffix: str) -> Strip:
-    cd, ca, cp = (number(row, f"{prefix}{name}{suffix}", deck.path) for name in ("cd", "ca", "cp"))
+def _strip(row: Row, prefix: str, suffix: str) -> Strip:
+    cd, ca, cp = row.numbers(*(f"{prefix}{name}{suffix}" for name in ("cd", "ca", "cp")))
     return Strip(cd, ca, cp)
 
 
@@ -119,17 +112,16 @@ def _of_model(tubes: _Tubes, model: int) -> list[str]:
     return [row["memberid"] for row in tubes.rows if row.get("mcoefmod", "1") == str(model)]
 
 
-def _names(deck: Deck, tubes: _Tubes, ids: list[str], field: str) -> tuple[str, ...]:
+def _names(tubes: _Tubes, ids: list[str], field: str) -> tuple[str, ...]:
     """Return the structure's members of some of the file's."""
     for one in ids:
-        if one not in tubes.names:
-            raise InputError(
-                "the structure has no such member",
-                file=deck.path,
-                field=field,
-                value=one,
-                remedy="give the file of this structure, or its coefficients in the scenario",
-            )
+        require(
+            one in tubes.names,
+            "the structure has no such member",
+            field=field,
+            value=one,
+            remedy="give the file of this structure, or its coefficients in the scenario",
+        )
     return tuple(tubes.names[one] for one in ids)
 
 
@@ -138,14 +130,13 @@ def _by_depth(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
     rows = deck.table("NCoefDpth", "NCoefDpthCyl")
     if not ids:
         return ()
-    if not rows:
-        raise InputError("table is missing", file=deck.path, field="NCoefDpth", remedy="give its rows")
-    members = () if len(ids) == len(tubes.rows) else _names(deck, tubes, ids, "MCoefMod")
+    require(rows, "table is missing", field="NCoefDpth", remedy="give its rows")
+    members = () if len(ids) == len(tubes.rows) else _names(tubes, ids, "MCoefMod")
     return (
         StripTable(
-            tuple(number(row, "dpth", deck.path) for row in rows),
-            tuple(_strip(deck, row, "dpth", "") for row in rows),
-            tuple(_strip(deck, row, "dpth", "mg") for row in rows),
+            tuple(row.number("dpth") for row in rows),
+            tuple(_strip(row, "dpth", "") for row in rows),
+            tuple(_strip(row, "dpth", "mg") for row in rows),
             members,
         ),
     )
@@ -157,18 +148,15 @@ def _by_member(deck: Deck, tubes: _Tubes) -> tuple[StripTable, ...]:
     rows = {next(iter(row.values())): row for row in deck.table("NCoefMembers", "NCoefMembersCyl")}
     tables = []
     for one in wanted:
-        if one not in rows:
-            raise InputError("member is missing", file=deck.path, field="NCoefMembers", value=one)
+        require(one in rows, "member is missing", field="NCoefMembers", value=one)
         heights = tubes.ends[one][:, 2]
-        bare, grown = (
-            [_strip(deck, rows[one], "member", f"{mg}{end}") for end in (1, 2)] for mg in ("", "mg")
-        )
+        bare, grown = ([_strip(rows[one], "member", f"{mg}{end}") for end in (1, 2)] for mg in ("", "mg"))
         if abs(heights[0] - heights[1]) < 1e-6:  # level: the mean of both ends
             z: tuple[float, ...] = (float(heights[0]),)
             bare, grown = [_mean(bare)], [_mean(grown)]
         else:
             z = (float(heights[0]), float(heights[1]))
-        tables.append(StripTable(z, tuple(bare), tuple(grown), _names(deck, tubes, [one], "NCoefMembers")))
+        tables.append(StripTable(z, tuple(bare), tuple(grown), _names(tubes, [one], "NCoefMembers")))
     return tuple(tables)
 
 
@@ -180,25 +168,21 @@ def _mean(strips: list[Strip]) -> Strip:
 def _growth(deck: Deck) -> tuple[GrowthBand, ...]:
     """Return the bands between the heights of the table, from the top."""
     columns = ("mgdpth", "mgthck", "mgdens")
-    rows = [[number(row, key, deck.path) for key in columns] for row in deck.table("NMGDepths")]
+    rows = [row.numbers(*columns) for row in deck.table("NMGDepths")]
     return growth_bands(sorted(((z, thickness, density) for z, thickness, density in rows), reverse=True))
 
 
 def _ends(deck: Deck) -> EndCoefficients:
     rows = {row["axcoefid"]: row for row in deck.table("NAxCoef")}
     used = {row.get("jointaxid", "1") for row in deck.table("NJoints")}
-    found = {
-        tuple(number(rows[one], key, deck.path) for key in ("axcp", "axca", "axcd"))
-        for one in used & set(rows)
-    }
-    if len(found) > 1:
-        raise InputError(
-            "joints with different axial coefficients",
-            file=deck.path,
-            field="JointAxID",
-            value=sorted(used),
-            remedy="give one set, or the rest of the file's coefficients in the scenario",
-        )
+    found = {tuple(rows[one].numbers("axcp", "axca", "axcd")) for one in used & set(rows)}
+    require(
+        len(found) <= 1,
+        "joints with different axial coefficients",
+        field="JointAxID",
+        value=sorted(used),
+        remedy="give one set, or the rest of the file's coefficients in the scenario",
+    )
     pressure, added, drag = found.pop() if found else (0.0, 0.0, 0.0)
     return EndCoefficients(pressure, added, drag)
 
@@ -210,29 +194,24 @@ def _flooded(deck: Deck, tubes: _Tubes, density: float) -> tuple[str, ...]:
     """
     ids: list[str] = []
     for row in deck.table("NFillGroups"):
-        at = f"line {row['#']}"
-        words = list(takewhile(_is_entry, deck.lines[int(row["#"]) - 1].split()))
-        if len(words) < 4:
-            raise InputError(
-                "row is too short", file=deck.path, field=f"{at}.FillMList", value=" ".join(words)
-            )
+        words = list(takewhile(_is_entry, deck.lines[row.line - 1].split()))
+        require(len(words) >= 4, "row is too short", field=row.place("FillMList"), value=" ".join(words))
         level, filling = words[-2:]
-        if to_float(level, deck.path, f"{at}.FillFSLoc") < 0.0:
-            raise InputError(
-                "members filled below still water", file=deck.path, field=f"{at}.FillFSLoc", value=level
-            )
+        place = row.place("FillFSLoc")
+        full = to_float(level, place) >= 0.0
+        require(full, "members filled below still water", field=place, value=level)
         if not _is_default(filling):
-            weight = to_float(filling, deck.path, f"{at}.FillDens")
-            if abs(weight / density - 1.0) > _SAME_DENSITY:
-                raise InputError(
-                    "members filled with something else than this water",
-                    file=deck.path,
-                    field=f"{at}.FillDens",
-                    value=weight,
-                    allowed=f"{density:g}",
-                )
+            place = row.place("FillDens")
+            weight = to_float(filling, place)
+            require(
+                abs(weight / density - 1.0) <= _SAME_DENSITY,
+                "members filled with something else than this water",
+                field=place,
+                value=weight,
+                allowed=f"{density:g}",
+            )
         ids += words[1:-2]
-    return tuple(dict.fromkeys(_names(deck, tubes, ids, "FillMList")))
+    return tuple(dict.fromkeys(_names(tubes, ids, "FillMList")))
 
 
 def _is_default(word: str) -> bool:
