@@ -11,8 +11,7 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.cli.console import FiniteFloat, PageFile, messages, output, plain, print_json, working
-from jackettwin.soil.foundation import Foundation, read_foundation
-from jackettwin.soil.ground.curves import Curve
+from jackettwin.soil import Curve, Foundation, read_foundation
 from jackettwin.soil.piles.capacity import FAILED_AT, Pushover, axial_capacity, pushover
 from jackettwin.soil.piles.impedance import head_impedance
 from jackettwin.soil.piles.reaction_curves import PileCurves

@@ -7,7 +7,7 @@ import numpy as np
 from jackettwin.arrays import ComplexArray
 from jackettwin.response.state import state_matrix
 from jackettwin.response.system import Group, Pencil
-from jackettwin.soil.laws.viscoelastic import Law
+from jackettwin.soil import Law
 from jackettwin.structure import Rayleigh
 
 

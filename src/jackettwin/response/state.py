@@ -12,7 +12,7 @@ import scipy.sparse.linalg as spla
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix, Pencil
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony
 from jackettwin.structure.eigen import dense
 
 

@@ -23,8 +23,7 @@ from jackettwin.structure import Rayleigh
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from jackettwin.soil import Spring, Support
-    from jackettwin.soil.laws.viscoelastic import Law
+    from jackettwin.soil import Law, Spring, Support
     from jackettwin.structure import Assembly
 
 Matrix = Any

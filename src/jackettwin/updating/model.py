@@ -23,8 +23,7 @@ from jackettwin.response import (
     track_modes,
     undamped_modes,
 )
-from jackettwin.soil import Family, Parameter
-from jackettwin.soil.laws.viscoelastic import Law
+from jackettwin.soil import Family, Law, Parameter
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.steel.band import condensed_for, numbered_modes

@@ -17,9 +17,8 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import look_up, require
 from jackettwin.plugins import plugins_of_type
 from jackettwin.response import Matrix
-from jackettwin.soil import Parameter, Spring
+from jackettwin.soil import Law, Parameter, Prony, Spring
 from jackettwin.soil.laws.coefficients import K0, MASS, OMEGA0, C
-from jackettwin.soil.laws.viscoelastic import Law, Prony
 from jackettwin.structure import Assembly, Rayleigh
 
 DASHPOTS = {"c_fore_aft": 0, "c_side_side": 1}

@@ -9,8 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError
-from jackettwin.soil import Spring, Support, pinned
-from jackettwin.soil.laws.viscoelastic import Law
+from jackettwin.soil import Law, Spring, Support, pinned
 from jackettwin.soil.support import standing
 from jackettwin.structure import Structure
 

@@ -10,8 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.decks import read_structure
 from jackettwin.response import build_system, poles, sdof, undamped_modes
-from jackettwin.soil import clamped
-from jackettwin.soil.foundation import read_foundation
+from jackettwin.soil import clamped, read_foundation
 from jackettwin.soil.laws.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
 from jackettwin.structure import Assembly, Material, Rayleigh, Section, Structure, assemble
 from jackettwin.structure.masses import rigid_body_mass

@@ -9,8 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.decks import read_structure
 from jackettwin.response import build_system, undamped_modes
-from jackettwin.soil import family, on_translations
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony, family, on_translations
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import (
     Residuals,

@@ -37,7 +37,7 @@ from jackettwin.errors import InputError, NumericalError
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.modes.multiple import aligned_coordinates
 from jackettwin.response.system import Group, Matrix, Pencil, System
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony
 from jackettwin.soil.support import standing
 from jackettwin.structure.eigen import lowest_modes
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.identification.mode_shapes import mac
+from jackettwin.identification import mac
 from jackettwin.response.condensation.certificate import REAL
 from jackettwin.response.condensation.condensed import Condensed
 from jackettwin.response.condensation.mode_numbers import Points

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from jackettwin.soil.laws.viscoelastic import Law, Prony
+from jackettwin.soil import Law, Prony
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.structure.gather import of_blocks
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.simulate.motion.model import Model
-from jackettwin.soil.foundation import Foundation
+from jackettwin.soil import Foundation
 from jackettwin.soil.piles.cyclic import advance
 
 EVALUATIONS = 4

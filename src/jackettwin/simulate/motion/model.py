@@ -35,7 +35,7 @@ from jackettwin.simulate.scenario.asset import Asset
 from jackettwin.simulate.scenario.scenario import Scenario
 from jackettwin.simulate.scenario.sea import Sea
 from jackettwin.simulate.scenario.tuning import tuned_damping
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony
 from jackettwin.structure import Assembly, assemble
 from jackettwin.structure.rotor_modes import turned_nacelle
 

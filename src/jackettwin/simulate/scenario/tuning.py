@@ -20,7 +20,7 @@ import scipy.linalg as la
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, NumericalError
 from jackettwin.response import Group, Reduced, aligned, aligned_coordinates, mode_kinds, state_matrix
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony
 from jackettwin.structure import Assembly
 
 _PLANES = ("fore_aft", "side_side")

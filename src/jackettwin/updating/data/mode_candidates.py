@@ -16,8 +16,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response import UndampedModes, build_system, track_modes, undamped_modes
-from jackettwin.soil import on_translations
-from jackettwin.soil.laws.viscoelastic import Prony
+from jackettwin.soil import Prony, on_translations
 from jackettwin.soil.support import standing
 from jackettwin.structure import Assembly
 
