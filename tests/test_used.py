@@ -13,8 +13,11 @@ CALLED_BY_OTHERS = ("jackettwin.client", "jackettwin.store.migrations")
 
 
 def imports(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield (module, name) of everything that is imported from somewhere."""
+    """Yield (module, name) of everything that is imported, or named ``module:name`` in a table."""
     for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and re.fullmatch(r"[\w.]+:\w+", str(node.value)):
+            module, _, name = str(node.value).partition(":")
+            yield module, name
         if isinstance(node, ast.ImportFrom) and node.module:
             yield from ((node.module, alias.name) for alias in node.names)
 

@@ -27,12 +27,32 @@ _SHOWN = 5
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
+class _Method(click.types.StringParamType):
+    """A name of the registry of methods, which is read when it is needed."""
+
+    name = "method"
+
+    def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:
+        """Return the names that may be chosen, for the help."""
+        from jackettwin.identification.methods import method_names
+
+        return f"[{'|'.join(method_names())}]"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the name; refuse one that no method has."""
+        from jackettwin.identification.methods import is_method, method_names
+
+        if not is_method(value):
+            self.fail(f"{value!r} is not one of {', '.join(map(repr, method_names()))}.", param, ctx)
+        return str(value)
+
+
 @click.command("identify")
 @click.argument("records", nargs=-1, required=True)
 @click.option("--settings", "settings_file", help="YAML file with identification settings.")
 @click.option(
     "--method",
-    type=click.Choice(["ssi-cov", "ssi-dat", "plscf", "efdd"]),
+    type=_Method(),
     help="How poles are found; default ssi-cov.",
 )
 @click.option(

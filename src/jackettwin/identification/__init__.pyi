@@ -14,5 +14,7 @@ from .many_records.fusion import (
     fuse as fuse,
 )
 from .mode_shapes import mac as mac
+from .pole_methods import PoleMethod as PoleMethod
+from .preparation.prepared import Prepared as Prepared
 from .settings import IdentificationSettings as IdentificationSettings
-from .subspace.ssi_cov import ssi_cov as ssi_cov
+from .subspace.ssi_cov import OrderPoles as OrderPoles, ssi_cov as ssi_cov

@@ -10,8 +10,9 @@ from jackettwin.findings import Finding
 from jackettwin.identification.decays.free_decay import transient
 from jackettwin.identification.estimate import Identification, ModalEstimate, Stabilisation
 from jackettwin.identification.frequency_domain.fdd import fdd
-from jackettwin.identification.methods import relaxations, uncertain
+from jackettwin.identification.methods import EFDD, method_names
 from jackettwin.identification.picks import Pick, of_record
+from jackettwin.identification.pole_methods import relaxations, uncertain
 from jackettwin.identification.preparation.components import at_all_channels, components
 from jackettwin.identification.preparation.prepared import prepare
 from jackettwin.identification.preparation.spectra import welch
@@ -83,7 +84,7 @@ def identify(
     """
     settings = settings or IdentificationSettings()
     wanted = of_record(picks, record.name)
-    if settings.method == "efdd":
+    if settings.method == EFDD:
         _refuse_picks(wanted)
         return fdd(record, settings)
     fallen = _fallen(record, settings, progress) if settings.method == "ssi-cov" and not wanted else None
@@ -168,8 +169,8 @@ def _refuse_picks(picks: Sequence[Pick]) -> None:
         raise InputError(
             "has no poles to pick from",
             field="method",
-            value="efdd",
-            allowed="ssi-cov, ssi-dat or plscf",
+            value=EFDD,
+            allowed=", ".join(name for name in method_names() if name != EFDD),
             remedy="leave the picks out, or choose another method",
         )
 

@@ -10,8 +10,9 @@ import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.errors import InputError
 from jackettwin.identification.automatic import identify
+from jackettwin.identification.methods import method_names
 from jackettwin.identification.mode_shapes import mac
-from jackettwin.identification.settings import METHODS, IdentificationSettings
+from jackettwin.identification.settings import IdentificationSettings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,7 +66,7 @@ def compare_methods(
         }
     )
     modes, refused = {}, {}
-    for method in METHODS:
+    for method in method_names():
         try:
             modes[method] = paired(reference.modes, identify(record, plain.with_method(method)).modes)
         except InputError as error:

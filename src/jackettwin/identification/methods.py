@@ -1,145 +1,35 @@
-"""The methods that find poles, and the table they are looked up in.
+"""The identification methods: one table, to which installed packages add theirs.
 
-A method of its own takes a prepared record and the settings, and returns the poles of every model order. Its
-name joins those of ``IdentificationSettings.method``; all that offer a choice of methods find it there.
+A method is a function from a prepared record and the settings to the poles of every model order: a
+``PoleMethod``. Settings, command line, comparison and report know all methods that stand here.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from jackettwin.errors import InputError
-from jackettwin.identification.frequency_domain.plscf import plscf_poles
-from jackettwin.identification.preparation.resolve import guarded_band_hz
-from jackettwin.identification.subspace.covariances import block_covariances, covariances
-from jackettwin.identification.subspace.real_poles import real_poles
-from jackettwin.identification.subspace.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
-from jackettwin.identification.subspace.ssi_dat import ssi_dat
-from jackettwin.identification.subspace.ssi_uncertainty import (
-    Propagation,
-    block_deviations,
-    order_poles_with_uncertainty,
-    propagation,
-)
-from jackettwin.identification.subspace.stabilisation import admissible, stabilisation
+from jackettwin.plugins import plugins
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from jackettwin.identification.estimate import RealPole, Stabilisation
-    from jackettwin.identification.preparation.prepared import Prepared
-    from jackettwin.identification.settings import IdentificationSettings
-
-FEWEST_BLOCKS = 5
-"""Fewer blocks give no standard deviation worth printing."""
-EVERY = 2
-"""Samples from one instrument of the past to the next: neighbours tell nearly the same. As many modes of
-random systems are found as with all of them, with the same scatter, in half the time, …"""
-ENOUGH_INSTRUMENTS = 2
-"""… where so many times the largest model order are left."""
-PLSCF_WINDOWS = 2
-"""Lags of the half spectra, in lag windows of SSI: a resolution of half a line of the lowest mode."""
-
-
-def poles_of(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
-    """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
-    poles = POLE_METHODS[settings.method](ready, settings)
-    rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
-    return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
-
-
-def _by_plscf(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
-    resolved, (low, high) = ready.settings, guarded_band_hz(ready.settings)
-    lags = covariances(ready.y, PLSCF_WINDOWS * 2 * resolved.block_rows)[:, :, ready.references]
-    rate = resolved.sample_rate_hz
-    return plscf_poles(lags, resolved.orders, band=(low / rate, high / rate))
-
-
-def _by_ssi_dat(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
-    resolved = ready.settings
-    subspace = ssi_dat(
-        ready.y,
-        block_rows=resolved.block_rows,
-        max_order=resolved.orders[-1],
-        references=ready.references,
-    )
-    return order_poles(subspace, subspace.orders(resolved.orders))
-
-
-def _by_ssi_cov(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
-    rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
-    subspace = _subspace(ready, settings)
-    orders = subspace.orders(ready.settings.orders)
-    if not uncertain(settings):
-        return order_poles(subspace, orders)
-    shared = _propagation(ready, subspace, settings)
-    return order_poles_with_uncertainty(shared, orders, keep=lambda mu: admissible(mu, settings, rate, band))
-
-
-POLE_METHODS: Mapping[str, Callable[[Prepared, IdentificationSettings], list[OrderPoles]]] = {
-    "ssi-cov": _by_ssi_cov,
-    "ssi-dat": _by_ssi_dat,
-    "plscf": _by_plscf,
+POLE_METHODS: Mapping[str, str] = {
+    "ssi-cov": "jackettwin.identification.pole_methods:by_ssi_cov",
+    "ssi-dat": "jackettwin.identification.pole_methods:by_ssi_dat",
+    "plscf": "jackettwin.identification.pole_methods:by_plscf",
 }
-"""Methods with poles of many orders; ``efdd`` has none and goes its own way (frequency_domain/fdd.py)."""
+"""Where the function of each method stands, as an entry point says it: it is loaded when it is used."""
+EFDD = "efdd"
+"""The method without poles: it reads modes off peaks of the spectrum (``frequency_domain/fdd.py``)."""
+PLUGINS = "jackettwin.identification_methods"
+"""Group of entry points, each a function like those of ``POLE_METHODS``, by the name of the method."""
 
 
-def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[RealPole, ...]:
-    """Return the poles that do not oscillate.
-
-    Raises
-    ------
-    InputError
-        If the settings leave the uncertainty out that tells them from noise.
-    """
-    if not uncertain(settings):
-        raise InputError(
-            "real poles need the uncertainty of ssi-cov",
-            field="real_poles",
-            value=True,
-            allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
-            remedy="leave these settings at their defaults",
-        )
-    resolved, subspace = ready.settings, _subspace(ready, settings)
-    shared = _propagation(ready, subspace, settings)
-    return real_poles(
-        order_poles_with_uncertainty(shared, subspace.orders(resolved.orders), real=True),
-        settings,
-        sample_rate_hz=resolved.sample_rate_hz,
-        band_hz=(resolved.lowest_frequency_hz, resolved.highest_frequency_hz),
-        scale=ready.scale,
-    )
+def method_names() -> tuple[str, ...]:
+    """Return the names of all methods: ours, then those that installed packages bring."""
+    return (*POLE_METHODS, EFDD, *(name for name in plugins(PLUGINS) if name not in (*POLE_METHODS, EFDD)))
 
 
-def uncertain(settings: IdentificationSettings) -> bool:
-    """Tell whether the uncertainty of the poles is wanted, and known for this variant."""
-    variant = (settings.method, settings.weighting, settings.state_matrix)
-    return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
-
-
-def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
-    resolved = ready.settings
-    return ssi_cov(
-        covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
-        block_rows=resolved.block_rows,
-        max_order=resolved.orders[-1],
-        weighting=settings.weighting,
-        state_matrix=settings.state_matrix,
-        factors=uncertain(settings),
-        every=_every(ready, settings),
-    )
-
-
-def _every(ready: Prepared, settings: IdentificationSettings) -> int:
-    """Return the samples between the instruments of the past: one if relaxations are sought or few left."""
-    enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
-    many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
-    return EVERY if many and not settings.real_poles else 1
-
-
-def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
-    rows, every = ready.settings.block_rows, _every(ready, settings)
-    blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
-    return propagation(subspace, block_deviations(blocks.astype(np.float32), rows, every), np.float32)
+def is_method(name: str) -> bool:
+    """Tell whether a method has this name; of our own, without looking for plugins."""
+    return name in POLE_METHODS or name in method_names()

@@ -15,8 +15,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.identification.estimate import Stabilisation
-from jackettwin.identification.methods import poles_of
 from jackettwin.identification.mode_shapes import mac
+from jackettwin.identification.pole_methods import poles_of
 from jackettwin.identification.preparation.resolve import EDGE_BELOW_PEAK
 from jackettwin.identification.preparation.spectra import welch
 from jackettwin.identification.selection.candidates import Tones, candidates, find_tones

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from jackettwin.errors import InputError
 from jackettwin.files import Schema, validate
+from jackettwin.files.schema import one_of
+from jackettwin.identification.methods import method_names
 
-Method = Literal["ssi-cov", "ssi-dat", "plscf", "efdd"]
-METHODS: tuple[str, ...] = get_args(Method)
 Frequency = Annotated[float, Field(gt=0.0)]
 
 
@@ -20,9 +20,9 @@ class IdentificationSettings(Schema):
 
     Attributes
     ----------
-    method : "ssi-cov", "ssi-dat", "plscf" or "efdd"
-        How poles are found. Only SSI-cov states the uncertainty of every pole; the others are there to
-        compare with.
+    method : str
+        How poles are found: "ssi-cov", "ssi-dat", "plscf", "efdd", or a method of an installed package.
+        Only SSI-cov states the uncertainty of every pole; the others are there to compare with.
     reference_channels : tuple of str or None
         Channels whose past the covariances are taken with (a few good ones: less work, less noise);
         default all.
@@ -70,7 +70,7 @@ class IdentificationSettings(Schema):
         its uncertainty only.
     """
 
-    method: Method = "ssi-cov"
+    method: Annotated[str, one_of(method_names)] = "ssi-cov"
     reference_channels: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     lowest_frequency_hz: Frequency | None = None
     highest_frequency_hz: Frequency | None = None

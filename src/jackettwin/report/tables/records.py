@@ -55,7 +55,6 @@ def quality_table(seen: Examination) -> PageTable:
 
 def method_table(compared: Comparison, names: Sequence[str]) -> PageTable:
     """Return f and ζ of each mode by every method side by side."""
-    titles = {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}
 
     def said(mode: ModalEstimate | None) -> str:
         if mode is None:
@@ -74,12 +73,19 @@ def method_table(compared: Comparison, names: Sequence[str]) -> PageTable:
     ]
     caption = (
         f"f [Hz] / ζ [%] of {', '.join(compared.reference.records)} by every method in the same band, none "
-        "refined. ±: standard deviation of ζ; SSI-dat, pLSCF and EFDD state none. "
+        "refined. ±: standard deviation of ζ, where a method states it. "
         "Dash: not found. EFDD finds one mode of a close pair and lends light modes damping."
     )
-    caption += "".join(f" {titles[method]} not applied: {why}." for method, why in compared.refused.items())
-    columns = ("mode", "reported", *(titles[method] for method in compared.modes))
+    caption += "".join(
+        f" {_method_title(method)} not applied: {why}." for method, why in compared.refused.items()
+    )
+    columns = ("mode", "reported", *(_method_title(method) for method in compared.modes))
     return PageTable(caption, columns, tuple(rows))
+
+
+def _method_title(method: str) -> str:
+    """Return how a method is written; one that an installed package brings goes by its name."""
+    return {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}.get(method, method)
 
 
 def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> PageTable:

@@ -1,0 +1,155 @@
+"""The poles of every model order by our own methods, with their uncertainty where it is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from jackettwin.errors import InputError, look_up
+from jackettwin.identification.frequency_domain.plscf import plscf_poles
+from jackettwin.identification.methods import PLUGINS, POLE_METHODS
+from jackettwin.identification.preparation.resolve import guarded_band_hz
+from jackettwin.identification.subspace.covariances import block_covariances, covariances
+from jackettwin.identification.subspace.real_poles import real_poles
+from jackettwin.identification.subspace.ssi_cov import OrderPoles, Subspace, order_poles, ssi_cov
+from jackettwin.identification.subspace.ssi_dat import ssi_dat
+from jackettwin.identification.subspace.ssi_uncertainty import (
+    Propagation,
+    block_deviations,
+    order_poles_with_uncertainty,
+    propagation,
+)
+from jackettwin.identification.subspace.stabilisation import admissible, stabilisation
+from jackettwin.plugins import plugins
+
+if TYPE_CHECKING:
+    from jackettwin.identification.estimate import RealPole, Stabilisation
+    from jackettwin.identification.preparation.prepared import Prepared
+    from jackettwin.identification.settings import IdentificationSettings
+
+FEWEST_BLOCKS = 5
+"""Fewer blocks give no standard deviation worth printing."""
+EVERY = 2
+"""Samples from one instrument of the past to the next: neighbours tell nearly the same. As many modes of
+random systems are found as with all of them, with the same scatter, in half the time, …"""
+ENOUGH_INSTRUMENTS = 2
+"""… where so many times the largest model order are left."""
+PLSCF_WINDOWS = 2
+"""Lags of the half spectra, in lag windows of SSI: a resolution of half a line of the lowest mode."""
+
+
+PoleMethod = Callable[["Prepared", "IdentificationSettings"], list[OrderPoles]]
+"""An identification method: from a prepared record and the settings to the poles of every model order."""
+
+
+def pole_method(name: str) -> PoleMethod:
+    """Return the function of a method.
+
+    Raises
+    ------
+    InputError
+        If no method with poles has this name.
+    """
+    if name in POLE_METHODS:
+        return cast(PoleMethod, resolve_name(POLE_METHODS[name]))
+    return cast(PoleMethod, look_up(plugins(PLUGINS), name, "identification method", field="method"))
+
+
+def poles_of(ready: Prepared, settings: IdentificationSettings) -> Stabilisation:
+    """Return the poles of all orders, with their uncertainty where it is known how to propagate it."""
+    poles = pole_method(settings.method)(ready, settings)
+    rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
+    return stabilisation(poles, settings, sample_rate_hz=rate, band_hz=band, scale=ready.scale)
+
+
+def by_plscf(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+    """Return the poles by pLSCF on half spectra."""
+    resolved, (low, high) = ready.settings, guarded_band_hz(ready.settings)
+    lags = covariances(ready.y, PLSCF_WINDOWS * 2 * resolved.block_rows)[:, :, ready.references]
+    rate = resolved.sample_rate_hz
+    return plscf_poles(lags, resolved.orders, band=(low / rate, high / rate))
+
+
+def by_ssi_dat(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+    """Return the poles by data-driven SSI."""
+    resolved = ready.settings
+    subspace = ssi_dat(
+        ready.y,
+        block_rows=resolved.block_rows,
+        max_order=resolved.orders[-1],
+        references=ready.references,
+    )
+    return order_poles(subspace, subspace.orders(resolved.orders))
+
+
+def by_ssi_cov(ready: Prepared, settings: IdentificationSettings) -> list[OrderPoles]:
+    """Return the poles by covariance-driven SSI, with their uncertainty unless the settings leave it out."""
+    rate, band = ready.settings.sample_rate_hz, guarded_band_hz(ready.settings)
+    subspace = _subspace(ready, settings)
+    orders = subspace.orders(ready.settings.orders)
+    if not uncertain(settings):
+        return order_poles(subspace, orders)
+    shared = _propagation(ready, subspace, settings)
+    return order_poles_with_uncertainty(shared, orders, keep=lambda mu: admissible(mu, settings, rate, band))
+
+
+def relaxations(ready: Prepared, settings: IdentificationSettings) -> tuple[RealPole, ...]:
+    """Return the poles that do not oscillate.
+
+    Raises
+    ------
+    InputError
+        If the settings leave the uncertainty out that tells them from noise.
+    """
+    if not uncertain(settings):
+        raise InputError(
+            "real poles need the uncertainty of ssi-cov",
+            field="real_poles",
+            value=True,
+            allowed=f"method ssi-cov, weighting br, state_matrix shift, blocks ≥ {FEWEST_BLOCKS}",
+            remedy="leave these settings at their defaults",
+        )
+    resolved, subspace = ready.settings, _subspace(ready, settings)
+    shared = _propagation(ready, subspace, settings)
+    return real_poles(
+        order_poles_with_uncertainty(shared, subspace.orders(resolved.orders), real=True),
+        settings,
+        sample_rate_hz=resolved.sample_rate_hz,
+        band_hz=(resolved.lowest_frequency_hz, resolved.highest_frequency_hz),
+        scale=ready.scale,
+    )
+
+
+def uncertain(settings: IdentificationSettings) -> bool:
+    """Tell whether the uncertainty of the poles is wanted, and known for this variant."""
+    variant = (settings.method, settings.weighting, settings.state_matrix)
+    return settings.blocks >= FEWEST_BLOCKS and variant == ("ssi-cov", "br", "shift")
+
+
+def _subspace(ready: Prepared, settings: IdentificationSettings) -> Subspace:
+    resolved = ready.settings
+    return ssi_cov(
+        covariances(ready.y, 2 * resolved.block_rows)[:, :, ready.references],
+        block_rows=resolved.block_rows,
+        max_order=resolved.orders[-1],
+        weighting=settings.weighting,
+        state_matrix=settings.state_matrix,
+        factors=uncertain(settings),
+        every=_every(ready, settings),
+    )
+
+
+def _every(ready: Prepared, settings: IdentificationSettings) -> int:
+    """Return the samples between the instruments of the past: one if relaxations are sought or few left."""
+    enough = ENOUGH_INSTRUMENTS * max(ready.settings.orders, default=1)
+    many = ready.settings.block_rows * len(ready.references) >= EVERY * enough
+    return EVERY if many and not settings.real_poles else 1
+
+
+def _propagation(ready: Prepared, subspace: Subspace, settings: IdentificationSettings) -> Propagation:
+    rows, every = ready.settings.block_rows, _every(ready, settings)
+    blocks = block_covariances(ready.y, 2 * rows, settings.blocks)[..., ready.references]
+    return propagation(subspace, block_deviations(blocks.astype(np.float32), rows, every), np.float32)
