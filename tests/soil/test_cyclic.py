@@ -5,11 +5,10 @@ import pytest
 
 from jackettwin.soil.ground.curves import Tanh
 from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.piles.cyclic import CyclicPile, advance, cyclic_pile, drive, loop
-from jackettwin.soil.piles.hysteresis import Sliders
+from jackettwin.soil.piles.capacity import push
+from jackettwin.soil.piles.cyclic import CyclicPile, Sliders, advance, cyclic_pile, drive, loop
 from jackettwin.soil.piles.impedance import head_impedance
 from jackettwin.soil.piles.piles import Pile, stations
-from jackettwin.soil.piles.pushover import push
 from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves
 from jackettwin.structure import Section
 

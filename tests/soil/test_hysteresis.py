@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.soil.ground.curves import TabulatedCurve, Tanh
-from jackettwin.soil.piles.hysteresis import move, sliders
+from jackettwin.soil.piles.cyclic import move, sliders
 
 CURVE = Tanh(capacity=1e6, initial_stiffness=1e8)
 ONE = np.ones(1)

@@ -6,9 +6,8 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.soil.ground.curves import Tanh
 from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
-from jackettwin.soil.piles.capacity import axial_capacity, pushover
+from jackettwin.soil.piles.capacity import axial_capacity, push, pushover
 from jackettwin.soil.piles.piles import Pile, stations
-from jackettwin.soil.piles.pushover import push
 from jackettwin.soil.piles.reaction_curves import PileCurves, pile_curves
 from jackettwin.structure import Section
 from jackettwin.structure.model import STEEL, Material

@@ -13,9 +13,9 @@ from jackettwin.response.system import build_system
 from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.ground.profile import Clay, Layer, Sand, Scour, SoilProfile
 from jackettwin.soil.laws.viscoelastic import Springpot
+from jackettwin.soil.piles.capacity import push
 from jackettwin.soil.piles.impedance import head_impedance, lumped_head
 from jackettwin.soil.piles.piles import Pile, dashpots, linear_springs, stations
-from jackettwin.soil.piles.pushover import push
 from jackettwin.soil.piles.reaction_curves import linearised, pile_curves
 from jackettwin.structure import Section, assemble
 from jackettwin.structure.masses import body_from_static_moments

@@ -19,7 +19,7 @@ from jackettwin.structure import Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.model import PointMass, Reaction
-from jackettwin.structure.rectangles import rectangular_section
+from jackettwin.structure.sections import rectangular_section
 from jackettwin.structure.two_node import BeamSection, beam_matrices, cable_matrices, two_node_element
 
 # six significant figures are printed

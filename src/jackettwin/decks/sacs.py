@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, located, require
 from jackettwin.structure import Material, Section, Structure
 from jackettwin.structure.model import Member, PointMass, Reaction, RigidLink
 
@@ -295,8 +295,7 @@ def _structure(deck: _Deck, name: str) -> Structure:
             RigidLink(joint, end) for joint, end in zip((bar.a, bar.b), ends, strict=True) if joint != end
         ]
         members += _segments(nodes, f"{bar.a}-{bar.b}", ends, bar.group, deck.groups[bar.group])
-    if not members:
-        raise InputError("no member of the deck is a tube", field="MEMBER", value=len(deck.members))
+    require(members, "no member of the deck is a tube", field="MEMBER", value=len(deck.members))
     used = {node for m in members for node in (m.start, m.end)} | {link.leader for link in links}
     return Structure(
         name=name,
@@ -346,10 +345,9 @@ def _segments(
 def _place(
     nodes: Mapping[str, tuple[float, float, float]], node: str, a: str, b: str
 ) -> tuple[float, float, float]:
-    if node not in nodes:
-        raise InputError(
-            "a member of no joint", field=f"member {a}-{b}", value=node, allowed="a JOINT card's"
-        )
+    require(
+        node in nodes, "a member of no joint", field=f"member {a}-{b}", value=node, allowed="a JOINT card's"
+    )
     return nodes[node]
 
 

@@ -17,7 +17,7 @@ from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows
 from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.structure import Material, Section
 from jackettwin.structure.model import Member, RigidLink, Vector
-from jackettwin.structure.rectangles import rectangular_section
+from jackettwin.structure.sections import rectangular_section
 from jackettwin.structure.two_node import (
     BeamSection,
     TwoNodeElement,

@@ -12,9 +12,8 @@ from jackettwin.arrays import IntArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
-from jackettwin.structure.gather import of_blocks, of_elements
 from jackettwin.structure.masses import rigid_body_mass, rigid_transfer
-from jackettwin.structure.mesh import Mesh, discretise
+from jackettwin.structure.mesh import Mesh, discretise, sum_of_blocks, sum_of_elements
 from jackettwin.structure.model import Structure
 from jackettwin.structure.weight import WeightForces, geometric_stiffness, weight_forces
 
@@ -115,9 +114,9 @@ def assemble(
     ) or theory == "timoshenko"
     mesh = discretise(structure, theory=theory, subdivide=subdivide)
     p, R = mesh.properties, mesh.axes
-    K = of_elements(mesh, beam.to_global(beam.stiffness(p), R))
+    K = sum_of_elements(mesh, beam.to_global(beam.stiffness(p), R))
     inertial = p if structure.shear_in_mass else replace(p, Phi=np.zeros_like(p.Phi))
-    M = of_elements(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
+    M = sum_of_elements(mesh, beam.to_global(beam.mass(inertial, rotary_inertia=rotary), R))
     K = K + _elements(structure, mesh, "stiffness")
     M = M + _elements(structure, mesh, "mass") + _point_masses(structure, mesh)
     T, independent = _rigid_links(structure, mesh)
@@ -130,7 +129,7 @@ def assemble(
 
 def _elements(structure: Structure, mesh: Mesh, matrix: Literal["stiffness", "mass"]) -> sp.csc_array:
     """Return the matrices of the elements that are no tubes."""
-    return of_blocks(
+    return sum_of_blocks(
         mesh,
         [
             (np.concatenate([mesh.node_dofs(e.start), mesh.node_dofs(e.end)]), np.array(getattr(e, matrix)))
@@ -144,7 +143,7 @@ def _point_masses(structure: Structure, mesh: Mesh) -> sp.csc_array:
     for reaction in structure.reactions:
         if reaction.mass is not None:
             blocks.append((mesh.node_dofs(reaction.node), np.array(reaction.mass)))
-    return of_blocks(mesh, blocks)
+    return sum_of_blocks(mesh, blocks)
 
 
 def _rigid_links(structure: Structure, mesh: Mesh) -> tuple[sp.csr_array, IntArray]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.structure.assemble import Assembly, assemble
 from jackettwin.structure.eigen import lowest_modes
 from jackettwin.structure.masses import rigid_transfer
@@ -59,8 +59,7 @@ def check(assembly: Assembly) -> ModelCheck:
     ground = _supports(assembly.structure)
     body = motion.T @ (assembly.mass @ motion) - ground
     mass = float(body[2, 2])
-    if not mass > 0.0:
-        raise InputError("the structure has no mass", field="materials", value=mass, allowed="> 0 kg")
+    require(mass > 0.0, "the structure has no mass", field="materials", value=mass, allowed="> 0 kg")
     centre = np.array([body[1, 5], body[2, 3], body[0, 4]]) / mass
     return ModelCheck(
         mass_kg=mass,

@@ -1,14 +1,15 @@
-"""Structure to elements: names become numbers, conical members become short tubes."""
+"""Structure to elements, names to numbers; and the sums of their matrices on the degrees of freedom."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.structure import beam
 from jackettwin.structure.model import Member, Structure
 from jackettwin.structure.sections import tube_properties
@@ -68,10 +69,8 @@ def discretise(structure: Structure, *, theory: str | None = None, subdivide: in
     """
     theory = structure.beam if theory is None else theory
     n = structure.subdivide if subdivide is None else subdivide
-    if theory not in BEAMS:
-        raise InputError("unknown beam theory", field="beam", value=theory, allowed=", ".join(BEAMS))
-    if not 1 <= n <= 1000:
-        raise InputError("elements a member", field="subdivide", value=n, allowed="1 to 1000")
+    require(theory in BEAMS, "unknown beam theory", field="beam", value=theory, allowed=", ".join(BEAMS))
+    require(1 <= n <= 1000, "elements a member", field="subdivide", value=n, allowed="1 to 1000")
     members = structure.members
     names, coordinates, ends = _nodes(structure, n)
     at = (np.arange(n) + 0.5) / n
@@ -116,3 +115,20 @@ def _nodes(structure: Structure, n: int) -> tuple[tuple[str, ...], FloatArray, I
             a, b = np.array(structure.nodes[member.start]), np.array(structure.nodes[member.end])
             points.append(a + (b - a) * (np.arange(1, n) / n)[:, None])
     return tuple(names), np.vstack(points), ends
+
+
+def sum_of_elements(mesh: Mesh, matrices: FloatArray) -> sp.csc_array:
+    """Return the sum of the elements' matrices (n_elements, 12, 12), on all DOFs of the mesh."""
+    dofs = mesh.element_dofs()
+    rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
+    return sp.coo_array((matrices.ravel(), (rows, columns)), shape=(mesh.n_dof, mesh.n_dof)).tocsc()
+
+
+def sum_of_blocks(mesh: Mesh, blocks: list[tuple[IntArray, FloatArray]]) -> sp.csc_array:
+    """Return the sum of dense blocks, each on its own DOFs."""
+    total = sp.dok_array((mesh.n_dof, mesh.n_dof))
+    for dofs, block in blocks:
+        for i, row in enumerate(dofs):
+            for j, column in enumerate(dofs):
+                total[row, column] += block[i, j]
+    return total.tocsc()

@@ -17,9 +17,8 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.errors import InputError
 from jackettwin.structure import beam
-from jackettwin.structure.gather import of_blocks, of_elements
 from jackettwin.structure.masses import lever_arm_stiffness
-from jackettwin.structure.mesh import Mesh
+from jackettwin.structure.mesh import Mesh, sum_of_blocks, sum_of_elements
 from jackettwin.structure.model import Structure
 from jackettwin.structure.two_node import TwoNodeElement
 
@@ -84,13 +83,13 @@ def geometric_stiffness(structure: Structure, mesh: Mesh, forces: WeightForces) 
     along which their force could turn.
     """
     N = np.concatenate([np.zeros(0), *(forces.members[m.name] for m in structure.members)])
-    tubes = of_elements(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
+    tubes = sum_of_elements(mesh, beam.to_global(beam.geometric_stiffness(N, mesh.properties), mesh.axes))
     blocks = [
         (_dofs(mesh, e), geometric)
         for e in structure.elements
         if (geometric := _of_element(structure, e, forces.elements[e.name])) is not None
     ]
-    return sp.csc_array(tubes + of_blocks(mesh, blocks + _lever_arms(structure, mesh, forces)))
+    return sp.csc_array(tubes + sum_of_blocks(mesh, blocks + _lever_arms(structure, mesh, forces)))
 
 
 def _dofs(mesh: Mesh, element: TwoNodeElement) -> IntArray:

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from jackettwin.soil import Law, Prony
 from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.structure.gather import of_blocks
+from jackettwin.structure.mesh import sum_of_blocks
 
 
 def own_damping(assembly: Assembly, rayleigh: Rayleigh) -> tuple[tuple[Any, Law], ...]:
@@ -28,4 +28,4 @@ def own_damping(assembly: Assembly, rayleigh: Rayleigh) -> tuple[tuple[Any, Law]
     if not blocks:
         return ()
     T = assembly.expand
-    return ((sp.csc_array(T.T @ of_blocks(mesh, blocks) @ T), Prony(c=1.0)),)
+    return ((sp.csc_array(T.T @ sum_of_blocks(mesh, blocks) @ T), Prony(c=1.0)),)
