@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.response.state import factorised
 from jackettwin.response.system import Pencil, System
 from jackettwin.structure.eigen import dense, lowest_modes
@@ -63,8 +63,7 @@ def reduced(
     InputError
         If ``below_hz`` is not positive, or nothing is left to move.
     """
-    if not 0.0 < below_hz < np.inf:
-        raise InputError("must be positive", field="below_hz", value=below_hz, allowed="> 0")
+    require(0.0 < below_hz < np.inf, "must be positive", field="below_hz", value=below_hz, allowed="> 0")
     full = system.pencil
     touched = [group.dofs for group in full.groups]
     kept = np.searchsorted(system.free, np.intersect1d(system.free, np.array(keep, dtype=np.intp)))
@@ -78,8 +77,7 @@ def reduced(
         T[i, : b.size] = -factorised(sp.csc_array(K[i][:, i])).solve(K[i][:, b].toarray())
     T[i, b.size :] = phi
     T = np.hstack([T, _missing(sp.csc_array(full.static_stiffness()), M, T, 2.0 * pi * below_hz, error)])
-    if T.shape[1] == 0:
-        raise InputError("no mode below this frequency", field="below_hz", value=below_hz)
+    require(T.shape[1] != 0, "no mode below this frequency", field="below_hz", value=below_hz)
     # unit mass of every coordinate: metres, radians and modes side by side
     T /= np.sqrt(np.einsum("ij,ij->j", T, M @ T))
     pencil = Pencil(

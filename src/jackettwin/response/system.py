@@ -17,7 +17,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.structure import Rayleigh
 
 if TYPE_CHECKING:
@@ -140,8 +140,7 @@ def build_system(
     for node, dofs in support.fixed:
         held += list(assembly.dofs(node)[list(dofs)])
     free = np.setdiff1d(np.arange(assembly.n_dof), np.array(held, dtype=np.intp))
-    if free.size == 0:
-        raise InputError("every degree of freedom is held", field="support", remedy="hold fewer nodes")
+    require(free.size != 0, "every degree of freedom is held", field="support", remedy="hold fewer nodes")
     number = np.full(assembly.n_dof, -1, dtype=np.intp)
     number[free] = np.arange(free.size)
     M = sp.csc_array((assembly.mass + _ground_mass(assembly, support))[free][:, free])

@@ -9,7 +9,7 @@ from math import exp
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.soil import Parameter
 from jackettwin.updating.data.relaxations import RelaxationTarget
 from jackettwin.updating.data.shapes import ShapeTarget
@@ -130,10 +130,9 @@ def _alias(model: SupportModel, given: tuple[str, ...], shared: tuple[str, ...])
     """Return {the model's name: the problem's} of shared parameters; refuse what is none of the law's."""
     law = {p.name + side: None for side in ("", *model.tie_groups.sides) for p in model.family.parameters}
     for name in given:
-        if name not in law:
-            raise InputError(
-                "the law has no such parameter", field="support", value=name, allowed=", ".join(law)
-            )
+        require(
+            name in law, "the law has no such parameter", field="support", value=name, allowed=", ".join(law)
+        )
     return {member: name for name in shared for members in _members(model, name) for member in members}
 
 
@@ -181,8 +180,7 @@ def _factor(name: str, log_std: float) -> Parameter:
 
 def _no_strangers(given: Sequence[str], names: list[str]) -> None:
     for name in given:
-        if name not in names:
-            raise InputError("no such parameter", field="states", value=name, allowed=", ".join(names))
+        require(name in names, "no such parameter", field="states", value=name, allowed=", ".join(names))
 
 
 def _no_priors_without_deviations(problem: Problem) -> None:

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.soil import Law, Spring, Support, pinned
 from jackettwin.soil.support import standing
 from jackettwin.structure import Structure
@@ -76,10 +76,8 @@ def tie_groups(
         If the tie is unknown, there are no reaction nodes, the heads hold a foot rigidly or not at all, or
         there are none under a structure that would turn over.
     """
-    if tie not in TIES:
-        raise InputError("unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
-    if not structure.reactions:
-        raise InputError("no reaction nodes to support", field="structure.reaction_nodes", value=[])
+    require(tie in TIES, "unknown tie", field="support.tie", value=tie, allowed=", ".join(TIES))
+    require(structure.reactions, "no reaction nodes to support", field="structure.reaction_nodes", value=[])
     if heads is None and standing(structure) != pinned(structure):
         raise InputError(
             "a structure on one foot, or on feet in a line, turns over on springs that do not hold rotations",

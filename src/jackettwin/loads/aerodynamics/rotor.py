@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.loads.aerodynamics.blades import ALPHA, Blade
 from jackettwin.loads.kernels import blade_elements
 
@@ -115,8 +115,7 @@ def rotor_loads(
     induced : (n, 2), optional
         Axial and tangential induced velocity at the stations [m/s].
     """
-    if shaft not in SHAFTS:
-        raise InputError("unknown shaft", field="shaft", value=shaft, allowed=", ".join(SHAFTS))
+    require(shaft in SHAFTS, "unknown shaft", field="shaft", value=shaft, allowed=", ".join(SHAFTS))
     wind = wind if wind.ndim > 2 else wind[..., None, None, :]
     motion = np.zeros(6) if motion is None else motion
     leading = np.broadcast_shapes(wind.shape[:-3], motion.shape[:-1])

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 
 SEA_WATER_KG_M3 = 1025.0
 GROWTH_KG_M3 = 1325.0
@@ -190,12 +190,10 @@ def require_members(wanted: Iterable[str], names: Sequence[tuple[str, str]], fie
     """Refuse what is neither the name nor the part of a member."""
     known = {word for both in names for word in both}
     for word in wanted:
-        if word not in known:
-            raise InputError(
-                "no such member or part", field=field, value=word, remedy="name a member or a part"
-            )
+        require(
+            word in known, "no such member or part", field=field, value=word, remedy="name a member or a part"
+        )
 
 
 def _require_not_negative(field: str, value: float) -> None:
-    if not (np.isfinite(value) and value >= 0.0):
-        raise InputError("out of range", field=field, value=value, allowed="≥ 0")
+    require(np.isfinite(value) and value >= 0.0, "out of range", field=field, value=value, allowed="≥ 0")

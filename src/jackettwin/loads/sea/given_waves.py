@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, located
+from jackettwin.errors import InputError, located, require
 from jackettwin.files.yaml import read_text
 from jackettwin.loads.sea.waves import AirySea
 
@@ -103,8 +103,7 @@ def read_elevation(path: Path) -> Elevation:
                 raise InputError(
                     "not two numbers", file=path, field=FIELD, value=line.strip(), remedy=_COLUMNS
                 ) from None
-    if not rows:
-        raise InputError("no rows of time and elevation", file=path, field=FIELD, remedy=_COLUMNS)
+    require(rows, "no rows of time and elevation", file=path, field=FIELD, remedy=_COLUMNS)
     with located(file=path):
         return Elevation(*np.array(rows).T)
 

@@ -33,7 +33,7 @@ import scipy.sparse.linalg as spla
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.axes import TRANSLATIONS
-from jackettwin.errors import InputError, NumericalError
+from jackettwin.errors import InputError, NumericalError, require
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.modes.multiple import aligned_coordinates
 from jackettwin.response.system import Group, Matrix, Pencil, System
@@ -146,10 +146,9 @@ def condense(system: System, *, below_hz: float, spread: tuple[Matrix, ...] = ()
         If the truncated modes lie too near the band for their moments to converge.
     """
     full = system.pencil
-    if not full.groups:
-        raise InputError(
-            "no support to keep as boundary", field="support", value="pinned", remedy="give it a law"
-        )
+    require(
+        full.groups, "no support to keep as boundary", field="support", value="pinned", remedy="give it a law"
+    )
     radius = 2.0 * pi * below_hz
     check_rayleigh(np.array([[full.rayleigh.alpha, full.rayleigh.beta]]), radius)
     b = np.unique(np.concatenate([group.dofs for group in full.groups]))

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import require
 from jackettwin.response.modes.multiple import aligned
 from jackettwin.response.modes.poles import REAL, poles_below
 from jackettwin.response.system import System
@@ -104,8 +104,7 @@ def damped_modes(system: System, *, below_hz: float) -> DampedModes:
     NumericalError
         If the iteration does not converge or a refined pole does not come to rest.
     """
-    if not 0.0 < below_hz < np.inf:
-        raise InputError("must be positive", field="below_hz", value=below_hz, allowed="> 0")
+    require(0.0 < below_hz < np.inf, "must be positive", field="below_hz", value=below_hz, allowed="> 0")
     pairs = poles_below(system.pencil, 2.0 * pi * below_hz)
     oscillating = [pair for pair in pairs if pair[0].imag > REAL * abs(pair[0])]
     values = np.array([value for value, _ in oscillating], dtype=np.complex128)

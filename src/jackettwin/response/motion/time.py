@@ -19,7 +19,7 @@ import scipy.linalg as la
 from numba import njit
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, NumericalError
+from jackettwin.errors import NumericalError, require
 from jackettwin.response.state import maxwell_branches, state_matrix
 from jackettwin.response.system import Pencil
 from jackettwin.structure.eigen import dense
@@ -78,8 +78,7 @@ def first_order_hold(A: FloatArray, B: FloatArray, step_s: float) -> Hold:
     InputError
         If the step is not positive.
     """
-    if not 0.0 < step_s < np.inf:
-        raise InputError("must be positive", field="step_s", value=step_s, allowed="> 0")
+    require(0.0 < step_s < np.inf, "must be positive", field="step_s", value=step_s, allowed="> 0")
     n, m = B.shape
     block = np.zeros((n + 2 * m, n + 2 * m))
     block[:n, :n], block[:n, n : n + m] = A * step_s, B * step_s

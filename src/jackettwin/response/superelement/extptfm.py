@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.files.yaml import read_text
 from jackettwin.response.superelement.reduction import INTERFACE, Superelement
 
@@ -207,6 +207,5 @@ def _matrix(lines: list[str], n: int, path: Path, name: str, *, rows: int) -> Fl
             allowed=f"{n} columns",
             remedy="check the file",
         )
-    if not np.isfinite(matrix).all():
-        raise InputError("not finite", file=path, field=name, remedy="check the file")
+    require(np.isfinite(matrix).all(), "not finite", file=path, field=name, remedy="check the file")
     return np.asarray(matrix)

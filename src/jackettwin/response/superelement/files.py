@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.files import atomic_path
 from jackettwin.response.superelement.extptfm import is_extptfm, read_extptfm
 from jackettwin.response.superelement.extptfm_layouts import DEFAULT, Layout, matrices_text, module_input
@@ -92,8 +92,7 @@ def read_superelement(path: Path) -> Superelement:
     require_format(path)
     if path.suffix.lower() == ".dat":
         return read_extptfm(path)
-    if not path.is_file():
-        raise InputError("no such superelement file", file=path)
+    require(path.is_file(), "no such superelement file", file=path)
     try:
         with np.load(path, allow_pickle=False) as data:
             x, y, z = (float(v) for v in data["reference_m"])

@@ -29,7 +29,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.decks import DeckDamping
-from jackettwin.errors import InputError, NumericalError
+from jackettwin.errors import InputError, NumericalError, require
 from jackettwin.response.motion.static import self_weight
 from jackettwin.response.state import Branch, factorised, maxwell_branches
 from jackettwin.response.system import Pencil, System
@@ -158,8 +158,7 @@ def superelement(
             value=number,
             allowed=f"0 to {system.pencil.n - INTERFACE - 1}",
         )
-    if not 0.0 < band_hz < np.inf:
-        raise InputError("must be positive", field="band_hz", value=band_hz, allowed="> 0")
+    require(0.0 < band_hz < np.inf, "must be positive", field="band_hz", value=band_hz, allowed="> 0")
     point = interface_centroid(system.assembly.structure) if reference_m is None else reference_m
     at = _interface(system, point)
     pencil = system.pencil.with_laws([_finite(group.law) for group in system.pencil.groups])

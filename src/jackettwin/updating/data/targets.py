@@ -9,7 +9,7 @@ from math import log, pi
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 
 _LEAST = 1e-9
 """A damping ratio below this, or negative, counts as this: its logarithm exists."""
@@ -60,17 +60,15 @@ class Residuals:
     relative: bool
 
     def __post_init__(self) -> None:
-        if not self.targets:
-            raise InputError(
-                "nothing to update to", field="targets", value=[], remedy="give at least one target"
-            )
+        require(
+            self.targets, "nothing to update to", field="targets", value=[], remedy="give at least one target"
+        )
         modes = [target.mode for target in self.targets]
         if len(set(modes)) != len(modes):
             raise InputError(
                 "a mode is given twice", field="targets.mode", value=modes, remedy="one target a mode"
             )
-        if not self.used:
-            raise InputError("no target has a frequency or a damping ratio", field="targets", value=modes)
+        require(self.used, "no target has a frequency or a damping ratio", field="targets", value=modes)
         for t in self.targets:
             if not -1.0 < t.correlation < 1.0:
                 raise InputError(

@@ -7,7 +7,7 @@ from itertools import count
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.posterior.sampling import Posterior, gathered
 from jackettwin.updating.problem import Problem
@@ -54,8 +54,7 @@ def sample_nested(
             value="nested",
             remedy="pip install 'jackettwin[nested]', or sampler: smc",
         ) from None
-    if not problem.weighted:
-        raise InputError("no standard deviations, no likelihood", field="targets")
+    require(problem.weighted, "no standard deviations, no likelihood", field="targets")
     near = problem.anchor(0.5 * (problem.prior.low + problem.prior.high))
 
     evaluations = count(1)

@@ -9,7 +9,7 @@ import numpy as np
 import scipy  # scipy.stats is loaded where it is used: half a second
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.progress import SILENT, Progress
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.clusters import extent, gather
@@ -140,8 +140,7 @@ def search(
     """
     if method not in METHODS:
         raise InputError("unknown method", field="update.method", value=method, allowed=", ".join(METHODS))
-    if starts < 1:
-        raise InputError("at least one start", field="update.starts", value=starts, allowed="≥ 1")
+    require(starts >= 1, "at least one start", field="update.starts", value=starts, allowed="≥ 1")
     deflated = min(_DEFLATED, max(2, starts // 4)) if method == "least-squares" else 0
     run = descend if method == "least-squares" else descend_simplex
     points = _scatter(problem, starts * (_MOST if method == "least-squares" else 1), seed)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.response import UndampedModes, track_modes
 from jackettwin.structure import Structure, assemble
 from jackettwin.updating.steel.band import numbered_modes
@@ -70,8 +70,7 @@ def only_parts(structure: Structure, parts: tuple[str, ...]) -> Structure:
     """
     known = sorted({member.part for member in structure.members})
     for part in parts:
-        if part not in known:
-            raise InputError("no such part", field="parts", value=part, allowed=", ".join(known))
+        require(part in known, "no such part", field="parts", value=part, allowed=", ".join(known))
     members = tuple(member for member in structure.members if member.part in parts)
     used = {node for member in members for node in (member.start, member.end)}
     return replace(
