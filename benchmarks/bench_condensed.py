@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jackettwin.decks import read_structure
-from jackettwin.response.condensation.mode_numbers import Status, numbered_poles
+from jackettwin.response.condensation.numbered_modes import Status, numbered_poles
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.state import state_matrix
 from jackettwin.soil import family

@@ -7,9 +7,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from jackettwin import assemble, build_system, read_structure, read_support
-from jackettwin.response.superelement.error import damping_ratio, default_band_hz, reduced_modes
+from jackettwin.response.superelement.accuracy import damping_ratio, default_band_hz, reduced_modes
+from jackettwin.response.superelement.craig_bampton import superelement
 from jackettwin.response.superelement.files import read_superelement, write_superelement
-from jackettwin.response.superelement.reduction import superelement
 from jackettwin.structure import Rayleigh
 from jackettwin.structure.cut import at_interface
 

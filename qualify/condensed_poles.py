@@ -17,7 +17,7 @@ from common.page import write_page
 
 from jackettwin.decks import read_structure
 from jackettwin.errors import NumericalError
-from jackettwin.response.condensation.certificate import all_modes
+from jackettwin.response.condensation.pole_count import all_modes
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble

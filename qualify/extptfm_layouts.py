@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 from openfast import SPRINGPOTS, on_feet, reduced_to_interface, three_legs
 
-from jackettwin.response.superelement.extptfm_layouts import LAYOUTS, Layout, static_internal
+from jackettwin.response.superelement.craig_bampton import Superelement
+from jackettwin.response.superelement.extptfm_writer import LAYOUTS, Layout, static_internal
 from jackettwin.response.superelement.files import write_superelement
-from jackettwin.response.superelement.reduction import Superelement
 
 
 def main() -> None:

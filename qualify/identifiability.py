@@ -21,7 +21,7 @@ from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.posterior.identifiability import IDENTIFIED, WEAK, identifiability, verdict_of
-from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.posterior.smc import sample_posterior
 
 MODES = (1, 2, 4)
 DASHPOT = "c_side_side"

@@ -29,13 +29,13 @@ from jackettwin.records.readers.openfast import read_text
 from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.modes.own_damping import own_damping
 from jackettwin.response.motion.static import self_weight, static_displacement
-from jackettwin.response.superelement.files import write_superelement
-from jackettwin.response.superelement.reduction import (
+from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     Superelement,
     interface_centroid,
     superelement,
 )
+from jackettwin.response.superelement.files import write_superelement
 from jackettwin.response.system import System, build_system
 from jackettwin.soil import Support, read_support, with_static_reactions
 from jackettwin.soil.foundation import read_foundation

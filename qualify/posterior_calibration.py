@@ -20,7 +20,7 @@ from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, single, support_model
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.posterior.smc import sample_posterior
 
 MODES = (1, 2, 4)
 SECONDS = 600.0

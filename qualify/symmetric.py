@@ -25,8 +25,8 @@ import numpy as np
 from common.page import write_page
 
 from jackettwin.decks import read_structure
-from jackettwin.response.condensation.certificate import all_modes
-from jackettwin.response.condensation.mode_numbers import Status
+from jackettwin.response.condensation.numbered_modes import Status
+from jackettwin.response.condensation.pole_count import all_modes
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.soil import family

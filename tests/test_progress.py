@@ -12,7 +12,7 @@ from jackettwin.progress import Cancelled, Told
 from jackettwin.soil import family
 from jackettwin.structure import Rayleigh, assemble
 from jackettwin.updating import Problem, Residuals, Target, single, support_model, update
-from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.posterior.smc import sample_posterior
 from jackettwin.updating.search.solutions import search
 
 PACKAGE = Path(jackettwin.__file__).parent

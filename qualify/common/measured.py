@@ -7,7 +7,7 @@ import numpy as np
 from jackettwin.errors import NumericalError
 from jackettwin.identification.maximum_likelihood.mode_drift import long_data_limits
 from jackettwin.updating import Problem, Target
-from jackettwin.updating.posterior.sampling import Posterior, sample_posterior
+from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 
 
 def as_measured(

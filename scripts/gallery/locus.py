@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensation.condensed import Condensed
-from jackettwin.response.condensation.mode_numbers import Points, numbered_poles
+from jackettwin.response.condensation.numbered_modes import Points, numbered_poles
 from jackettwin.soil.laws.viscoelastic import Law
 
 

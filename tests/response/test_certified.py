@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from tests.support.law_rows import law_rows
 
-from jackettwin.response.condensation import certificate as certified
-from jackettwin.response.condensation.certificate import all_modes, real_poles
+from jackettwin.response.condensation import pole_count as certified
 from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.condensation.pole_count import all_modes, real_poles
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system
 from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener

@@ -6,8 +6,8 @@ import scipy.sparse.linalg as spla
 from tests.support.law_rows import law_rows
 
 from jackettwin.errors import InputError
-from jackettwin.response.condensation.certificate import all_modes
 from jackettwin.response.condensation.condensed import Condensed, condense
+from jackettwin.response.condensation.pole_count import all_modes
 from jackettwin.response.modes.modal import damped_modes, undamped_modes
 from jackettwin.response.system import System, build_system
 from jackettwin.soil.laws.viscoelastic import Law, Springpot, kelvin_voigt, maxwell_3, zener

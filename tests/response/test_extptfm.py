@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.superelement.extptfm import is_extptfm
-from jackettwin.response.superelement.extptfm_layouts import LAYOUTS
+from jackettwin.response.superelement.craig_bampton import Superelement
+from jackettwin.response.superelement.extptfm_reader import is_extptfm
+from jackettwin.response.superelement.extptfm_writer import LAYOUTS
 from jackettwin.response.superelement.files import is_superelement, read_superelement, write_superelement
-from jackettwin.response.superelement.reduction import Superelement
 
 
 def element(n: int) -> Superelement:

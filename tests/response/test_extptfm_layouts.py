@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jackettwin.response.superelement.extptfm_layouts import LAYOUTS, Layout, static_internal
+from jackettwin.response.superelement.craig_bampton import Superelement
+from jackettwin.response.superelement.extptfm_writer import LAYOUTS, Layout, static_internal
 from jackettwin.response.superelement.files import write_superelement
-from jackettwin.response.superelement.reduction import Superelement
 
 N = 8
 BEFORE = [

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from jackettwin.decks import read_structure
-from jackettwin.response.condensation.mode_numbers import NumberedModes, Status
-from jackettwin.response.condensation.refinement import refined
+from jackettwin.response.condensation.newton import refined
+from jackettwin.response.condensation.numbered_modes import NumberedModes, Status
 from jackettwin.response.modes.labels import mode_kinds, mode_labels
 from jackettwin.response.modes.modal import UndampedModes, damped_modes
 from jackettwin.soil import family

@@ -5,7 +5,7 @@ import pytest
 from tests.support.law_rows import law_rows
 
 from jackettwin.response.condensation.condensed import Condensed, condense
-from jackettwin.response.condensation.mode_numbers import NumberedModes, Points, Status, numbered_poles
+from jackettwin.response.condensation.numbered_modes import NumberedModes, Points, Status, numbered_poles
 from jackettwin.response.system import build_system
 from jackettwin.soil.laws.viscoelastic import Law, Prony, Springpot, kelvin_voigt, maxwell_3, zener
 from jackettwin.soil.support import Spring, on_translations

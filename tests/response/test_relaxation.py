@@ -5,7 +5,7 @@ import pytest
 from tests.support.law_rows import law_rows
 
 from jackettwin.response.condensation.condensed import Condensed, condense
-from jackettwin.response.condensation.mode_numbers import Points
+from jackettwin.response.condensation.numbered_modes import Points
 from jackettwin.response.condensation.relaxation import nearest_relaxation
 from jackettwin.response.modes.modal import damped_modes
 from jackettwin.response.system import build_system

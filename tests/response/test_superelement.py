@@ -9,15 +9,15 @@ import pytest
 
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.response.superelement.error import damping_ratio, default_band_hz, reduced_modes
-from jackettwin.response.superelement.files import read_superelement, write_superelement
-from jackettwin.response.superelement.reduction import (
+from jackettwin.response.superelement.accuracy import damping_ratio, default_band_hz, reduced_modes
+from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     RUNGE_KUTTA,
     fixed_interface_frequencies,
     slowed,
     superelement,
 )
+from jackettwin.response.superelement.files import read_superelement, write_superelement
 from jackettwin.response.system import build_system
 from jackettwin.soil import on_translations, own_support
 from jackettwin.soil.laws.viscoelastic import Springpot, kelvin_voigt, maxwell_3, zener

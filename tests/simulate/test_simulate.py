@@ -13,7 +13,7 @@ from jackettwin.simulate import loads_document, read_scenario, simulate
 from jackettwin.simulate.motion.driving import loads_on
 from jackettwin.simulate.motion.model import aerodynamics
 from jackettwin.simulate.motion.motion import simulate_motion
-from jackettwin.simulate.motion.rotor_stepping import march_with_rotor
+from jackettwin.simulate.motion.rotor_feedback import march_with_rotor
 from jackettwin.simulate.motion.wind import rotor_loads_in, wind_field
 from jackettwin.simulate.record import conditions
 from jackettwin.simulate.resultant import resultants

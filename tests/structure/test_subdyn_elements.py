@@ -12,7 +12,11 @@ from jackettwin.axes import GRAVITY_M_S2
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import undamped_modes
-from jackettwin.response.superelement.reduction import Superelement, fixed_interface_frequencies, superelement
+from jackettwin.response.superelement.craig_bampton import (
+    Superelement,
+    fixed_interface_frequencies,
+    superelement,
+)
 from jackettwin.response.system import build_system
 from jackettwin.soil import own_support
 from jackettwin.structure import Structure, assemble

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from observations import estimate, observation
 
-from jackettwin.response.condensation.mode_numbers import Status
+from jackettwin.response.condensation.numbered_modes import Status
 from jackettwin.soil import family
 from jackettwin.structure import assemble
 from jackettwin.study.result import MeasuredMode

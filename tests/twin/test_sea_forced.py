@@ -19,7 +19,7 @@ from jackettwin.structure import assemble
 from jackettwin.structure.assemble import Assembly
 from jackettwin.twin.sea_forced import sea_share
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.data.mode_candidates import Feet
+from jackettwin.updating.data.foot_stiffness import Feet
 
 AT_M = (140.0, 80.0, 25.0)
 SENSORS = tuple(

@@ -11,7 +11,7 @@ from jackettwin.updating import Problem, Residuals, Target, single, support_mode
 from jackettwin.updating.posterior.identifiability import USABLE, Verdict, identifiability
 from jackettwin.updating.posterior.laplace import laplace_draws
 from jackettwin.updating.posterior.predictive import predict_quantities, support_quantities
-from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.posterior.smc import sample_posterior
 from jackettwin.updating.prior import BoxPrior
 from jackettwin.updating.search.profile import profile
 

@@ -23,7 +23,7 @@ from jackettwin.updating import (
 from jackettwin.updating.posterior.convergence import convergence
 from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.posterior.nested import sample_nested
-from jackettwin.updating.posterior.sampling import Posterior, _evaluate, _moved, gathered, sample_posterior
+from jackettwin.updating.posterior.smc import Posterior, _evaluate, _moved, gathered, sample_posterior
 from jackettwin.updating.prior import BoxPrior
 
 TRUTH = np.array([3e9, 0.15])

@@ -11,7 +11,7 @@ from jackettwin.errors import InputError
 from jackettwin.updating import Problem, Residuals, SupportModel, Target, joint, single
 from jackettwin.updating.joint import Growth
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.posterior.sampling import sample_posterior
+from jackettwin.updating.posterior.smc import sample_posterior
 from jackettwin.updating.problem import NEVER
 
 MODES = (1, 2, 4)

@@ -20,7 +20,7 @@ from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import on_translations
 from jackettwin.structure import Assembly, assemble
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.data.mode_candidates import LOWEST_SHARE, Feet, softer_feet
+from jackettwin.updating.data.foot_stiffness import LOWEST_SHARE, Feet, softer_feet
 from jackettwin.updating.data.pairing import pair, pairing_score
 
 SYMMETRIC = """

@@ -4,7 +4,7 @@ from .condensation.condensed import (
     strongest_beta as strongest_beta,
     widest_band_hz as widest_band_hz,
 )
-from .condensation.mode_numbers import (
+from .condensation.numbered_modes import (
     NumberedModes as NumberedModes,
     Points as Points,
     numbered_poles as numbered_poles,
@@ -50,21 +50,14 @@ from .sensors import (
     sensor_positions as sensor_positions,
 )
 from .state import state_matrix as state_matrix
-from .superelement.error import (
+from .superelement.accuracy import (
     ReducedModes as ReducedModes,
     damping_ratio as damping_ratio,
     default_band_hz as default_band_hz,
     hertz as hertz,
     reduced_modes as reduced_modes,
 )
-from .superelement.extptfm_layouts import DEFAULT as DEFAULT, LAYOUTS as LAYOUTS, Layout as Layout
-from .superelement.files import (
-    is_superelement as is_superelement,
-    read_superelement as read_superelement,
-    require_format as require_format,
-    write_superelement as write_superelement,
-)
-from .superelement.reduction import (
+from .superelement.craig_bampton import (
     INTERFACE as INTERFACE,
     RUNGE_KUTTA as RUNGE_KUTTA,
     Superelement as Superelement,
@@ -73,5 +66,12 @@ from .superelement.reduction import (
     slowed as slowed,
     superelement as superelement,
     with_deck_damping as with_deck_damping,
+)
+from .superelement.extptfm_writer import DEFAULT as DEFAULT, LAYOUTS as LAYOUTS, Layout as Layout
+from .superelement.files import (
+    is_superelement as is_superelement,
+    read_superelement as read_superelement,
+    require_format as require_format,
+    write_superelement as write_superelement,
 )
 from .system import Group as Group, Matrix as Matrix, System as System, build_system as build_system

@@ -1,7 +1,7 @@
 from .budget import SOURCES as SOURCES, beyond_literature as beyond_literature
 from .build import support_model as support_model
+from .data.foot_stiffness import Feet as Feet, softer_feet as softer_feet
 from .data.misfit import misfit as misfit
-from .data.mode_candidates import Feet as Feet, softer_feet as softer_feet
 from .data.pairing import (
     LEAST_MAC as LEAST_MAC,
     Held as Held,
@@ -28,8 +28,8 @@ from .nuisance_parameters import (
 )
 from .posterior.identifiability import USABLE as USABLE, information as information
 from .posterior.laplace import laplace_draws as laplace_draws
-from .posterior.sampling import Posterior as Posterior
 from .posterior.scatter import leg_scatter as leg_scatter
+from .posterior.smc import Posterior as Posterior
 from .problem import Problem as Problem, State as State
 from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS, search as search
 from .steel.band import numbered_modes as numbered_modes

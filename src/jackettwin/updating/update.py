@@ -20,7 +20,7 @@ from jackettwin.updating.posterior.identifiability import Verdict, identifiabili
 from jackettwin.updating.posterior.laplace import laplace_draws, log_covariance
 from jackettwin.updating.posterior.nested import sample_nested
 from jackettwin.updating.posterior.predictive import Predictive, predict_quantities
-from jackettwin.updating.posterior.sampling import Posterior, sample_posterior
+from jackettwin.updating.posterior.smc import Posterior, sample_posterior
 from jackettwin.updating.problem import Problem
 from jackettwin.updating.search.profile import Profile, profile
 from jackettwin.updating.search.solutions import MOST_EVALUATIONS, Method, Search, Solution, search

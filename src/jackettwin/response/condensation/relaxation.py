@@ -23,10 +23,10 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from jackettwin.identification import mac
-from jackettwin.response.condensation.certificate import REAL
 from jackettwin.response.condensation.condensed import Condensed
-from jackettwin.response.condensation.mode_numbers import Points
-from jackettwin.response.condensation.refinement import kernels, refined
+from jackettwin.response.condensation.newton import kernels, refined
+from jackettwin.response.condensation.numbered_modes import Points
+from jackettwin.response.condensation.pole_count import REAL
 from jackettwin.soil.laws.coefficients import BRANCHES, K0, K_ALPHA, MASS, C
 
 _NEAR = 0.3

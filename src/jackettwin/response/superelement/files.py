@@ -12,9 +12,9 @@ import numpy as np
 
 from jackettwin.errors import InputError, require
 from jackettwin.files import atomic_path
-from jackettwin.response.superelement.extptfm import is_extptfm, read_extptfm
-from jackettwin.response.superelement.extptfm_layouts import DEFAULT, Layout, matrices_text, module_input
-from jackettwin.response.superelement.reduction import Superelement
+from jackettwin.response.superelement.craig_bampton import Superelement
+from jackettwin.response.superelement.extptfm_reader import is_extptfm, read_extptfm
+from jackettwin.response.superelement.extptfm_writer import DEFAULT, Layout, matrices_text, module_input
 
 FORMATS = (".npz", ".dat")
 

@@ -22,7 +22,7 @@ from jackettwin.response import (
 from jackettwin.simulate.motion.driving import Loads, loads_on
 from jackettwin.simulate.motion.ground import EVALUATIONS, CyclicFeet
 from jackettwin.simulate.motion.model import BAND_HZ, Model, TrueMode, true_modes
-from jackettwin.simulate.motion.rotor_stepping import march_with_rotor
+from jackettwin.simulate.motion.rotor_feedback import march_with_rotor
 from jackettwin.simulate.scenario.scenario import Scenario, in_words_of
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, require
 from jackettwin.progress import SILENT, Progress
-from jackettwin.updating.posterior.sampling import Posterior, gathered
+from jackettwin.updating.posterior.smc import Posterior, gathered
 from jackettwin.updating.problem import Problem
 
 _DRAWS = 400

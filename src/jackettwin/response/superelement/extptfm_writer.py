@@ -13,7 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.response.superelement.reduction import INTERFACE, Superelement
+from jackettwin.response.superelement.craig_bampton import INTERFACE, Superelement
 
 Layout = Literal["openfast5", "openfast4", "openfast3"]
 LAYOUTS: tuple[Layout, ...] = get_args(Layout)

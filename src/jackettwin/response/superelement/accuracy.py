@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.response.modes.poles import poles_below
-from jackettwin.response.superelement.reduction import (
+from jackettwin.response.superelement.craig_bampton import (
     INTERFACE,
     Superelement,
     dissipates,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.response.condensation.certificate import REAL, SAME
 from jackettwin.response.condensation.condensed import Condensed
-from jackettwin.response.condensation.refinement import kernels, refined
+from jackettwin.response.condensation.newton import kernels, refined
+from jackettwin.response.condensation.pole_count import REAL, SAME
 from jackettwin.response.modes.tracking import near_degenerate
 
 _KIN = 0.8
@@ -26,7 +26,7 @@ class Start:
 
     Attributes
     ----------
-    rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.condensation.mode_numbers.Points`
+    rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.condensation.numbered_modes.Points`
     poles : (n_sets, n_modes), NaN where a mode is not known
     shapes : (n_sets, n_modes, n)
     """

@@ -19,7 +19,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.response.condensation.condensed import Condensed
-from jackettwin.response.condensation.refinement import kernels, refined
+from jackettwin.response.condensation.newton import kernels, refined
 from jackettwin.response.state import state_matrix
 from jackettwin.soil import Prony, Springpot
 from jackettwin.soil.laws.coefficients import ALPHA, BRANCHES, K0, K_ALPHA, MASS, OMEGA0, C

@@ -40,7 +40,7 @@ def refined(
 
     Parameters
     ----------
-    rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.condensation.mode_numbers.Points`
+    rows, rayleigh : (n_sets, …) as in :class:`jackettwin.response.condensation.numbered_modes.Points`
     family : (n_modes,) ascending numbers
     values : (n_sets, n_modes); a mode without a start is NaN
     vectors : (n_sets, n_modes, n)

@@ -1,7 +1,7 @@
 """Poles of numbered modes and their gradients for many parameter sets at once.
 
 This is the one function behind updating, sampling, root locus and cost surfaces. A cold start finds every
-mode and certifies that it has (:mod:`jackettwin.response.condensation.certificate`). A warm start refines the
+mode and certifies that it has (:mod:`jackettwin.response.condensation.pole_count`). A warm start refines the
 modes of a neighbouring set and recognises them by shape; whatever is in doubt starts cold.
 
 Modes that are close on pinned supports are a family, such as the bending pair of a symmetric structure. A
@@ -20,10 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.response.condensation.certificate import AllModes, all_modes
+from jackettwin.response.condensation.close_modes import Start, families_of
 from jackettwin.response.condensation.condensed import Condensed, check_rayleigh
-from jackettwin.response.condensation.families import Start, families_of
-from jackettwin.response.condensation.refinement import kernels
+from jackettwin.response.condensation.newton import kernels
+from jackettwin.response.condensation.pole_count import AllModes, all_modes
 from jackettwin.response.modes.tracking import track_modes
 from jackettwin.soil.laws.coefficients import static_rows
 from jackettwin.structure import Rayleigh
