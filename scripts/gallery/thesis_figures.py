@@ -28,7 +28,7 @@ from jackettwin.soil import family
 from jackettwin.soil.laws.viscoelastic import Prony, kelvin_voigt, maxwell, zener
 from jackettwin.structure import Assembly, Rayleigh, assemble
 from jackettwin.updating import SupportModel, numbered_modes, single, support_model
-from jackettwin.updating.steel.update import only_parts
+from jackettwin.updating.steel import only_parts
 from jackettwin.verify import supports
 
 RECORD = "pile_U12_s301"

@@ -29,7 +29,7 @@ from jackettwin.twin.assembly import assembled
 from jackettwin.twin.config import ModelError, TwinConfig, UpdateSettings
 from jackettwin.twin.exact_sums import ModeSums, of_day, of_estimate
 from jackettwin.updating import Target, numbered_modes
-from jackettwin.updating.data.pairing import Held
+from jackettwin.updating.data.pairing import Counterpart
 
 
 @pytest.fixture(scope="module")
@@ -276,7 +276,7 @@ def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None
 def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinResult) -> None:
     """What holds of three records is one line; that a doubtful pole is no mode of the model is no news."""
     sure, doubtful = estimate(0.31, 0.01), replace(estimate(0.52, 0.01), status="doubtful")
-    against = Held(0, 0.18, 0.7, 0.9, "frequency")
+    against = Counterpart(0, 0.18, 0.7, 0.9, "frequency")
     one = replace(
         observation({90: sure, 91: doubtful}, None, name="one"),
         held=(against, against),

@@ -15,7 +15,7 @@ from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Record
 from jackettwin.twin.examine import examine
 from jackettwin.twin.record_checks import unlike_model
-from jackettwin.updating.data.pairing import Held
+from jackettwin.updating.data.pairing import Counterpart
 
 PLAIN = IdentificationSettings(refine=False)
 SYSTEM = ModalSystem(
@@ -86,8 +86,8 @@ def mode_of(method: str, unrefined: ModalEstimate | None = None) -> ModalEstimat
 
 def test_what_the_model_has_not_and_the_refinement_left_is_doubted() -> None:
     """A peak of the waves between the pairs was ``ok`` on symmetric jackets; a refined blade mode stays."""
-    paired = Held(0, 0.25, 0.0, 0.99, "paired")
-    unlike, far = Held(0, 0.25, 1.0, 0.46, "shape"), Held(0, 0.25, 1.0, 0.95, "frequency")
+    paired = Counterpart(0, 0.25, 0.0, 0.99, "paired")
+    unlike, far = Counterpart(0, 0.25, 1.0, 0.46, "shape"), Counterpart(0, 0.25, 1.0, 0.95, "frequency")
     plain = mode_of("ssi-cov")
     refined = mode_of("maximum-likelihood", plain)
     seen = observation({1: plain}, None).identification
@@ -105,7 +105,7 @@ def test_what_moves_as_the_lowest_mode_far_below_it_follows_forces() -> None:
     first, swell, second = (replace(mode_of("ssi-cov"), frequency_hz=f) for f in (0.2, 0.085, 0.5))
     seen = observation({1: first}, None).identification
     found = replace(seen, modes=(swell, first, second))
-    paired, alike = Held(0, 0.2, 0.0, 0.99, "paired"), Held(0, 0.2, -0.6, 0.97, "frequency")
+    paired, alike = Counterpart(0, 0.2, 0.0, 0.99, "paired"), Counterpart(0, 0.2, -0.6, 0.97, "frequency")
     now = unlike_model(found, (alike, paired, alike), (0.0,) * 3).modes
     assert [mode.status for mode in now] == ["doubtful", "ok", "ok"]
     assert [reason.code for reason in now[0].reasons] == ["below_model"]
@@ -115,7 +115,9 @@ def test_what_moves_as_under_waves_is_doubted_even_if_it_was_refined() -> None:
     """The sea's shape tells: a paired mode and a blade's keep their status."""
     refined = mode_of("maximum-likelihood", mode_of("ssi-cov"))
     found = replace(observation({1: refined}, None).identification, modes=(refined,) * 4)
-    paired, taken, unlike = (Held(0, 0.25, 0.0, 0.9, verdict) for verdict in ("paired", "taken", "shape"))
+    paired, taken, unlike = (
+        Counterpart(0, 0.25, 0.0, 0.9, verdict) for verdict in ("paired", "taken", "shape")
+    )
     now = unlike_model(found, (paired, taken, unlike, unlike), (1.0, 0.98, 0.97, 0.91)).modes
     assert [mode.status for mode in now] == ["ok", "doubtful", "doubtful", "ok"]
     assert [reason.code for reason in now[1].reasons] == ["sea_forced"]

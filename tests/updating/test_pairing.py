@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating.data.pairing import held_against, pair, pairing_score
+from jackettwin.updating.data.pairing import counterparts, pair, pairing_score
 
 FREQUENCY = np.array([0.177, 0.180, 0.65, 0.775, 0.800])
 SHAPES = np.array(
@@ -76,7 +76,7 @@ def test_every_measured_mode_is_held_against_a_mode_of_the_model() -> None:
         estimate(0.60, SHAPES[:, 2]),
         estimate(0.65, SHAPES[:, 2]),
     )
-    held = held_against(measured, FREQUENCY, SHAPES)
+    held = counterparts(measured, FREQUENCY, SHAPES)
     assert [h.verdict for h in held] == ["paired", "frequency", "shape", "taken", "paired"]
     assert [h.mode for h in held[3:]] == [2, 2]
     assert held[3].difference == pytest.approx(0.60 / 0.65 - 1.0)

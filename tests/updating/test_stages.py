@@ -6,7 +6,7 @@ import pytest
 from jackettwin.decks import read_structure
 from jackettwin.structure import assemble, check
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.steel.stages import stages
+from jackettwin.updating.steel import stages
 
 
 def test_jacket15_part_by_part() -> None:

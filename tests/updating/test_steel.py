@@ -5,7 +5,7 @@ import pytest
 
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
-from jackettwin.updating.steel.update import Factor, fit_steel, only_parts
+from jackettwin.updating.steel import Factor, fit_steel, only_parts
 
 
 def test_planted_factors_come_back() -> None:

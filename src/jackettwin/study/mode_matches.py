@@ -6,10 +6,10 @@ from typing import Any
 
 from jackettwin.findings import Finding
 from jackettwin.identification import ModalEstimate
-from jackettwin.updating import LEAST_MAC, Held
+from jackettwin.updating import LEAST_MAC, Counterpart
 
 
-def unpaired_finding(mode: ModalEstimate, held: Held, labels: tuple[str, ...]) -> Finding | None:
+def unpaired_finding(mode: ModalEstimate, held: Counterpart, labels: tuple[str, ...]) -> Finding | None:
     """Return why an identified mode has no counterpart in the model; None if it has one."""
     if held.verdict == "paired":
         return None
@@ -23,7 +23,7 @@ def unpaired_finding(mode: ModalEstimate, held: Held, labels: tuple[str, ...]) -
     return Finding(f"unpaired_{held.verdict}", f"{mode.frequency_hz:.3f} Hz", params)
 
 
-def held_document(mode: ModalEstimate, held: Held, labels: tuple[str, ...]) -> dict[str, Any]:
+def held_document(mode: ModalEstimate, held: Counterpart, labels: tuple[str, ...]) -> dict[str, Any]:
     """Return what an identified mode was held against as plain JSON data."""
     finding = unpaired_finding(mode, held, labels)
     return {
@@ -37,6 +37,6 @@ def held_document(mode: ModalEstimate, held: Held, labels: tuple[str, ...]) -> d
     }
 
 
-def _label(held: Held, labels: tuple[str, ...]) -> str:
+def _label(held: Counterpart, labels: tuple[str, ...]) -> str:
     """Return the label of the model's mode, or its number where the modes have no labels."""
     return labels[held.mode] if held.mode < len(labels) else f"mode_{held.mode + 1}"

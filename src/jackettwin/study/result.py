@@ -10,7 +10,7 @@ from jackettwin.records import Record
 from jackettwin.response import Sensor, UndampedModes
 from jackettwin.structure import Assembly
 from jackettwin.twin import Examination, Observation
-from jackettwin.updating import Held, Update
+from jackettwin.updating import Counterpart, Update
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ class TwinResult:
         return (replace(self.shown.identification, modes=found[0].modes), *found[1:])
 
     @property
-    def unpaired(self) -> tuple[tuple[ModalEstimate, Held], ...]:
+    def unpaired(self) -> tuple[tuple[ModalEstimate, Counterpart], ...]:
         """Identified modes the model has no counterpart for, and what they were held against."""
         return tuple(
             (mode, against)

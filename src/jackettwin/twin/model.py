@@ -19,7 +19,7 @@ from jackettwin.twin.codec import digest
 from jackettwin.twin.config import PAIRED_MODES, TwinConfig
 from jackettwin.twin.examine import Examination
 from jackettwin.twin.operation import OperationRule
-from jackettwin.updating import Feet, numbered_modes, pairing_score, softer_feet
+from jackettwin.updating import Feet, modes_by_foot_stiffness, numbered_modes, pairing_score
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def twin_model(config: TwinConfig, assembly: Assembly | None = None) -> TwinMode
         name=config.name,
         assembly=assembly,
         numbered=numbered,
-        feet=softer_feet(assembly, numbered),
+        feet=modes_by_foot_stiffness(assembly, numbered),
         labels=mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz)),
         identification=config.identification,
         sensors=config.sensors,

@@ -11,7 +11,7 @@ from jackettwin.findings import Finding
 from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.response import Sensor
 from jackettwin.twin.codec import StoredSchema
-from jackettwin.updating import Held
+from jackettwin.updating import Counterpart
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Observation:
     sensors : tuple of Sensor
         Where the identified channels sit and which way they point; empty if the record does not say.
     findings : tuple of Finding
-    held : tuple of Held
+    held : tuple of Counterpart
         For each identified mode, what it was held against in the model; empty without a structure.
     truth : mapping
         What the record says is true of its structure (simulated ones do): ``true_modes``, ``true_support``.
@@ -75,7 +75,7 @@ class Observation:
     recognised: tuple[Recognised | None, ...]
     sensors: tuple[Sensor, ...]
     findings: tuple[Finding, ...] = ()
-    held: tuple[Held, ...] = ()
+    held: tuple[Counterpart, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:

@@ -16,7 +16,7 @@ from jackettwin.twin.operation import UNKNOWN
 from jackettwin.twin.record_checks import unlike_model
 from jackettwin.twin.sea_forced import sea_share
 from jackettwin.twin.sensor_polarity import sensor_polarity
-from jackettwin.updating import Feet, Held, held_against, pair
+from jackettwin.updating import Counterpart, Feet, counterparts, pair
 from jackettwin.version import __version__
 
 TRUTH = ("true_modes", "true_support")
@@ -116,7 +116,7 @@ class _Known:
     """Which modes of the model the identified ones are, and what is worth saying of it."""
 
     recognised: tuple[Recognised | None, ...]
-    held: tuple[Held, ...]
+    held: tuple[Counterpart, ...]
     findings: tuple[Finding, ...]
 
 
@@ -141,5 +141,5 @@ def _known(seen: Examination, model: TwinModel, feet: Feet | None) -> _Known:
     ]
     if not which:
         against.append(Finding("no_mode_of_the_model", params={"modes": len(modes)}))
-    held = held_against(modes, feet.frequency_hz, shapes)
+    held = counterparts(modes, feet.frequency_hz, shapes)
     return _Known(tuple(which.get(i) for i in range(len(modes))), held, tuple(against))

@@ -18,7 +18,7 @@ from jackettwin.records.quality.repetition import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
 
 if TYPE_CHECKING:
-    from jackettwin.updating import Held
+    from jackettwin.updating import Counterpart
 
 Findings = tuple[Finding, ...]
 
@@ -63,7 +63,7 @@ def too_short(record: Record) -> Findings:
 
 
 def unlike_model(
-    found: Identification, held: Sequence[Held], sea: Sequence[float] | FloatArray
+    found: Identification, held: Sequence[Counterpart], sea: Sequence[float] | FloatArray
 ) -> Identification:
     """Doubt what no mode of the model resembles, and what moves as the sea would force the structure.
 

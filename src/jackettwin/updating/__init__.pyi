@@ -1,11 +1,12 @@
+from .band import numbered_modes as numbered_modes
 from .budget import SOURCES as SOURCES, beyond_literature as beyond_literature
 from .build import support_model as support_model
-from .data.foot_stiffness import Feet as Feet, softer_feet as softer_feet
+from .data.foot_stiffness import Feet as Feet, modes_by_foot_stiffness as modes_by_foot_stiffness
 from .data.misfit import misfit as misfit
 from .data.pairing import (
     LEAST_MAC as LEAST_MAC,
-    Held as Held,
-    held_against as held_against,
+    Counterpart as Counterpart,
+    counterparts as counterparts,
     pair as pair,
     pairing_score as pairing_score,
     subspace_mac_nearby as subspace_mac_nearby,
@@ -32,10 +33,15 @@ from .posterior.scatter import leg_scatter as leg_scatter
 from .posterior.smc import Posterior as Posterior
 from .problem import Problem as Problem, State as State
 from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS, search as search
-from .steel.band import numbered_modes as numbered_modes
-from .steel.refinement import Refinement as Refinement, RefinementStage as RefinementStage, refine as refine
-from .steel.stages import Stage as Stage, stages as stages
-from .steel.update import Factor as Factor, only_parts as only_parts
+from .steel import (
+    Factor as Factor,
+    Refinement as Refinement,
+    RefinementStage as RefinementStage,
+    Stage as Stage,
+    only_parts as only_parts,
+    refine as refine,
+    stages as stages,
+)
 from .tie_groups import SIDES as SIDES, SPLIT_LEGS as SPLIT_LEGS
 from .update import (
     Fit as Fit,

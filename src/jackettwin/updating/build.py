@@ -10,9 +10,9 @@ from jackettwin.errors import InputError
 from jackettwin.response import strongest_beta
 from jackettwin.soil import Family, Parameter, Support
 from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.model import SupportModel
 from jackettwin.updating.nuisance_parameters import STEEL, NuisanceParameters
-from jackettwin.updating.steel.band import condensed_for, numbered_modes
 from jackettwin.updating.tie_groups import priors_of, tie_groups
 
 Lognormal = tuple[float, float]

@@ -25,8 +25,8 @@ from jackettwin.response import (
 )
 from jackettwin.soil import Family, Law, Parameter
 from jackettwin.structure import Assembly, Rayleigh
+from jackettwin.updating.band import condensed_for, numbered_modes
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
-from jackettwin.updating.steel.band import condensed_for, numbered_modes
 from jackettwin.updating.tie_groups import TieGroups
 
 

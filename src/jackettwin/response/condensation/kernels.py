@@ -353,7 +353,7 @@ def _bounded(step, s):
 
 
 @inner
-def _likeness(x, y):
+def _inner_product(x, y):
     """Return xᴴy."""
     total = 0.0j
     for i in range(x.size):
@@ -385,11 +385,11 @@ def _orthonormalise(U, W, m):
     """Make the first rows of U, one or two, orthonormal, those of W following."""
     for j in range(m):
         for _ in range(2 * j):  # twice is enough: nearly parallel rows lose their digits once
-            c = _likeness(U[0], U[1])
+            c = _inner_product(U[0], U[1])
             for k in range(U.shape[1]):
                 U[1, k] -= c * U[0, k]
                 W[1, k] -= c * W[0, k]
-        size = 1.0 / np.sqrt(_likeness(U[j], U[j]).real)
+        size = 1.0 / np.sqrt(_inner_product(U[j], U[j]).real)
         for k in range(U.shape[1]):
             U[j, k] *= size
             W[j, k] *= size
@@ -604,20 +604,20 @@ def _among(M, starts, shapes, own, m, heavy, room, pivot):
     for i in range(m):
         _weighed(M, starts[own[i]], heavy[i])
         for j in range(m):
-            gram[j, i] = _likeness(starts[own[j]], heavy[i])
+            gram[j, i] = _inner_product(starts[own[j]], heavy[i])
     factor(gram, m, pivot)
     least = 1.0
     for j in range(m):
         x = shapes[own[j]]
         for i in range(m):
-            part[i] = np.conj(_likeness(x, heavy[i]))
+            part[i] = np.conj(_inner_product(x, heavy[i]))
             across[i] = part[i]
         solve(gram, m, pivot, across)
         share = 0.0
         for i in range(m):
             share += (np.conj(part[i]) * across[i]).real
         _weighed(M, x, heavy[m])
-        least = min(least, share / _likeness(x, heavy[m]).real)
+        least = min(least, share / _inner_product(x, heavy[m]).real)
     return least
 
 
@@ -643,7 +643,7 @@ def recognised(M, family, starts, values, shapes, least, same):
         for i in range(n_modes):
             for j in range(i):
                 if abs(values[k, i] - values[k, j]) <= same * abs(values[k, i]):
-                    good[k] &= abs(_likeness(shapes[k, i], shapes[k, j])) < _PARALLEL
+                    good[k] &= abs(_inner_product(shapes[k, i], shapes[k, j])) < _PARALLEL
     return good
 
 
@@ -657,27 +657,27 @@ def _sort(own, m, values, shapes):
 
 
 @inner
-def _name(like, own, m, values, shapes, likeness):
+def _name(like, own, m, values, shapes, alike):
     """Put each of m modes of a family in the place it resembles most.
 
-    From the order of |λ| on, two modes exchange places until no exchange makes the sum of the likenesses
+    From the order of |λ| on, two modes exchange places until no exchange makes the sum of what they resemble
     larger: what comes out depends on the modes alone, not on how they were found.
     """
     _sort(own, m, values, shapes)
     for j in range(m):
         for i in range(m):
             # shapes of one family have about the same modal mass: their unit norm does for weighing
-            likeness[i, j] = abs(_product(shapes[own[j]], like[own[i]])) ** 2
+            alike[i, j] = abs(_product(shapes[own[j]], like[own[i]])) ** 2
     better = True
     while better:
         better = False
         for i in range(m):
             for j in range(i):
-                now, then = likeness[i, i] + likeness[j, j], likeness[i, j] + likeness[j, i]
+                now, then = alike[i, i] + alike[j, j], alike[i, j] + alike[j, i]
                 if then > _CLEARLY * now:
                     _exchange(values, shapes, own[i], own[j])
                     for n in range(m):
-                        likeness[n, i], likeness[n, j] = likeness[n, j], likeness[n, i]
+                        alike[n, i], alike[n, j] = alike[n, j], alike[n, i]
                     better = True
 
 
@@ -723,7 +723,7 @@ def arrange(like, family, values, shapes, same):
     n_sets, n_modes = values.shape
     number = np.empty((n_sets, n_modes), np.int64)
     own = np.empty(n_modes, np.int64)
-    likeness = np.empty((n_modes, n_modes))
+    alike = np.empty((n_modes, n_modes))
     for k in range(n_sets):
         for i in range(n_modes):
             number[k, i] = i
@@ -731,7 +731,7 @@ def arrange(like, family, values, shapes, same):
         while first < n_modes:
             m, last = _members(family, values[k], first, own)
             if m > 1:
-                _name(like, own, m, values[k], shapes[k], likeness)
+                _name(like, own, m, values[k], shapes[k], alike)
             for i in range(m):
                 for j in range(i + 1, m):
                     near = abs(values[k, own[j]] - values[k, own[i]]) <= same * abs(values[k, own[i]])

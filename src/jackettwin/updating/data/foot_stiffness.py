@@ -50,7 +50,7 @@ class Feet:
     shapes: FloatArray
 
 
-def softer_feet(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]:
+def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]:
     """Return the numbered modes on pinned feet, then on springs, softer and softer.
 
     A structure numbered on clamped feet (a monopile) has only these: translations alone do not hold it.

@@ -27,8 +27,8 @@ LEAST_VISIBLE = 0.1
 
 
 @dataclass(frozen=True)
-class Held:
-    """What a measured mode was held against: the mode of the model that is most like it.
+class Counterpart:
+    """The mode of the model that is most like a measured one.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def pair(
     frequency_hz : (n_modes,) of the model, in any order; NaN for a mode that cannot be compared
     shapes : (n_channels, n_modes) mass-normalised, at the sensors, in the channels' order
     """
-    return {held.mode: (i, held.mac) for i, held in _paired(estimates, frequency_hz, shapes).items()}
+    return {one.mode: (i, one.mac) for i, one in _paired(estimates, frequency_hz, shapes).items()}
 
 
 def pairing_score(
@@ -79,9 +79,9 @@ def pairing_score(
     return float(sum(h.mac * _nearness(np.log1p(h.difference)) for h in found.values()))
 
 
-def held_against(
+def counterparts(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
-) -> tuple[Held, ...]:
+) -> tuple[Counterpart, ...]:
     """Return for each measured mode its counterpart, else the mode most like it and why it is none.
 
     Parameters
@@ -95,26 +95,26 @@ def held_against(
     paired = _paired(estimates, frequency_hz, shapes)
     # in logarithms: the nearness of what is far off would underflow
     likely = np.log(np.maximum(subspace_mac, 1e-12)) - 0.5 * (apart / FREQUENCY_WIDTH) ** 2
-    held = []
+    found = []
     for i, k in enumerate(np.argmax(likely, axis=1)):
         far, unlike = abs(apart[i, k]) > 2.0 * FREQUENCY_WIDTH, subspace_mac[i, k] < LEAST_MAC
         verdict: Verdict = "shape" if unlike else "frequency" if far else "taken"
         mode, share = int(visible[k]), float(subspace_mac[i, k])
-        other = Held(mode, float(frequency_hz[mode]), float(np.expm1(apart[i, k])), share, verdict)
-        held.append(paired.get(i, other))
-    return tuple(held)
+        other = Counterpart(mode, float(frequency_hz[mode]), float(np.expm1(apart[i, k])), share, verdict)
+        found.append(paired.get(i, other))
+    return tuple(found)
 
 
 def _paired(
     estimates: tuple[ModalEstimate, ...], frequency_hz: FloatArray, shapes: ComplexArray | FloatArray
-) -> dict[int, Held]:
+) -> dict[int, Counterpart]:
     """Return the counterpart of each measured mode that has one, by index."""
     if not estimates or not np.isfinite(frequency_hz).any():
         return {}
     visible, single, subspace_mac, apart = _compared(estimates, frequency_hz, shapes)
     rows, columns = linear_sum_assignment(-(subspace_mac + 0.1 * single) * _nearness(apart))
     return {
-        int(i): Held(
+        int(i): Counterpart(
             int(visible[k]),
             float(frequency_hz[visible[k]]),
             float(np.expm1(apart[i, k])),

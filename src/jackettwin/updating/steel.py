@@ -1,4 +1,4 @@
-"""Update the steel: E and ρ of each part, to given frequencies, stage by stage (thesis section 5.4)."""
+"""The steel's E and ρ, fitted part by part and stage by stage to frequencies on pinned feet (thesis 5.4)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from jackettwin.arrays import FloatArray
-from jackettwin.errors import InputError, require
-from jackettwin.response import UndampedModes, track_modes
-from jackettwin.structure import Structure, assemble
-from jackettwin.updating.steel.band import numbered_modes
+from jackettwin.errors import located, require
+from jackettwin.response import track_modes
+from jackettwin.structure import Structure, assemble, check
+from jackettwin.updating.band import numbered_modes
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class Factor:
     high: float = 10.0
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.low < self.high:
-            raise InputError(
-                "bounds are reversed or not positive",
-                field="bounds",
-                value=[self.low, self.high],
-                allowed="0 < low < high",
-                remedy="give [low, high]",
-            )
+        require(
+            0.0 < self.low < self.high,
+            "bounds are reversed or not positive",
+            field="bounds",
+            value=[self.low, self.high],
+            allowed="0 < low < high",
+            remedy="give [low, high]",
+        )
 
     @property
     def name(self) -> str:
@@ -96,15 +96,15 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
         If there are more factors than targets. Without factors the frequencies are only compared.
     """
     modes = tuple(sorted(target_hz))
-    if len(factors) > len(modes):
-        raise InputError(
-            "more factors than frequencies cannot be told apart",
-            field="free",
-            value=[f.name for f in factors],
-            allowed=f"up to {len(modes)} factors",
-        )
+    require(
+        len(factors) <= len(modes),
+        "more factors than frequencies cannot be told apart",
+        field="free",
+        value=[f.name for f in factors],
+        allowed=f"up to {len(modes)} factors",
+    )
     target = np.array([target_hz[mode] for mode in modes])
-    number = max(modes) + 3
+    rows, number = [mode - 1 for mode in modes], max(modes) + 3
     start = assemble(structure)
     reference = numbered_modes(start, number)
     parts = [(assemble(_scaled(structure, (factor,), np.array([2.0]))), factor) for factor in factors]
@@ -115,9 +115,7 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
         scale = np.exp(z)
         at = assemble(_scaled(structure, factors, scale))
         found = numbered_modes(at, number)
-        order = track_modes(start.mass, reference.omega, reference.shapes, found.shapes)[
-            [m - 1 for m in modes]
-        ]
+        order = track_modes(start.mass, reference.omega, reference.shapes, found.shapes)[rows]
         omega, phi = found.omega[order], found.shapes[:, order]
         slopes = np.empty((len(modes), len(factors)))
         for j, (K, M) in enumerate(zip(K_parts, M_parts, strict=True)):
@@ -143,16 +141,110 @@ def fit_steel(structure: Structure, factors: tuple[Factor, ...], target_hz: Mapp
         factors={factor.name: float(value) for factor, value in zip(factors, values, strict=True)},
         modes=modes,
         target_hz=target,
-        before_hz=_frequencies(reference, modes),
+        before_hz=reference.frequency_hz[rows],
         after_hz=(residuals(z) + 1.0) * target,
     )
-
-
-def _frequencies(found: UndampedModes, modes: tuple[int, ...]) -> FloatArray:
-    return np.asarray(found.frequency_hz[[m - 1 for m in modes]])
 
 
 def _scaled(structure: Structure, factors: tuple[Factor, ...], values: FloatArray) -> Structure:
     for factor, value in zip(factors, values, strict=True):
         structure = structure.with_material(factor.part, **{factor.what: float(value)})
     return structure
+
+
+@dataclass(frozen=True)
+class RefinementStage:
+    """One stage: some parts on pinned feet, their measured frequencies and what may change.
+
+    Attributes
+    ----------
+    parts : tuple of str
+        Empty for the whole structure.
+    target_hz : mapping of mode number to frequency
+    factors : tuple of Factor
+        Empty for a stage that only compares.
+    """
+
+    parts: tuple[str, ...]
+    target_hz: Mapping[int, float]
+    factors: tuple[Factor, ...]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The refined structure and what each stage did.
+
+    Attributes
+    ----------
+    factors : mapping of part to property to the product of all stages' factors
+    """
+
+    structure: Structure
+    stages: tuple[SteelFit, ...]
+    factors: Mapping[str, Mapping[str, float]]
+
+
+def refine(structure: Structure, stages: tuple[RefinementStage, ...]) -> Refinement:
+    """Fit stage after stage; each starts from what the earlier ones found.
+
+    Raises
+    ------
+    InputError
+        If a stage names an unknown part or has more factors than frequencies; the field says which stage.
+    """
+    fits: list[SteelFit] = []
+    factors: dict[str, dict[str, float]] = {}
+    for i, stage in enumerate(stages):
+        with located(field=f"stages.{i}"):
+            standing = only_parts(structure, stage.parts) if stage.parts else structure
+            fit = fit_steel(standing, stage.factors, stage.target_hz)
+        for factor in stage.factors:
+            value = fit.factors[factor.name]
+            structure = structure.with_material(factor.part, **{factor.what: value})
+            part = factors.setdefault(factor.part, {})
+            part[factor.what] = part.get(factor.what, 1.0) * value
+        fits.append(fit)
+    return Refinement(structure, tuple(fits), factors)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Some parts of a structure on pinned feet.
+
+    Attributes
+    ----------
+    parts : names of the parts standing
+    mass_kg : float
+    frequency_hz : (n_modes,) undamped
+    """
+
+    parts: tuple[str, ...]
+    mass_kg: float
+    frequency_hz: FloatArray
+
+    @property
+    def name(self) -> str:
+        """``jacket``, then ``+ transition_piece`` and so on: the part added last."""
+        last = self.parts[-1] or "members of no named part"
+        if len(self.parts) > 1:
+            return f"+ {last}"
+        return self.parts[0] or "whole structure"
+
+
+def stages(structure: Structure, number: int, *, gravity: bool = False) -> tuple[Stage, ...]:
+    """Return a stage for every part, in the order the structure names them; the last is the whole.
+
+    Raises
+    ------
+    InputError
+        If the first part does not stand on its own: parts must be named from the ground upwards.
+    """
+    # what stands on beams other than tubes alone has no parts, and is one stage
+    parts = tuple(dict.fromkeys(member.part for member in structure.members)) or ("",)
+    found = []
+    for k in range(1, len(parts) + 1):
+        # the whole keeps what no member holds, rigid links' ends among them
+        standing = structure if k == len(parts) else only_parts(structure, parts[:k])
+        assembly = assemble(standing, gravity=gravity)
+        found.append(Stage(parts[:k], check(assembly).mass_kg, numbered_modes(assembly, number).frequency_hz))
+    return tuple(found)

@@ -20,7 +20,7 @@ from jackettwin.soil.laws.viscoelastic import Prony
 from jackettwin.soil.support import on_translations
 from jackettwin.structure import Assembly, assemble
 from jackettwin.updating import numbered_modes
-from jackettwin.updating.data.foot_stiffness import LOWEST_SHARE, Feet, softer_feet
+from jackettwin.updating.data.foot_stiffness import LOWEST_SHARE, Feet, modes_by_foot_stiffness
 from jackettwin.updating.data.pairing import pair, pairing_score
 
 SYMMETRIC = """
@@ -61,7 +61,7 @@ def assembly(tmp_path_factory: pytest.TempPathFactory) -> Assembly:
 
 @pytest.fixture(scope="module")
 def path(assembly: Assembly) -> tuple[Feet, ...]:
-    return softer_feet(assembly, numbered_modes(assembly, 10))
+    return modes_by_foot_stiffness(assembly, numbered_modes(assembly, 10))
 
 
 def test_the_path_starts_as_numbered_and_only_falls(assembly: Assembly, path: tuple[Feet, ...]) -> None:
@@ -120,7 +120,7 @@ def test_modes_that_mix_as_they_cross_keep_their_names(arm: float, tmp_path: Pat
     file.write_text(CROSSING.replace("ARM", str(arm)))
     assembly = assemble(read_structure(str(file)), gravity=True)
     numbered = numbered_modes(assembly, 10)
-    path = softer_feet(assembly, numbered)
+    path = modes_by_foot_stiffness(assembly, numbered)
     torsion = mode_labels(mode_kinds(assembly, numbered.shapes, numbered.frequency_hz)).index("torsion_1")
     soft = next(feet for feet in path if feet.stiffness_n_m < 5e8)
     order = np.argsort(soft.frequency_hz)
@@ -132,5 +132,5 @@ def test_modes_that_mix_as_they_cross_keep_their_names(arm: float, tmp_path: Pat
 
 def test_clamped_feet_have_no_softer_ones() -> None:
     assembly = assemble(monopile_structure())
-    (alone,) = softer_feet(assembly, numbered_modes(assembly, 4))
+    (alone,) = modes_by_foot_stiffness(assembly, numbered_modes(assembly, 4))
     assert alone.stiffness_n_m == np.inf

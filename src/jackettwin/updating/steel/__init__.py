@@ -1,1 +1,0 @@
-"""The staged update of the steel (thesis section 5.4)."""
