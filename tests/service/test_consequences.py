@@ -5,18 +5,23 @@ Whatever order records come in, however often, and wherever a server dies, the s
 
 import random
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
+from threading import Event
 
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
 from sqlalchemy import select
 from sqlalchemy.exc import OperationalError
 from tests.service.conftest import description, hour, make_service, record_file, turn
+from tests.store.conftest import fresh
 
 from jackettwin.service.context import Service
 from jackettwin.service.web import uploads
 from jackettwin.service.work import consequences, dispatch
 from jackettwin.service.work.dispatch import Dispatcher
+from jackettwin.service.workers.tasks import Outcome, observe_stored
 from jackettwin.store import assets, reading, results, tables, work, writing
 
 RECORDS = 6
@@ -108,23 +113,92 @@ def test_orders_doubles_and_deaths_do_not_show(kept: Service, order, doubled, ki
     assert statuses == {"observed"}
 
 
-def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(service: Service) -> None:
-    send(service, 0)
-    with writing(service.database) as connection:
-        work.join(connection, "slow", {}, service.now())
-        job = work.lease(connection, "slow", 1, service.now())[0]
-        task = consequences.task_of(connection, service, job)
-        work.bury(connection, "slow")
-    from jackettwin.service.workers.tasks import observe_stored
+@pytest.fixture(params=["sqlite", "postgresql"])
+def anywhere(
+    request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Service]:
+    """A service on a database of each kind."""
+    url = None if request.param == "sqlite" else fresh(request.getfixturevalue("postgresql_url"))
+    yield from make_service(tmp_path / "store", url, monkeypatch)
 
-    slow = type(service)(service.settings, service.database, service.compute, "slow")
-    turn(service)
-    before = hashes(service)
+
+def another(service: Service, name: str) -> Service:
+    """Return another server of the same store, which may hold leases."""
     with writing(service.database) as connection:
-        consequences.keep(connection, slow, job, observe_stored(task))
-    assert hashes(service) == before
-    with reading(service.database) as connection:
+        work.join(connection, name, {}, service.now())
+    return Service(service.settings, service.database, service.compute, name)
+
+
+def leased(server: Service) -> tuple[work.Job, Outcome]:
+    """Return a piece of work that a server leased, and what its worker found."""
+    with writing(server.database) as connection:
+        job = work.lease(connection, server.server_id, 1, server.now())[0]
+        task = consequences.task_of(connection, server, job)
+    return job, observe_stored(task)
+
+
+def keep(server: Service, found: tuple[work.Job, Outcome]) -> None:
+    with writing(server.database) as connection:
+        consequences.keep(connection, server, *found)
+
+
+def test_a_result_that_comes_after_the_lease_was_lost_changes_nothing(anywhere: Service) -> None:
+    send(anywhere, 0)
+    slow = another(anywhere, "slow")
+    late = leased(slow)
+    with writing(anywhere.database) as connection:
+        work.bury(connection, "slow")
+    turn(anywhere)
+    before = hashes(anywhere)
+    keep(slow, late)
+    assert hashes(anywhere) == before
+    with reading(anywhere.database) as connection:
         assert len(connection.execute(select(tables.modes)).all()) == 2
+
+
+def test_a_result_that_comes_while_another_server_holds_the_lease_changes_nothing(anywhere: Service) -> None:
+    """The one that was taken for dead is refused, the one that took over is not."""
+    send(anywhere, 0)
+    slow, quick = another(anywhere, "slow"), another(anywhere, "quick")
+    late = leased(slow)
+    with writing(anywhere.database) as connection:
+        work.bury(connection, "slow")
+    current = leased(quick)
+    keep(slow, late)
+    with reading(anywhere.database) as connection:
+        assert connection.execute(select(tables.observations)).all() == []
+        assert [(j.state, j.owner) for j in work.list_jobs(connection)] == [("leased", "quick")]
+    assert hashes(anywhere) == {}
+    keep(quick, current)
+    assert len(hashes(anywhere)) == 1
+
+
+def test_two_servers_that_fold_into_one_day_at_once_lose_no_record(anywhere: Service) -> None:
+    """The second waits until the first has committed, and adds to what it finds then."""
+    for k in range(3):  # all of one day
+        send(anywhere, k)
+    zero, one, two = another(anywhere, "zero"), another(anywhere, "one"), another(anywhere, "two")
+    keep(zero, leased(zero))
+    first, second = leased(one), leased(two)
+    folded, commit = Event(), Event()
+
+    def slowly() -> None:
+        with writing(one.database) as connection:
+            consequences.keep(connection, one, *first)
+            folded.set()
+            commit.wait(10.0)
+
+    with ThreadPoolExecutor(2) as pool:
+        ends = [pool.submit(slowly)]
+        assert folded.wait(10.0)
+        ends.append(pool.submit(keep, two, second))
+        with suppress(TimeoutError):
+            ends[1].result(timeout=1.0)  # it would be through by now if it did not wait
+        commit.set()
+        for end in ends:
+            end.result(timeout=60.0)
+    with reading(anywhere.database) as connection:
+        assert list(connection.scalars(select(tables.states.c.n_records))) == [3]
 
 
 def poison(task: object) -> None:

@@ -81,6 +81,26 @@ def test_a_result_counts_only_while_the_lease_is_held(database: Engine) -> None:
         assert not work.finish(c, again, "two", "done", NOW)
 
 
+def test_a_server_whose_lease_another_one_took_over_ends_nothing(database: Engine) -> None:
+    """The work is leased, but not to the server that was taken for dead: whatever it says comes too late."""
+    with_asset(database)
+    with writing(database) as c:
+        asked(c, "a")
+        work.join(c, "late", {}, NOW)
+        late = work.lease(c, "late", 1, NOW)[0]
+        work.bury(c, "late")
+    with writing(database) as c:
+        current = work.lease(c, "next", 1, NOW)[0]
+    with writing(database) as c:
+        assert not work.finish(c, late, "late", "done", NOW)
+        assert work.put_back(c, late, "late", {"detail": "died"}) is None
+        work.release(c, late, "late")
+        held = work.find_job(c, current.id)
+        assert held is not None
+        assert (held.state, held.owner, held.tries, held.reason) == ("leased", "next", 1, None)
+        assert work.finish(c, current, "next", "done", NOW)
+
+
 def test_after_three_tries_a_record_is_set_aside_and_may_be_tried_again(database: Engine) -> None:
     with_asset(database)
     with writing(database) as c:
