@@ -177,7 +177,7 @@ def _observed(
 ) -> tuple[dict[str, str], int, int]:
     """Return states, records observed and rows of observations of a store whose server has this clock."""
     store = new_store(folder, twin)
-    settings = ServiceSettings(store)
+    settings = ServiceSettings(store=store)
     for place in (settings.spool, settings.models):
         place.mkdir(exist_ok=True)
     made = open_database(settings.database_url)

@@ -163,7 +163,7 @@ def make_service(
     store: Path, database: str | None, monkeypatch: pytest.MonkeyPatch, **changes: Any
 ) -> Iterator[Service]:
     """Run a service without threads: tests turn its dispatcher by hand."""
-    settings = ServiceSettings(store, database=database, **changes)
+    settings = ServiceSettings(store=store, database=database, **changes)
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     monkeypatch.setattr(engine, "observed", quick)

@@ -344,7 +344,7 @@ def test_a_file_is_read_again_when_its_reader_was_killed(
         tried += 1
         return Done(error=KilledWorker()) if tried <= deaths else Done(task(*args))
 
-    monkeypatch.setattr(service.compute, "submit", submit)
+    monkeypatch.setattr(service.cluster, "submit", submit)
     assert upload(client, 1).status_code == status
     assert tried == 3
 

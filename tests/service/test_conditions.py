@@ -8,8 +8,8 @@ from fastapi.testclient import TestClient
 from tests.service.conftest import NOON, hour, turn, upload
 
 from jackettwin.errors import InputError
-from jackettwin.service.conditions import read_table
 from jackettwin.service.context import Service
+from jackettwin.service.workers.condition_tables import read_table
 from jackettwin.store import results, streams, writing
 
 T0 = datetime(2025, 3, 1, 12, tzinfo=UTC)

@@ -126,7 +126,7 @@ def another(service: Service, name: str) -> Service:
     """Return another server of the same store, which may hold leases."""
     with writing(service.database) as connection:
         work.join(connection, name, {}, service.now())
-    return Service(service.settings, service.database, service.compute, name)
+    return Service(service.settings, service.database, service.cluster, name)
 
 
 def leased(server: Service) -> tuple[work.Job, Outcome]:
@@ -221,7 +221,7 @@ def test_a_record_that_waited_at_a_worker_that_died_was_not_tried(service: Servi
     send(service, 0)
     with monkeypatch.context() as patch:
         patch.setattr(dispatch, "observe_stored", poison)
-        patch.setattr(service.compute, "has_begun", lambda *_: False)
+        patch.setattr(service.cluster, "has_begun", lambda *_: False)
         turn(service, 12)
     with reading(service.database) as connection:
         assert work.list_jobs(connection)[0].tries <= 1
@@ -280,7 +280,7 @@ def test_states_are_made_again_from_stored_observations(service: Service) -> Non
 
 
 def test_two_servers_share_one_queue(service: Service) -> None:
-    other = type(service)(service.settings, service.database, service.compute, "other")
+    other = type(service)(service.settings, service.database, service.cluster, "other")
     for k in range(RECORDS):
         send(service, k)
     one, two = Dispatcher(service), Dispatcher(other)

@@ -16,7 +16,7 @@ from jackettwin.service.intake.files import Accepted
 from jackettwin.service.intake.folder import watch_folders
 from jackettwin.service.server import take_from_inbox
 from jackettwin.service.web.catalogue import add_text_version
-from jackettwin.service.workers.task_status import NoWorker
+from jackettwin.service.workers.failures import NoWorker
 from jackettwin.store import reading, writing
 from jackettwin.store.records import find_record
 
@@ -98,7 +98,7 @@ def test_a_full_disk_or_no_worker_is_not_the_files_fault(
     service: Service, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
     path = dropped(service, record_file(1))
-    monkeypatch.setattr(service.compute, "submit", lambda *_, **__: Done(error=error))
+    monkeypatch.setattr(service.cluster, "submit", lambda *_, **__: Done(error=error))
     with pytest.raises(type(error)):
         taken(service, path)
     assert not path.with_name("r1.parquet.refused.json").exists()

@@ -20,7 +20,7 @@ from jackettwin.errors import InputError
 from jackettwin.service.answer_cache import Answer, AnswerCache
 from jackettwin.service.context import Service
 from jackettwin.service.intake.file_access import only_files_in
-from jackettwin.service.intake.mqtt import read_packets
+from jackettwin.service.intake.packets import read_packets
 from jackettwin.service.web import app as web, auth
 from jackettwin.service.web.app import create_app
 from jackettwin.service.web.routes import health

@@ -14,8 +14,9 @@ from paho.mqtt.client import MQTTMessage
 
 from jackettwin.errors import InputError
 from jackettwin.service.context import Service
-from jackettwin.service.intake.mqtt import MqttIntake, read_packets
-from jackettwin.service.intake.packets import assembled, on_grid
+from jackettwin.service.intake.mqtt import MqttIntake
+from jackettwin.service.intake.packets import read_packets
+from jackettwin.service.work.stream_windows import assembled, on_grid
 from jackettwin.store import reading, streams
 from jackettwin.store.streams import WINDOW, Packet, window_start
 

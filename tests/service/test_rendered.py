@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from datetime import timedelta
 from typing import get_type_hints
 
@@ -143,7 +142,7 @@ def test_no_change_leaves_an_old_answer(client: TestClient, service: Service) ->
         )
 
     def forgotten() -> None:
-        service.settings = replace(service.settings, raw_days=7.0)
+        service.settings = service.settings.model_copy(update={"raw_days": 7.0})
         service.now = lambda: NOON + timedelta(days=20)
         Housekeeping(service)
         assert prune(service) > 0

@@ -1,6 +1,5 @@
 """Samples of observed records are kept for as long as the store's policy says."""
 
-from dataclasses import replace
 from datetime import timedelta
 
 from fastapi.testclient import TestClient
@@ -20,7 +19,7 @@ def test_old_samples_go_and_what_they_said_stays(client: TestClient, service: Se
     upload(client, 2)  # not observed yet
     upload(client, 3, start=NOON + timedelta(days=9))
     assert waveforms(service) == 3
-    service.settings = replace(service.settings, raw_days=7.0)
+    service.settings = service.settings.model_copy(update={"raw_days": 7.0})
     Housekeeping(service)
     service.now = lambda: NOON + timedelta(days=10)
     assert prune(service) == 1
@@ -37,6 +36,6 @@ def test_zero_days_keep_everything_again(client: TestClient, service: Service) -
     service.now = lambda: NOON + timedelta(days=4000)
     assert prune(service) == 0  # without a policy
     for days in (1.0, 0.0):
-        service.settings = replace(service.settings, raw_days=days)
+        service.settings = service.settings.model_copy(update={"raw_days": days})
         Housekeeping(service)
     assert prune(service) == 0

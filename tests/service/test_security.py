@@ -151,13 +151,13 @@ def test_an_open_server_answers_only_to_its_own_name(client: TestClient) -> None
 
 
 def test_a_server_that_others_reach_needs_users_and_tls(tmp_path) -> None:
-    exposed = ServiceSettings(tmp_path, host="0.0.0.0")
+    exposed = ServiceSettings(store=tmp_path, host="0.0.0.0")
     with pytest.raises(InputError, match="no user is defined"):
         refuse_exposed(exposed, users=False)
     with pytest.raises(InputError, match="unencrypted"):
         refuse_exposed(exposed, users=True)
-    refuse_exposed(ServiceSettings(tmp_path, host="0.0.0.0", behind_proxy=True), users=True)
-    refuse_exposed(ServiceSettings(tmp_path), users=False)
+    refuse_exposed(ServiceSettings(store=tmp_path, host="0.0.0.0", behind_proxy=True), users=True)
+    refuse_exposed(ServiceSettings(store=tmp_path), users=False)
 
 
 def test_what_was_done_is_written_down(stranger: TestClient, users: Service) -> None:
@@ -202,7 +202,7 @@ def test_a_file_is_stopped_while_it_expands(tmp_path: Path) -> None:
 
 
 def test_a_file_that_is_read_too_long_is_given_up(client: TestClient, service: Service, monkeypatch) -> None:
-    monkeypatch.setattr(service.compute, "submit", lambda *_, **__: Done(error=TimeoutError()))
+    monkeypatch.setattr(service.cluster, "submit", lambda *_, **__: Done(error=TimeoutError()))
     answer = upload(client, 1)
     assert answer.status_code == 422 and "in time" in answer.json()["detail"]
 

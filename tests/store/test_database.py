@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
+from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import Engine, inspect, text
@@ -117,14 +118,14 @@ def test_servers_that_start_together_migrate_it_once(old: str) -> None:
 
 
 def test_a_migration_that_fails_changes_nothing(old: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    original = module.command.upgrade
+    original = command.upgrade
 
     def breaking(*arguments: object) -> None:
         original(*arguments)
         raise OSError("no space left")
 
     with monkeypatch.context() as broken:
-        broken.setattr(module.command, "upgrade", breaking)
+        broken.setattr(command, "upgrade", breaking)
         with pytest.raises(OSError, match="no space"):
             open_database(old)
     engine = open_database(old, migrate=False)

@@ -41,7 +41,7 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
     scheduler = options["scheduler"]
     workers = f"{options['workers']} workers" if scheduler is None else f"work at {scheduler}"
     messages.print(f"starting {workers} and the server …")
-    from jackettwin.service import Service, ServiceSettings, demonstrate, serve
+    from jackettwin.service import Service, demonstrate, read_settings, serve
 
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")
 
@@ -57,5 +57,5 @@ def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> Non
         if demo:
             demonstrate(service)
 
-    serve(ServiceSettings(store=store, **options), ready)
+    serve(read_settings(store=store, **options), ready)
     messages.print("stopped; what was under way goes on at the next start")

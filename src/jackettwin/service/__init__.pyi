@@ -3,7 +3,7 @@ from .demonstration import demonstrate as demonstrate
 from .intake.files import Accepted as Accepted
 from .intake.folder import record_files as record_files, watch_folders as watch_folders
 from .server import serve as serve
-from .settings import ServiceSettings as ServiceSettings
+from .settings import ServiceSettings as ServiceSettings, read_settings as read_settings
 from .store_commands import (
     add_conditions as add_conditions,
     add_twin as add_twin,

@@ -12,12 +12,12 @@ from functools import cached_property
 
 from sqlalchemy import Engine
 
+from jackettwin.service import workers
 from jackettwin.service.answer_cache import AnswerCache
 from jackettwin.service.day_cache import DayCache
 from jackettwin.service.event_feed import Feed
 from jackettwin.service.login_attempts import LoginAttempts
 from jackettwin.service.settings import ServiceSettings
-from jackettwin.service.workers.cluster import Compute
 from jackettwin.store import open_database
 
 
@@ -26,8 +26,8 @@ def _now() -> datetime:
 
 
 @dataclass(frozen=True)
-class Desk:
-    """A place without workers: the command line beside a server, or without one."""
+class OpenStore:
+    """A store without workers: what the command line has, beside a server or without one."""
 
     settings: ServiceSettings
     database: Engine
@@ -40,13 +40,13 @@ class Service:
 
     settings: ServiceSettings
     database: Engine
-    compute: Compute
+    cluster: workers.cluster.Cluster
     server_id: str
     now: Callable[[], datetime] = _now
     login_attempts: LoginAttempts = field(default_factory=LoginAttempts)
     days: DayCache = field(default_factory=DayCache)
     answers: AnswerCache = field(default_factory=AnswerCache)
-    chores: list[Callable[[], None]] = field(default_factory=list)
+    periodic: list[Callable[[], None]] = field(default_factory=list)
     wake: Callable[[], None] = lambda: None
     turning: Callable[[], bool] = lambda: True
     broker_connected: Callable[[], bool | None] = lambda: None
@@ -63,7 +63,7 @@ class Service:
         return shutil.disk_usage(store).free if os.access(store, os.W_OK) else 0
 
 
-Place = Desk | Service
+Place = OpenStore | Service
 """What keeping results needs: where the store is, its database, and the time."""
 
 
@@ -78,4 +78,6 @@ def open_service(settings: ServiceSettings) -> Service:
     for folder in (settings.store, settings.spool, settings.models):
         folder.mkdir(parents=True, exist_ok=True)
     database = open_database(settings.database_url)
-    return Service(settings, database, Compute(settings), f"{os.getpid()}-{secrets.token_hex(4)}")
+    return Service(
+        settings, database, workers.cluster.Cluster(settings), f"{os.getpid()}-{secrets.token_hex(4)}"
+    )

@@ -1,16 +1,19 @@
-"""What turbines' days say together, kept between questions: past days are summed once."""
+"""Sums over the days of turbines, kept between questions: past days are summed once."""
 
 from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
 from threading import Lock
+from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection
 
-from jackettwin.service.workers import engine
+from jackettwin.service import workers
 from jackettwin.store import assets, results
-from jackettwin.twin import TwinModel
+
+if TYPE_CHECKING:
+    from jackettwin.twin import TwinModel
 
 _MOST = 256
 """Turbines whose sums are kept: some kilobytes each."""
@@ -22,7 +25,7 @@ Hashes = tuple[tuple[str, str], ...]
 class DaysTold:
     """What the days of a turbine say together, how many they are, and the identity of their states."""
 
-    sums: engine.Sums
+    sums: workers.engine.Sums
     days: int
     state_hash: str
 
@@ -31,7 +34,7 @@ class DayCache:
     """Sums of all days but the last one, which is still growing, of turbines that were asked for of late."""
 
     def __init__(self) -> None:
-        self._past: OrderedDict[tuple[str, str], tuple[Hashes, engine.Sums]] = OrderedDict()
+        self._past: OrderedDict[tuple[str, str], tuple[Hashes, workers.engine.Sums]] = OrderedDict()
         self._lock = Lock()
 
     def told(
@@ -42,20 +45,20 @@ class DayCache:
         by_day = results.state_hashes(connection, *key, day)
         hashes = tuple(by_day.items())
         with self._lock:
-            known, sums = self._past.get(key, ((), engine.no_days(model)))
+            known, sums = self._past.get(key, ((), workers.engine.no_days(model)))
         if hashes[: len(known)] != known:
-            known, sums = (), engine.no_days(model)
+            known, sums = (), workers.engine.no_days(model)
         states = results.states_until(connection, *key, day, after=known[-1][0] if known else None)
         for state in states[:-1]:
-            sums = engine.with_day(sums, state.day, state.document)
+            sums = workers.engine.with_day(sums, state.day, state.document)
             known = (*known, (state.day, state.document_hash))
         if day is None:
             self._keep(key, known, sums)
         for state in states[-1:]:
-            sums = engine.with_day(sums, state.day, state.document)
+            sums = workers.engine.with_day(sums, state.day, state.document)
         return DaysTold(sums, len(hashes), results.identity_of(by_day))
 
-    def _keep(self, key: tuple[str, str], known: Hashes, sums: engine.Sums) -> None:
+    def _keep(self, key: tuple[str, str], known: Hashes, sums: workers.engine.Sums) -> None:
         with self._lock:
             self._past[key] = (known, sums)
             self._past.move_to_end(key)

@@ -27,7 +27,9 @@ from jackettwin.service.settings import ServiceSettings, refuse_exposed
 from jackettwin.service.web.app import create_app
 from jackettwin.service.work.dispatch import Dispatcher
 from jackettwin.service.work.housekeeping import Housekeeping
-from jackettwin.service.workers.task_status import NoWorker, one_heap
+from jackettwin.service.work.stream_windows import StreamWindows
+from jackettwin.service.workers.failures import NoWorker
+from jackettwin.service.workers.memory import one_heap
 from jackettwin.store import assets, people, reading
 
 log = logging.getLogger(__name__)
@@ -49,16 +51,16 @@ def running(settings: ServiceSettings) -> Iterator[Service]:
     with ExitStack() as in_the_end:
         service = open_service(settings)
         in_the_end.callback(service.database.dispose)
-        in_the_end.callback(service.compute.close)
+        in_the_end.callback(service.cluster.close)
         with reading(service.database) as connection:
             refuse_exposed(settings, people.any_user(connection))
-        service.chores.append(Housekeeping(service).turn)
+        service.periodic.append(Housekeeping(service).turn)
         dispatcher, stop = Dispatcher(service), Event()
         service.wake, service.turning = dispatcher.wake.set, dispatcher.is_alive
         in_the_end.callback(dispatcher.stop)
         if settings.mqtt is not None:
             mqtt = MqttIntake(service, settings.mqtt)
-            service.chores.append(mqtt.turn)
+            service.periodic += [mqtt.turn, StreamWindows(service, mqtt.silent).turn]
             service.broker_connected = lambda: mqtt.connected
             service.packets_refused = lambda: mqtt.refused
             mqtt.start()

@@ -1,68 +1,61 @@
-"""How a server runs: everything that ``jackettwin serve`` may be told."""
+"""How a server runs: what ``jackettwin serve`` is told, and the limits that an environment may set."""
 
 from __future__ import annotations
 
 import ipaddress
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from jackettwin.errors import InputError
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from jackettwin.errors import InputError, require
 from jackettwin.store import sqlite_url
 
 
-@dataclass(frozen=True)
-class ServiceSettings:
+class ServiceSettings(BaseSettings):
     """Where a server listens, works and keeps things.
 
-    Attributes
-    ----------
-    store : Path
-        Folder of waveforms, spool and, without ``database``, of the database.
-    host, port
-        Where it listens.
-    database : str or None
-        URL of PostgreSQL; None for SQLite in the store.
-    scheduler : str or None
-        Address of a Dask scheduler whose workers see the store at the same path; None for workers of its own.
-    workers : int
-        Of its own, one thread each.
-    mqtt : str or None
-        ``mqtt[s]://[user:password@]host[:port]`` of a broker to listen to.
-    tls_certificate, tls_key : Path or None
-        For HTTPS without a proxy.
-    behind_proxy : bool
-        Whether a proxy in front ends TLS and passes on who asked.
-    trusted_header : str or None
-        Header in which the proxy names the user it has authenticated, as OIDC proxies do.
-    raw_days : float or None
-        Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy.
-    upload_limit_bytes : int
-        Largest file that is taken.
-    samples_limit : int
-        Most samples, over all channels, that a file may expand to.
-    parse_limit_s, observe_limit_s : float
-        After which reading or observing a record is given up.
-    worker_memory_bytes : int
-        Of one worker: no file may expand beyond it; who observes beyond it is ended, a try of the record.
+    What is not given is read from the environment: ``JACKETTWIN_SERVE_PARSE_LIMIT_S`` and the like. A shorter
+    prefix would meet what Kubernetes sets for a service of our name (``JACKETTWIN_PORT``).
     """
 
+    model_config = SettingsConfigDict(
+        env_prefix="JACKETTWIN_SERVE_", env_ignore_empty=True, frozen=True, use_attribute_docstrings=True
+    )
+
     store: Path
+    """Folder of waveforms, spool and, without ``database``, of the database."""
     host: str = "127.0.0.1"
-    port: int = 8470
+    """Address to listen at."""
+    port: int = Field(default=8470, ge=1, le=65535)
     database: str | None = None
+    """URL of PostgreSQL; None for SQLite in the store."""
     scheduler: str | None = None
-    workers: int = 2
+    """Address of a Dask scheduler whose workers see the store at the same path; None for own workers."""
+    workers: int = Field(default=2, ge=1)
+    """Number of own workers, one thread each."""
     mqtt: str | None = None
+    """``mqtt[s]://[user:password@]host[:port]`` of a broker to listen to."""
     tls_certificate: Path | None = None
+    """For HTTPS without a proxy, with ``tls_key``."""
     tls_key: Path | None = None
     behind_proxy: bool = False
+    """Whether a proxy in front ends TLS and passes on who asked."""
     trusted_header: str | None = None
+    """Header in which the proxy names the user it has authenticated, as OIDC proxies do."""
     raw_days: float | None = None
+    """Days for which the samples of observed records are kept, 0 for ever; None leaves the store's policy."""
     upload_limit_bytes: int = 512 * 2**20
+    """Largest file that is taken."""
     samples_limit: int = 200_000_000
+    """Most samples, over all channels, that a file may expand to."""
     parse_limit_s: float = 120.0
+    """Time after which reading a file is given up."""
     observe_limit_s: float = 600.0
+    """Time after which observing a record is given up."""
     worker_memory_bytes: int = 3 * 2**30
+    """Memory of one worker: no file may expand beyond it; a worker that observes beyond it is ended."""
 
     @property
     def database_url(self) -> str:
@@ -95,6 +88,24 @@ class ServiceSettings:
         return self.store / "models"
 
 
+def read_settings(**given: Any) -> ServiceSettings:
+    """Return the settings that are given, completed by the environment.
+
+    Raises
+    ------
+    InputError
+        If one is not what it must be.
+    """
+    try:
+        return ServiceSettings(**given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(map(str, first["loc"]))
+        raise InputError(
+            first["msg"], field=name, value=first["input"], remedy=f"see JACKETTWIN_SERVE_{name.upper()}"
+        ) from None
+
+
 def is_loopback(host: str) -> bool:
     """Tell whether a host name or address is this machine's own."""
     if host == "localhost":
@@ -113,21 +124,19 @@ def refuse_exposed(settings: ServiceSettings, users: bool) -> None:
     InputError
         If the host is not loopback and there are no users, or no TLS of our own or of a proxy.
     """
-    if settings.loopback:
-        return
-    if not users:
-        raise InputError(
-            "others can reach this address, and no user is defined",
-            field="host",
-            value=settings.host,
-            allowed="127.0.0.1, or users",
-            remedy="define one: jackettwin user add NAME --role admin --store STORE",
-        )
-    if not settings.secure:
-        raise InputError(
-            "others can reach this address, and passwords would travel unencrypted",
-            field="host",
-            value=settings.host,
-            allowed="127.0.0.1, or TLS",
-            remedy="give --tls-certificate and --tls-key, or --behind-proxy if a proxy ends TLS",
-        )
+    require(
+        settings.loopback or users,
+        "others can reach this address, and no user is defined",
+        field="host",
+        value=settings.host,
+        allowed="127.0.0.1, or users",
+        remedy="define one: jackettwin user add NAME --role admin --store STORE",
+    )
+    require(
+        settings.loopback or settings.secure,
+        "others can reach this address, and passwords would travel unencrypted",
+        field="host",
+        value=settings.host,
+        allowed="127.0.0.1, or TLS",
+        remedy="give --tls-certificate and --tls-key, or --behind-proxy if a proxy ends TLS",
+    )

@@ -10,17 +10,22 @@ from typing import Any
 from sqlalchemy import Connection, Engine, select
 
 from jackettwin.errors import InputError
-from jackettwin.service import conditions
-from jackettwin.service.context import Desk
+from jackettwin.service.context import OpenStore
 from jackettwin.service.intake.bundles import bundle
 from jackettwin.service.intake.files import Accepted, take_file
-from jackettwin.service.settings import ServiceSettings
+from jackettwin.service.settings import read_settings
 from jackettwin.service.web.catalogue import add_version, adopt, archive
 from jackettwin.service.work import consequences
+from jackettwin.service.work.conditions import add_conditions as keep_conditions
+from jackettwin.service.workers.condition_tables import read_table
 from jackettwin.service.workers.tasks import read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 from jackettwin.store.results import StoredObservation
 from jackettwin.store.tables import observations
+
+
+def _opened(database: Engine, store: Path) -> OpenStore:
+    return OpenStore(read_settings(store=store), database)
 
 
 def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str = "") -> dict[str, Any]:
@@ -33,10 +38,10 @@ def add_twin(database: Engine, store: Path, name: str, twin: Path, comment: str 
     """
     assets.check_name(name)
     contents = bundle(twin)
-    desk = Desk(ServiceSettings(store), database)
+    opened = _opened(database, store)
     with writing(database) as connection:
         _refuse_archived(connection, name)
-        version = add_version(connection, desk, name, contents, "command line", comment)
+        version = add_version(connection, opened, name, contents, "command line", comment)
     return {
         "asset": name,
         "version": version.version,
@@ -55,7 +60,7 @@ def adopt_version(database: Engine, store: Path, name: str, version: int) -> Non
         If there is no such asset or version.
     """
     with writing(database) as connection:
-        adopt(connection, Desk(ServiceSettings(store), database), name, version, "command line")
+        adopt(connection, _opened(database, store), name, version, "command line")
 
 
 def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = False) -> None:
@@ -67,7 +72,7 @@ def archive_asset(database: Engine, store: Path, name: str, *, undo: bool = Fals
         If there is no such asset.
     """
     with writing(database) as connection:
-        archive(connection, Desk(ServiceSettings(store), database), name, "command line", undo=undo)
+        archive(connection, _opened(database, store), name, "command line", undo=undo)
 
 
 def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted:
@@ -80,7 +85,7 @@ def take_here(database: Engine, store: Path, asset: str, path: Path) -> Accepted
     """
     with reading(database) as connection:
         _refuse_archived(connection, asset)
-    return take_file(Desk(ServiceSettings(store), database), read_file, asset, path, path.name)
+    return take_file(_opened(database, store), read_file, asset, path, path.name)
 
 
 def _refuse_archived(connection: Connection, asset: str) -> None:
@@ -104,9 +109,9 @@ def add_conditions(database: Engine, store: Path, asset: str, table: Path, **how
     with reading(database) as connection:
         assets.found_version(connection, asset)
         _refuse_archived(connection, asset)
-    values = conditions.read_table(table, **how)
+    values = read_table(table, **how)
     with writing(database) as connection:
-        return conditions.add(connection, Desk(ServiceSettings(store), database), asset, values)
+        return keep_conditions(connection, _opened(database, store), asset, values)
 
 
 def rebuild(
@@ -119,7 +124,7 @@ def rebuild(
     progress: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Make states again from stored observations, and queue raw records to be observed again if asked to."""
-    desk = Desk(ServiceSettings(store), database)
+    opened = _opened(database, store)
     start = datetime(1900, 1, 1, tzinfo=UTC) if since is None else since.replace(tzinfo=UTC)
     with reading(database) as connection:
         if asset is not None:
@@ -132,11 +137,11 @@ def rebuild(
             consequences.lock(connection, name)
             for version in assets.all_versions(connection, name):
                 for first in _first_of_days(connection, name, version.model_hash, start):
-                    consequences.fold(connection, desk, name, version.version, first, anew=True)
+                    consequences.fold(connection, opened, name, version.version, first, anew=True)
                     days += 1
                 if observe:
-                    queued += _queue_all(connection, desk, version, start)
-            journal.tell(connection, "state", name, {"rebuilt": True}, desk.now())
+                    queued += _queue_all(connection, opened, version, start)
+            journal.tell(connection, "state", name, {"rebuilt": True}, opened.now())
     return {"assets": names, "days": days, "queued": queued}
 
 
@@ -150,10 +155,10 @@ def _first_of_days(connection: Any, asset: str, model_hash: str, start: datetime
     return list(first.values())
 
 
-def _queue_all(connection: Any, desk: Desk, version: assets.Version, start: datetime) -> int:
+def _queue_all(connection: Any, opened: OpenStore, version: assets.Version, start: datetime) -> int:
     count = 0
     for record in records.all_with_samples(connection, version.asset):
         if record.start_utc >= start:
-            number = work.enqueue(connection, version, record.record_id, desk.now())
-            count += work.try_again(connection, number, desk.now())
+            number = work.enqueue(connection, version, record.record_id, opened.now())
+            count += work.try_again(connection, number, opened.now())
     return count

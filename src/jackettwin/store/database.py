@@ -8,9 +8,6 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
-from alembic import command
-from alembic.config import Config
-from alembic.runtime.migration import MigrationContext
 from sqlalchemy import Connection, Engine, Table, create_engine, event, inspect, make_url, text
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError, OperationalError
@@ -109,7 +106,7 @@ def _sqlite(url: str) -> Engine:
 def _migrate(engine: Engine, url: str) -> None:
     """Bring the schema up to date, once however many servers start; what was there is copied before."""
     with engine.connect() as connection:
-        current = MigrationContext.configure(connection).get_current_revision()
+        current = _schema(connection)
     if current == SCHEMA_VERSION:
         return
     if current is not None:
@@ -117,12 +114,20 @@ def _migrate(engine: Engine, url: str) -> None:
     with writing(engine) as connection:
         if engine.dialect.name == "postgresql":
             connection.execute(text("select pg_advisory_xact_lock(740113)"))
-        current = MigrationContext.configure(connection).get_current_revision()
+        current = _schema(connection)
         if current == SCHEMA_VERSION:  # another server was quicker
             return
         if current is not None:
             _copy(connection, url, current)
         bring_to(connection, SCHEMA_VERSION)
+
+
+def _schema(connection: Connection) -> str | None:
+    """Return the newest migration that a database has seen: Alembic need not be loaded to look."""
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    found: str | None = connection.scalar(text("select version_num from alembic_version"))
+    return found
 
 
 def check_schema(found: str, field: str, file: Path | None = None) -> None:
@@ -157,9 +162,12 @@ def check_schema(found: str, field: str, file: Path | None = None) -> None:
 
 def bring_to(connection: Connection, schema: str) -> None:
     """Bring the tables to a schema, newer or older, within the transaction."""
-    current = MigrationContext.configure(connection).get_current_revision()
+    current = _schema(connection)
     if current == schema:
         return
+    from alembic import command
+    from alembic.config import Config
+
     config = Config()
     config.set_main_option("script_location", str(_MIGRATIONS))
     config.attributes["connection"] = connection

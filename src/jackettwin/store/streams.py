@@ -6,13 +6,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-import numpy as np
 from sqlalchemy import Connection, delete, func, insert, select, update
 
-from jackettwin.arrays import FloatArray
 from jackettwin.store.database import insert_new
 from jackettwin.store.tables import conditions, packets, windows
+
+if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
 
 WINDOW = timedelta(minutes=10)
 """Streams become records of ten minutes on UTC boundaries, the field's habit."""
@@ -63,7 +65,7 @@ def add_packets(connection: Connection, new: Iterable[Packet], now: datetime) ->
             "t0_utc": packet.t0_utc,
             "window_utc": window_start(packet.t0_utc),
             "rate_hz": packet.rate_hz,
-            "samples": np.asarray(packet.samples, dtype="<f8").tobytes(),
+            "samples": packet.samples.astype("<f8").tobytes(),
         }
         if insert_new(connection, packets, row):
             for window_utc in _reached(packet):
@@ -106,6 +108,8 @@ def newest_packet(connection: Connection, asset: str) -> datetime | None:
 
 def packets_of(connection: Connection, asset: str, window_utc: datetime) -> list[Packet]:
     """Return every packet that may reach into a window, by channel and time."""
+    import numpy as np
+
     near = packets.c.window_utc.between(window_utc - LONGEST, window_utc)
     order = (packets.c.channel, packets.c.t0_utc)
     rows = connection.execute(select(packets).where(packets.c.asset == asset, near).order_by(*order))
@@ -167,6 +171,8 @@ def conditions_between(
     half of it, or it has half of the record. A condition that is not known, or a text that changes, is left
     out.
     """
+    import numpy as np
+
     near = conditions.c.time_utc.between(start - INTERVAL, end)
     where = (conditions.c.asset == asset, near)
     seen: dict[str, list[tuple[datetime, float | str]]] = {}

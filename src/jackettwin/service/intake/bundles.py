@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
 from jackettwin.files import read_yaml
-from jackettwin.service.workers.engine import TWIN_FILE, Twin, load_twin
+from jackettwin.service import workers
 from jackettwin.store import assets
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def bundle(twin: Path) -> dict[str, bytes]:
     text = twin.read_bytes()
     if moved or had_records:
         text = yaml.safe_dump(rewritten, sort_keys=False, allow_unicode=True).encode()
-    files[TWIN_FILE] = text
+    files[workers.engine.TWIN_FILE] = text
     return files
 
 
@@ -68,9 +68,9 @@ def twin_folder(connection: Connection, service: Place, asset: str, version: int
     return place
 
 
-def adopted_twin(connection: Connection, service: Place, asset: str) -> Twin:
+def adopted_twin(connection: Connection, service: Place, asset: str) -> workers.engine.Twin:
     """Return the twin whose answers count."""
-    return load_twin(twin_folder(connection, service, asset))
+    return workers.engine.load_twin(twin_folder(connection, service, asset))
 
 
 def _walked(data: Any, take: Any) -> Any:

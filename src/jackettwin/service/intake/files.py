@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Connection
 
 from jackettwin.service.intake.bundles import adopted_twin
-from jackettwin.service.workers.task_status import LOST_WORKER, NO_ROOM, NoWorker
+from jackettwin.service.workers.failures import DISK_FULL, LOST_WORKER, NoWorker
 from jackettwin.service.workers.tasks import File, Parsed, read_file
 from jackettwin.store import assets, journal, reading, records, work, writing
 
@@ -82,9 +82,9 @@ def parse_here(service: Service) -> Reader:
 
     def parse(file: File) -> tuple[Parsed, ...]:
         for _ in range(work.MOST_TRIES):
-            future = service.compute.submit(read_file, file, priority=100)
+            future = service.cluster.submit(read_file, file, priority=100)
             try:
-                found: tuple[Parsed, ...] = service.compute.result(future, service.settings.parse_limit_s)
+                found: tuple[Parsed, ...] = service.cluster.result(future, service.settings.parse_limit_s)
                 return found
             except NoWorker:
                 raise
@@ -92,7 +92,7 @@ def parse_here(service: Service) -> Reader:
                 problem = {"detail": "the file could not be read in time", "field": "file"}
                 return (Parsed("", problem=problem),)
             except Exception as error:  # whatever a reader dies of is the file's fault, not the server's
-                if isinstance(error, OSError) and error.errno in NO_ROOM:
+                if isinstance(error, OSError) and error.errno in DISK_FULL:
                     raise
                 name = type(error).__name__
                 if name not in LOST_WORKER:

@@ -1,86 +1,72 @@
-"""Packets to records of ten minutes.
-
-Put in order, doubled ones once, gaps left open, channels on one clock.
-"""
+"""Messages of loggers to packets: samples of one channel from a time on."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
 from datetime import datetime
+from typing import Any
 
+import cbor2
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from jackettwin.arrays import FloatArray
-from jackettwin.records import Channel, Record
-from jackettwin.store.streams import WINDOW, Packet
+from jackettwin.errors import InputError
+from jackettwin.service.workers.tasks import EARLIEST
+from jackettwin.store import assets
+from jackettwin.store.streams import LONGEST, Packet
 
-_ON_GRID = 0.02
-"""Samples nearer to the common grid than this share of a step stand on it: at the fifth of the sampling rate,
-where identification ends, they are 0.7 degrees off."""
-_LEAST = 8
-"""Fewer samples in a row are not worth an interpolation."""
+TOPIC = "jackettwin"
 
 
-def assembled(
-    packets: Sequence[Packet], window_utc: datetime, channels: dict[str, Channel], name: str
-) -> Record | None:
-    """Return the record of a window, or None if no packet reaches into it.
+def read_packets(topic: str, payload: bytes | bytearray) -> list[Packet]:
+    """Return the packets of a message.
 
     Parameters
     ----------
-    packets : of one asset, by channel and time
-    channels : {channel: what the twin says of it}; channels it does not name are taken to be accelerations
+    topic : ``jackettwin/{asset}/{channel}`` or ``jackettwin/{asset}``
+    payload : JSON or CBOR ``{t0_utc, rate_hz, channels: {name: [...]}}``; of one channel, ``samples`` will do
+
+    Raises
+    ------
+    InputError
+        If the topic or the payload is of another form.
     """
-    rates = [packet.rate_hz for packet in packets]
-    if not rates:
-        return None
-    rate = float(np.median(rates))
-    n = round(WINDOW.total_seconds() * rate)
-    rows, described = [], []
-    for channel in sorted({packet.channel for packet in packets}):
-        row = on_grid([p for p in packets if p.channel == channel], window_utc, rate, n)
-        if np.isfinite(row).any():
-            rows.append(row)
-            described.append(channels.get(channel, Channel(channel)))
-    if not rows:
-        return None
-    return Record(np.array(rows), rate, tuple(described), window_utc, {}, {"source": "stream"}, name)
-
-
-def on_grid(packets: Sequence[Packet], start: datetime, rate: float, n: int) -> FloatArray:
-    """Return the samples of one channel on the window's grid (n,), NaN where there are none.
-
-    Overlapping packets of one clock agree; of the same instant the packet that began first is kept. A clock
-    that stands off the grid or drifts is brought onto it by a cubic spline through each unbroken run.
-    """
-    times = (
-        np.concatenate([_seconds(p, start) + np.arange(p.samples.size) / p.rate_hz for p in packets]) * rate
-    )
-    values = np.concatenate([p.samples for p in packets]).astype(float)
-    order = np.argsort(times, kind="stable")
-    times, values = times[order], values[order]
-    new = np.concatenate([[True], np.diff(times) > 0.5])
-    times, values = times[new], values[new]
-    row = np.full(n, np.nan)
-    for run in np.split(np.arange(times.size), np.flatnonzero(np.diff(times) > 1.5) + 1):
-        _place(row, times[run], values[run])
-    return row
-
-
-def _place(row: FloatArray, times: FloatArray, values: FloatArray) -> None:
-    """Write one unbroken run, with times in steps of the grid, into the window's row."""
-    off = times - np.round(times)
-    if np.abs(off).max() <= _ON_GRID or times.size < _LEAST:
-        at = np.round(times).astype(int)
-        inside = (at >= 0) & (at < row.size)
-        row[at[inside]] = values[inside]
-        return
-    first, last = max(int(np.ceil(times[0])), 0), min(int(np.floor(times[-1])), row.size - 1)
-    if first <= last:
-        grid = np.arange(first, last + 1)
-        row[grid] = CubicSpline(times, values)(grid)
-
-
-def _seconds(packet: Packet, start: datetime) -> float:
-    return (packet.t0_utc - start).total_seconds()
+    parts = topic.split("/")
+    if len(parts) not in (2, 3) or parts[0] != TOPIC:
+        raise InputError(
+            "not a topic of ours", field="topic", value=topic, allowed="jackettwin/ASSET[/CHANNEL]"
+        )
+    asset = assets.check_name(parts[1])
+    try:
+        body = json.loads(payload) if payload[:1] in (b"{", b" ", b"\n") else cbor2.loads(payload)
+        start = datetime.fromisoformat(str(body["t0_utc"]).replace("Z", "+00:00"))
+        rate = float(body["rate_hz"])
+        named: dict[str, Any] = body["channels"] if "channels" in body else {parts[2]: body["samples"]}
+        found = [
+            Packet(asset, str(channel)[:128], start, rate, np.asarray(samples, dtype=float).ravel())
+            for channel, samples in named.items()
+        ]
+    except Exception as error:  # whatever a stranger sends: one message must not hold up those behind it
+        raise InputError(
+            "not a packet",
+            field="payload",
+            value=type(error).__name__,
+            allowed="{t0_utc, rate_hz, channels: {name: [..]}} as JSON or CBOR",
+        ) from None
+    if start.tzinfo is None:
+        raise InputError(
+            "a packet's clock has no zone", field="t0_utc", value=body["t0_utc"], remedy="write ...Z"
+        )
+    if (
+        not all(packet.channel and packet.channel.isprintable() for packet in found)
+        or not EARLIEST.year <= start.year <= 9000
+    ):
+        raise InputError("a channel's name or a clock is out of range", field="payload", value=topic)
+    longest = max((p.samples.size for p in found), default=0)
+    if not 1e-3 <= rate <= 1e5 or not 0 < longest <= LONGEST.total_seconds() * rate:
+        raise InputError(
+            "the packet's rate or length is out of range",
+            field="rate_hz",
+            value=f"{rate:g} Hz, {longest} samples",
+            allowed="0.001 to 1e5 Hz, up to an hour",
+        )
+    return found

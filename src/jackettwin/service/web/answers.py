@@ -6,16 +6,14 @@ import io
 import json
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
+from math import log
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 from fastapi import Path
 from sqlalchemy import Connection, select
 
 from jackettwin.errors import InputError
-from jackettwin.intervals import NORMAL_90
+from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.web.schemas import (
     AlarmOut,
@@ -26,7 +24,6 @@ from jackettwin.service.web.schemas import (
     Page,
     TwinOut,
 )
-from jackettwin.service.workers import engine
 from jackettwin.store import assets, results, tables
 from jackettwin.store.records import read_cursor, write_cursor
 from jackettwin.version import __version__
@@ -120,9 +117,9 @@ def twin(
 ) -> TwinOut:
     """Return what the twin knows at a time, from the states of its days."""
     last = None if at is None else f"{at.astimezone(UTC):%Y-%m-%d}"
-    model = engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
+    model = workers.engine.load_twin(twin_folder(connection, service, version.asset, version.version)).model
     told = service.days.told(connection, version, model, last)
-    known = engine.knowledge(model, told.sums)
+    known = workers.engine.knowledge(model, told.sums)
     if at is None:
         known["parameters"] = results.find_supports(connection, version.asset, version.version)
     return TwinOut(
@@ -162,11 +159,13 @@ def compared(
 
 def _logarithms(parameters: Mapping[str, Any]) -> dict[str, tuple[float, float | None]]:
     """Return the logarithm of every parameter's median with its standard deviation, of its 90 % interval."""
+    from jackettwin.intervals import NORMAL_90
+
     found = {}
     for name, known in parameters.items():
         span = known["interval_90"]
-        std = None if span is None else float(np.log(span[1] / span[0])) / (2.0 * NORMAL_90)
-        found[name] = (float(np.log(known["median"])), std)
+        std = None if span is None else log(span[1] / span[0]) / (2.0 * NORMAL_90)
+        found[name] = (log(known["median"]), std)
     return found
 
 
@@ -193,6 +192,9 @@ def _change(
 
 def as_parquet(connection: Connection, name: str) -> bytes:
     """Return a table as a Parquet file; times are UTC, nested values JSON."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     table = tables.metadata.tables[name]
     rows = [dict(row._mapping) for row in connection.execute(select(table))]
     columns = {

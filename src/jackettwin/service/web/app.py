@@ -49,6 +49,7 @@ def create_app(service: Service) -> FastAPI:
     @asynccontextmanager
     async def living(_: FastAPI) -> AsyncIterator[None]:
         feed = asyncio.create_task(service.feed.run())
+        await asyncio.to_thread(auth.nobodys_hash)  # the first login must not take longer
         yield
         feed.cancel()
         with suppress(asyncio.CancelledError):

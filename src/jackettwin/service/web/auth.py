@@ -6,6 +6,7 @@ import secrets
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from functools import cache
 from math import ceil
 from urllib.parse import urlsplit
 
@@ -30,8 +31,12 @@ SHORTEST_PASSWORD = 12
 """Characters; NIST SP 800-63B asks for 8 and advises more."""
 
 _hasher = PasswordHasher()  # argon2id with the parameters of RFC 9106, second recommended choice
-_NOBODY = _hasher.hash(secrets.token_hex())
-"""Verified where there is no such user, so that the time to answer tells nothing."""
+
+
+@cache
+def nobodys_hash() -> str:
+    """Return a hash to verify where there is no such user, so that the time to answer tells nothing."""
+    return _hasher.hash(secrets.token_hex())
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,7 @@ def checked_login(connection: Connection, name: str, password: str) -> people.Us
     """Return the user whose password this is, or None; it takes as long for unknown names."""
     user = people.find_user(connection, name)
     try:
-        _hasher.verify(_NOBODY if user is None else user.password_hash, password)
+        _hasher.verify(nobodys_hash() if user is None else user.password_hash, password)
     except (VerificationError, InvalidHashError):
         return None
     return None if user is None or user.disabled else user

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
+from jackettwin.service import workers
 from jackettwin.service.intake.file_access import only_files_in
 from jackettwin.service.web.schemas import AssetOut, VersionOut
 from jackettwin.service.work.consequences import ask_known
-from jackettwin.service.workers import engine
 from jackettwin.store import assets, journal, people, records, results, work
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def add_text_version(
     comment: str = "",
 ) -> assets.Version:
     """Add a version of a twin given as text; see :func:`add_version`."""
-    contents = {engine.TWIN_FILE: twin.encode(), **{path: text.encode() for path, text in files.items()}}
+    contents = {path: text.encode() for path, text in {workers.engine.TWIN_FILE: twin, **files}.items()}
     return add_version(connection, service, name, contents, by, comment)
 
 
@@ -121,9 +121,9 @@ def _identity(contents: Mapping[str, bytes]) -> tuple[str, str]:
             target.write_bytes(content)
         try:
             with only_files_in(Path(folder)):
-                return engine.identity(engine.load_twin.__wrapped__(Path(folder)).model)
+                return workers.engine.identity(workers.engine.load_twin.__wrapped__(Path(folder)).model)
         except InputError as error:
-            error.file = engine.TWIN_FILE
+            error.file = workers.engine.TWIN_FILE
             raise
 
 

@@ -22,7 +22,7 @@ def readiness(service: Service) -> Ready:
         database = True
     except SQLAlchemyError:
         database = False
-    workers, broker = service.compute.workers, service.broker_connected()
+    workers, broker = service.cluster.workers, service.broker_connected()
     free = service.free_bytes()
     ready = database and workers > 0 and broker is not False and free > 0
     return Ready(ready=ready, database=database, workers=workers, broker=broker, free_bytes=free)
@@ -54,11 +54,11 @@ def exposition(service: Service) -> bytes:
                 gauge("last_record_age_seconds", "Time since the latest record began", age, asset=asset.name)
     waited = 0.0 if oldest is None else max((now - oldest).total_seconds(), 0.0)
     gauge("queue_age_seconds", "Time since the oldest record that is not observed yet was asked for", waited)
-    gauge("workers", "Workers there are", service.compute.workers)
+    gauge("workers", "Workers there are", service.cluster.workers)
     gauge(
         "worker_restarts_total",
         "Workers that were replaced, whatever they ended of",
-        service.compute.restarts,
+        service.cluster.restarts,
     )
     gauge("disk_free_bytes", "Room left where the store is", service.free_bytes())
     broker = service.broker_connected()

@@ -14,7 +14,7 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
 from jackettwin.errors import InputError
-from jackettwin.service.workers.task_status import NO_ROOM, NoWorker, problem_of
+from jackettwin.service.workers.failures import DISK_FULL, NoWorker, problem_of
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -139,7 +139,7 @@ def answered(error: ApiError) -> Response:
 
 
 def _disk_full(error: OSError) -> Response:
-    if error.errno not in NO_ROOM:
+    if error.errno not in DISK_FULL:
         raise error
     return answered(disk_full())
 

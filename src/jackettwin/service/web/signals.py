@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import io
 from datetime import UTC, datetime
-from math import ceil
+from math import ceil, isfinite
 from typing import TYPE_CHECKING
 
-import numpy as np
-import pyarrow as pa
-
 from jackettwin.errors import InputError
-from jackettwin.records import remove_line, welch_densities
 from jackettwin.service.web.dependencies import known_record
 from jackettwin.service.web.problems import ApiError
 from jackettwin.service.web.schemas import RecordOut, Signal, Spectra
-from jackettwin.store import read_waveform, reading
+from jackettwin.store import reading
 from jackettwin.store.records import StoredRecord
 
 if TYPE_CHECKING:
+    from jackettwin.arrays import FloatArray
     from jackettwin.records import Record
     from jackettwin.service.context import Service
 
@@ -51,6 +48,8 @@ def record_out(record: StoredRecord) -> RecordOut:
 
 def samples(service: Service, record_id: str) -> Record:
     """Return the samples of a record; answers 404 if they are not kept any more."""
+    from jackettwin.store import read_waveform
+
     with reading(service.database) as connection:
         record = known_record(connection, record_id)
     path = None if record.waveform is None else service.settings.store / record.waveform
@@ -63,6 +62,8 @@ def extremes(
     record: Record, names: list[str] | None, since: float, until: float | None, points: int
 ) -> Signal:
     """Return minimum and maximum of each of ``points`` bins between two times [s after the start]."""
+    import numpy as np
+
     chosen = record if names is None else record.select(names)
     first = min(int(since * record.sample_rate_hz), chosen.data.shape[1])
     data = chosen.data[:, first : None if until is None else ceil(until * record.sample_rate_hz)]
@@ -86,6 +87,8 @@ def extremes(
 
 def as_arrow(signal: Signal) -> bytes:
     """Return extremes as an Arrow stream: ``time_s`` and for each channel ``NAME.min`` and ``NAME.max``."""
+    import pyarrow as pa
+
     columns: dict[str, list[float | None]] = {"time_s": list(signal.time_s)}
     for name, bins in signal.channels.items():
         columns |= {f"{name}.min": bins["min"], f"{name}.max": bins["max"]}
@@ -98,6 +101,8 @@ def as_arrow(signal: Signal) -> bytes:
 
 def spectra(record: Record) -> Spectra:
     """Return the power spectral densities of a record by Welch's method, which allows for missing samples."""
+    from jackettwin.records import remove_line, welch_densities
+
     n = min(int(_SEGMENT_S * record.sample_rate_hz), record.data.shape[1])
     frequency, density = welch_densities(remove_line(record.data), record.sample_rate_hz, n)
     return Spectra(
@@ -107,5 +112,5 @@ def spectra(record: Record) -> Spectra:
     )
 
 
-def _listed(values: np.ndarray) -> list[float | None]:
-    return [float(v) if np.isfinite(v) else None for v in values]
+def _listed(values: FloatArray) -> list[float | None]:
+    return [float(v) if isfinite(v) else None for v in values]

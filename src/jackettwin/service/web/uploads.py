@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, BinaryIO
 from sqlalchemy import Connection
 
 from jackettwin.errors import InputError
-from jackettwin.service import conditions
+from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import Accepted, discard, parse_here, spooled, take_file
 from jackettwin.service.web.dependencies import known_record, living_asset
 from jackettwin.service.web.problems import ApiError, disk_full
 from jackettwin.service.web.schemas import PicksIn, StabilisationOut, Taken
-from jackettwin.service.workers import engine
+from jackettwin.service.work.conditions import add_conditions
 from jackettwin.service.workers.tasks import read_conditions
 from jackettwin.store import assets, journal, people, reading, records, work, writing
 
@@ -78,8 +78,8 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     )
     try:
         asked = partial(read_conditions, zone=zone, end_stamped=end_stamped)
-        future = service.compute.submit(asked, str(path), priority=100)
-        values = service.compute.result(future, service.settings.parse_limit_s)
+        future = service.cluster.submit(asked, str(path), priority=100)
+        values = service.cluster.result(future, service.settings.parse_limit_s)
     except TimeoutError:
         raise ApiError(422, "the table could not be read in time", field="file") from None
     finally:
@@ -87,7 +87,7 @@ def take_conditions(service: Service, asset: str, stream: BinaryIO, zone: str, e
     if isinstance(values, InputError):
         raise values
     with writing(service.database) as connection:
-        count, again = conditions.add(connection, service, asset, values)
+        count, again = add_conditions(connection, service, asset, values)
     service.wake()
     return Taken(count=count, observed_again=again)
 
@@ -100,9 +100,9 @@ def stabilisation(service: Service, record_id: str) -> StabilisationOut:
             raise ApiError(404, "the samples of this record are not kept any more", field="record_id")
         folder = twin_folder(connection, service, record.asset)
     waveform = str(service.settings.store / record.waveform)
-    future = service.compute.submit(engine.stabilisation, str(folder), waveform, priority=50)
+    future = service.cluster.submit(workers.engine.stabilisation, str(folder), waveform, priority=50)
     try:
-        return StabilisationOut(**service.compute.result(future, service.settings.observe_limit_s))
+        return StabilisationOut(**service.cluster.result(future, service.settings.observe_limit_s))
     except TimeoutError:
         raise ApiError(503, "the identification takes too long") from None
 

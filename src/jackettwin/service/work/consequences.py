@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from sqlalchemy import Connection, select
 
+from jackettwin.service import workers
 from jackettwin.service.intake.bundles import twin_folder
 from jackettwin.service.intake.files import living
-from jackettwin.service.workers import engine
 from jackettwin.service.workers.tasks import Outcome, Question, Task
 from jackettwin.store import assets, journal, people, records, results, streams, tables, work
 from jackettwin.store.results import StoredObservation, StoredState
@@ -61,7 +61,7 @@ def question_of(connection: Connection, service: Place, job: work.Job, *, every_
     key = (job.asset, job.model_hash)
     identities = results.state_hashes(connection, *key)
     kept = results.find_kept(connection, job.asset, job.version)
-    after = None if every_day else engine.days_unsummed(kept.get("past"), identities)
+    after = None if every_day else workers.engine.days_unsummed(kept.get("past"), identities)
     if after is None:
         kept = {"judged": kept.get("judged")}
     return Question(
@@ -232,8 +232,9 @@ def fold(
         todo = [changed]
     if not todo:
         return
-    model = engine.load_twin(twin_folder(connection, service, asset, version)).model
-    folded = engine.advance_day(model, day, stored.document if stored else None, [o.document for o in todo])
+    model = workers.engine.load_twin(twin_folder(connection, service, asset, version)).model
+    before, new = stored.document if stored else None, [observation.document for observation in todo]
+    folded = workers.engine.advance_day(model, day, before, new)
     results.put_state(connection, StoredState(asset, model_hash, day, folded.n_records, folded.document))
     key = {"asset": asset, "model_hash": model_hash}
     rows = [

@@ -18,7 +18,7 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import SQLAlchemyError
 
 from jackettwin.service.work import consequences
-from jackettwin.service.workers.task_status import LOST_WORKER
+from jackettwin.service.workers.failures import LOST_WORKER
 from jackettwin.service.workers.tasks import Outcome, Question, Task, know, observe_stored
 from jackettwin.store import reading, work, writing
 from jackettwin.version import __version__
@@ -97,7 +97,7 @@ class Dispatcher(Thread):
         self._collect()
         self._end_overrun()
         self._lease()
-        for chore in self.service.chores:
+        for chore in self.service.periodic:
             chore()
 
     def _beat(self) -> None:
@@ -105,7 +105,7 @@ class Dispatcher(Thread):
         if time.monotonic() - self._last_beat < _BEAT_S:
             return
         self._last_beat = time.monotonic()
-        self.service.compute.mend()
+        self.service.cluster.mend()
         me, now = self.service.server_id, self.service.now()
         with writing(self.service.database) as connection:
             if not work.beat(connection, me):
@@ -128,7 +128,7 @@ class Dispatcher(Thread):
         return time.monotonic() - since > DEAD_AFTER_S
 
     def _lease(self) -> None:
-        free = _AHEAD * max(self.service.compute.workers, 1) - len(self._running)
+        free = _AHEAD * max(self.service.cluster.workers, 1) - len(self._running)
         if free <= 0:
             return
         kind = self._next_kind()
@@ -151,7 +151,7 @@ class Dispatcher(Thread):
             with writing(self.service.database) as connection:
                 consequences.keep(connection, self.service, job, Outcome(None, problem={"detail": str(gone)}))
             return
-        future = self.service.compute.submit(function, argument, priority=job.priority)
+        future = self.service.cluster.submit(function, argument, priority=job.priority)
         future.add_done_callback(lambda _: self.wake.set())
         self._running[job.id] = _Running(job, future, time.monotonic())
 
@@ -198,7 +198,7 @@ class Dispatcher(Thread):
                 keep = consequences.keep_known if asked else consequences.keep
                 keep(connection, self.service, running.job, outcome)
             return True
-        reason, tried = _reason(running.future), self.service.compute.has_begun(running.future)
+        reason, tried = _reason(running.future), self.service.cluster.has_begun(running.future)
         with writing(self.service.database) as connection:
             if tried:
                 consequences.failed(connection, self.service, running.job, reason)
@@ -209,9 +209,9 @@ class Dispatcher(Thread):
     def _end_overrun(self) -> None:
         limit = self.service.settings.observe_limit_s
         for running in list(self._running.values()):
-            if self.service.compute.has_begun(running.future, limit) and not running.future.done():
+            if self.service.cluster.has_begun(running.future, limit) and not running.future.done():
                 reason = f"took longer than {limit:g} s"
-                self.service.compute.end(running.future)
+                self.service.cluster.end(running.future)
                 with writing(self.service.database) as connection:
                     consequences.failed(connection, self.service, running.job, reason)
                 del self._running[running.job.id]

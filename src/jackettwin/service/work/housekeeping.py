@@ -7,7 +7,7 @@ import time
 from datetime import timedelta
 from typing import TYPE_CHECKING
 
-from jackettwin.service.workers.task_status import give_back
+from jackettwin.service.workers.memory import give_back
 from jackettwin.store import journal, records, settings, writing
 
 if TYPE_CHECKING:

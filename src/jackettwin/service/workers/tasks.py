@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jackettwin.errors import InputError, JackettwinError
-from jackettwin.service.workers.task_status import problem_of
+from jackettwin.service.workers.failures import problem_of
 
 if TYPE_CHECKING:
     from jackettwin.records import Record
@@ -103,7 +103,7 @@ def read_file(file: File) -> tuple[Parsed, ...]:
     """
     from jackettwin.records import read_record
     from jackettwin.records.readers import read_record_pieces
-    from jackettwin.service.work.memory_limit import at_most
+    from jackettwin.service.workers.memory import at_most
     from jackettwin.store import is_waveform, read_waveform
     from jackettwin.study.many_records.long_records import LONG, PIECE_S
 
@@ -168,7 +168,7 @@ def stored(record: Record, asset: str, store: Path) -> Parsed:
 
 def read_conditions(path: str, *, zone: str, end_stamped: bool) -> Any:
     """Read a table of conditions; an error of its input comes back, without our path."""
-    from jackettwin.service.conditions import read_table
+    from jackettwin.service.workers.condition_tables import read_table
 
     try:
         return read_table(Path(path), zone=zone, end_stamped=end_stamped)

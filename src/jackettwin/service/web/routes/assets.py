@@ -6,7 +6,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, File, Form, Path, Query, UploadFile
 
-from jackettwin.service import conditions
 from jackettwin.service.web import auth, catalogue, uploads
 from jackettwin.service.web.dependencies import (
     WAITING,
@@ -30,6 +29,7 @@ from jackettwin.service.web.schemas import (
     Taken,
     VersionOut,
 )
+from jackettwin.service.work import conditions
 from jackettwin.store import assets
 
 router = APIRouter(tags=["assets"], route_class=Route)
@@ -130,7 +130,7 @@ def add_conditions(asset: AssetName, body: ConditionsIn, parts: Parts, connectio
         if len(values) != len(body.time_utc):
             raise ApiError(422, "times and values differ in number", field=f"values.{name}")
     given = {name: dict(zip(body.time_utc, values, strict=True)) for name, values in body.values.items()}
-    count, again = conditions.add(connection, parts, asset, given)
+    count, again = conditions.add_conditions(connection, parts, asset, given)
     return Taken(count=count, observed_again=again)
 
 

@@ -1,12 +1,11 @@
-"""Memory that a file may take while it is read."""
+"""Memory of a process: bounded while a file is read, given back to the system afterwards."""
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-import pyarrow as pa
 
 _STATM = Path("/proc/self/statm")
 _LEAST_BYTES = 64 * 2**20
@@ -25,6 +24,8 @@ def at_most(limit_bytes: int) -> Iterator[None]:
         return
     import resource  # of systems with /proc alone
 
+    import pyarrow as pa
+
     pool = pa.default_memory_pool()
     pa.set_memory_pool(pa.system_memory_pool())  # Arrow's own is given its memory ahead, past any limit
     fields = _STATM.read_text().split()
@@ -36,3 +37,21 @@ def at_most(limit_bytes: int) -> Iterator[None]:
     finally:
         resource.setrlimit(resource.RLIMIT_DATA, (before, hard))
         pa.set_memory_pool(pool)
+
+
+def give_back() -> None:
+    """Return free memory to the system; glibc keeps what lies below the highest block in use, and grows."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:  # other C libraries have no such function
+        trim(0)
+
+
+def one_heap() -> None:
+    """Have all threads of this process share one heap; glibc makes many, each with free room of its own."""
+    tune = getattr(ctypes.CDLL(None), "mallopt", None)
+    if tune is not None:
+        tune(_M_ARENA_MAX, 1)
+
+
+_M_ARENA_MAX = -8
+"""Of glibc's ``mallopt``; other C libraries answer that they do not know it."""

@@ -1,0 +1,54 @@
+"""Conditions of the site: kept, and the records that they belong to observed again."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+from sqlalchemy import Connection
+
+from jackettwin.store import assets, records, streams, work
+
+if TYPE_CHECKING:
+    from jackettwin.service.context import Place
+
+Values = Mapping[datetime, float | str | None]
+
+
+def add_conditions(
+    connection: Connection,
+    place: Place,
+    asset: str,
+    values: Mapping[str, Values],
+) -> tuple[int, int]:
+    """Keep conditions; return how many are new or changed, and how many records are observed again with them.
+
+    Only what changed matters: the same table again observes nothing again.
+    """
+    changed: set[datetime] = set()
+    count = 0
+    for name, given in values.items():
+        new = streams.put_conditions(connection, asset, name, given)
+        changed |= new
+        count += len(new)
+    if not changed:
+        return 0, 0
+    return count, _observe_again(connection, place, asset, changed)
+
+
+def _observe_again(connection: Connection, place: Place, asset: str, changed: set[datetime]) -> int:
+    """Queue the records that overlap the interval of a changed condition."""
+    since, until = min(changed) - timedelta(days=1), max(changed) + streams.INTERVAL
+    adopted, again = assets.found_version(connection, asset).version, 0
+    starts = sorted(changed)
+    for record in records.all_with_samples(connection, asset, since, until):
+        end = record.start_utc + timedelta(seconds=record.duration_s)
+        first = bisect_right(starts, record.start_utc - streams.INTERVAL)
+        if first < len(starts) and starts[first] < end:
+            jobs = work.jobs_of(connection, asset, record.record_id)
+            again += bool(
+                [work.renew(connection, job.id, place.now()) for job in jobs if job.version >= adopted]
+            )
+    return again

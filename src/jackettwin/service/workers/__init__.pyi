@@ -1,0 +1,1 @@
+from . import cluster as cluster, engine as engine
