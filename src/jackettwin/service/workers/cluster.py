@@ -32,7 +32,7 @@ _NICE = 5
 
 Stated absolutely, since Dask runs it twice."""
 _START = (
-    f"import os, jackettwin.service.work.engine, jackettwin.service.work.tasks\n"
+    f"import os, {__package__}.engine, {__package__}.tasks\n"
     f"os.setpriority(os.PRIO_PROCESS, 0, {os.nice(0) + _NICE})"
 )
 """What a worker of our own does before it takes a task: a record does not wait for libraries."""
