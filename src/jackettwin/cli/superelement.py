@@ -32,10 +32,10 @@ from jackettwin.response import (
     reduced_modes,
     require_format,
     slowed,
-    superelement,
     with_deck_damping,
     write_superelement,
 )
+from jackettwin.response.superelement.craig_bampton import superelement
 from jackettwin.structure import Assembly, Structure, assemble
 from jackettwin.structure.cut import at_interface
 from jackettwin.structure.model import Vector

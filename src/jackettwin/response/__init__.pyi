@@ -64,7 +64,6 @@ from .superelement.craig_bampton import (
     dissipates as dissipates,
     fixed_interface_frequencies as fixed_interface_frequencies,
     slowed as slowed,
-    superelement as superelement,
     with_deck_damping as with_deck_damping,
 )
 from .superelement.extptfm_writer import DEFAULT as DEFAULT, LAYOUTS as LAYOUTS, Layout as Layout

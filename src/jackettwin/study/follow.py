@@ -36,8 +36,8 @@ from jackettwin.updating import (
     find_drift,
     laplace_draws,
     posterior_or_status,
-    search,
 )
+from jackettwin.updating.search.solutions import search
 
 Each = Literal["day", "record"]
 

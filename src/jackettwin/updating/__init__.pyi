@@ -32,7 +32,7 @@ from .posterior.laplace import laplace_draws as laplace_draws
 from .posterior.scatter import leg_scatter as leg_scatter
 from .posterior.smc import Posterior as Posterior
 from .problem import Problem as Problem, State as State
-from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS, search as search
+from .search.solutions import MOST_EVALUATIONS as MOST_EVALUATIONS
 from .steel import (
     Factor as Factor,
     Refinement as Refinement,
