@@ -160,8 +160,14 @@ def test_the_first_day_settles_the_order_of_the_next(tmp_path: Path) -> None:
 
 
 def test_ambiguous_dates_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"time: times are not understood.*01/02/2025.*2025-01-01T13"):
-        read_text("time,acc_x [g]\n01/02/2025 13:00:00,1\n01/02/2025 13:00:01,2\n", tmp_path)
+    """Whatever the column is called, and in a column beside that of the time of day."""
+    for name in ("time", "logged at", ""):
+        with pytest.raises(InputError, match=r"date is ambiguous.*01/02/2025.*2025-02-01 or 2025-01-02"):
+            read_text(f"{name},acc_x [g]\n01/02/2025 13:00:00,1\n01/02/2025 13:00:01,2\n", tmp_path)
+    rows = "".join(f"02/03/2026,13:00:0{k},{k % 3}\n" for k in range(9))
+    record = read_text("day,clock,acc_x [g]\n" + rows, tmp_path)
+    assert (record.sample_rate_hz, record.start_utc) == (1.0, None)
+    assert any("02/03/2026 may begin with its day" in text for text in record.metadata["remarks"])
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.records.readers.description import parse_time
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-# Days and months with strokes between them have no agreed order: 31/01/2025 has one, 01/02/2025 is not read.
+# Day and month with strokes between them stand in either order: 31/01/2025 shows which, 01/02/2025 does not.
 _NO_MONTH = r"(?:1[3-9]|2\d|3[01])"
 _DAY = (
     r"(?:\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4}|"
@@ -30,6 +30,7 @@ _CLOCK_OF_A_DATE = re.compile(rf"\s*{_CLOCK}\s*(?:Z|[+-]\d\d:?\d\d)?\s*", re.IGN
 _ZONED = re.compile(r"(?:Z|[+-]\d\d:?\d\d)\s*$", re.IGNORECASE)
 _YEAR_LAST = re.compile(r"^(\d\d)[./](\d\d)[./](\d{4})")
 _MONTH_FIRST = re.compile(rf"\d\d/{_NO_MONTH}/")
+_AMBIGUOUS = re.compile(r"\s*(?P<first>\d\d?)/(?P<second>\d\d?)/(?P<year>\d{4})(?!\d)")
 _PLAIN_STAMP = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:[.,]\d{1,9})?)?[Zz]?")
 _DAY_S = 86_400.0
 
@@ -46,6 +47,40 @@ def is_stamp(cell: str) -> bool:
 def has_zone(cell: str) -> bool:
     """Tell whether a cell is a time that says its zone."""
     return bool(_DATE.match(cell) and _ZONED.search(cell) and not _DATE_ALONE.fullmatch(cell))
+
+
+def ambiguous_date(cell: str) -> tuple[str, str] | None:
+    """Return both dates (ISO 8601) a cell may begin with, day first and month first; None if it has one.
+
+    >>> ambiguous_date("02/03/2026 10:00:00")
+    ('2026-03-02', '2026-02-03')
+    >>> ambiguous_date("31/01/2026"), ambiguous_date("02.03.2026")
+    (None, None)
+    """
+    match = _AMBIGUOUS.match(cell)
+    first, second = (int(match["first"]), int(match["second"])) if match else (0, 0)
+    if match is None or not (1 <= first <= 12 and 1 <= second <= 12):
+        return None
+    return f"{match['year']}-{second:02}-{first:02}", f"{match['year']}-{first:02}-{second:02}"
+
+
+def refuse_ambiguous(cell: str, field: str) -> None:
+    """Refuse a date whose day and month may be either way round.
+
+    Raises
+    ------
+    InputError
+        Names the two dates that it may be.
+    """
+    dates = ambiguous_date(cell)
+    require(
+        dates is None,
+        "date is ambiguous: either its day or its month comes first",
+        field=field,
+        value=cell.strip(),
+        allowed=" or ".join(dict.fromkeys(dates or ())),
+        remedy="write the year first in the whole column, or state sample_rate_hz and start_utc",
+    )
 
 
 def with_one_stamp(names: list[str], rows: list[list[str]]) -> tuple[list[str], list[list[str]]]:

@@ -19,6 +19,7 @@ from jackettwin.records.readers.channel_names import Reading, read_name, told
 from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
 from jackettwin.records.readers.description import ChannelEntry, Description
 from jackettwin.records.readers.sentinels import without_sentinels
+from jackettwin.records.readers.stamps import ambiguous_date, refuse_ambiguous
 from jackettwin.records.readers.zones import TWICE, UNSAID, in_utc, read_zone
 from jackettwin.records.record import LARGEST, Record
 
@@ -51,6 +52,8 @@ class ReadTable:
         A complete description stored inside the file.
     unit : str, optional
         Of the channels without one in ``channels``, as ``Unsaid.unit``.
+    ambiguous : tuple of str and str, optional
+        Column and cell of a date that was not read because its day or its month may come first.
     remarks : tuple of str
         What the reader did that the user should know; ``metadata["remarks"]`` of the record.
     """
@@ -65,6 +68,7 @@ class ReadTable:
     metadata: Mapping[str, Any] = field(default_factory=dict)
     description: Description | None = None
     unit: str | None = None
+    ambiguous: tuple[str, str] | None = None
     remarks: tuple[str, ...] = ()
 
 
@@ -104,6 +108,15 @@ def table_from_columns(
         remarks.append(f"column {names[counted]} counts rows and is left out")
     if time is not None and names[time] and columns[time].dtype.kind == "f" and not is_time(names[time]):
         remarks.append(f"column {names[time]} climbs evenly and is taken for the time in s")
+    words = [
+        (name, str(x[0])) for name, x in zip(names, columns, strict=True) if x.dtype.kind == "U" and len(x)
+    ]
+    known["ambiguous"] = next(((name, cell) for name, cell in words if ambiguous_date(cell)), None)
+    if known["ambiguous"] is not None:
+        name, cell = known["ambiguous"]
+        remarks.append(
+            f"column {name}: {cell.split()[0]} may begin with its day or its month; dates are not read"
+        )
     if remarks:
         known["remarks"] = (*known.get("remarks", ()), *remarks)
     if not kept:
@@ -127,6 +140,7 @@ def _time_column(
         return None
     numeric, called_time = columns[0].dtype.kind == "f", is_time(names[0])
     if called_time and not numeric:
+        refuse_ambiguous(str(columns[0][0]) if len(columns[0]) else "", names[0])
         raise InputError(
             "times are not understood",
             field=names[0],
@@ -237,6 +251,8 @@ def to_record(
             metadata["remarks"] = [*metadata.get("remarks", ()), f"{COARSE} {stated:g} Hz"]
         metadata["clock"] = asdict(clock)
     stated = stated or unsaid.sample_rate_hz
+    if stated is None and table.ambiguous is not None:
+        refuse_ambiguous(table.ambiguous[1], table.ambiguous[0])
     if stated is None:
         raise InputError(
             "sample rate is missing",
