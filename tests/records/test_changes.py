@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jackettwin.records import Record, assess, repair
-from jackettwin.records.quality.changes import PARTS, SensorChange, changes
+from jackettwin.records.quality.sensor_changes import PARTS, SensorChange, changes
 
 N = 12_000
 PART = N // PARTS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.records.quality.duplicates import duplicate_channels
+from jackettwin.records.quality.repeats import duplicate_channels
 
 
 def test_copies_in_files_of_seven_digits_are_found_and_sensors_of_little_noise_are_not(rng):

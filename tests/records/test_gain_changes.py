@@ -10,7 +10,7 @@ import pytest
 
 from jackettwin.records import assess, repair
 from jackettwin.records.clocks.channel_delays import Network
-from jackettwin.records.quality.gain_changes import sign_turns
+from jackettwin.records.clocks.gain_changes import sign_turns
 
 
 @pytest.mark.parametrize("rows", [[1], [0, 1], [0, 1, 4, 5]])

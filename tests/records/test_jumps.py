@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.records.quality.jumps import lines, runs, scatter, steps
+from jackettwin.records.clocks.jumps import lines, runs, scatter, steps
 
 
 def test_noise_and_drift_are_no_steps(rng: np.random.Generator) -> None:

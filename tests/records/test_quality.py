@@ -9,7 +9,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record, assess, repair
-from jackettwin.records.quality.assess import Quality
+from jackettwin.records.quality.record_quality import Quality
 
 
 def faults_of(quality: Quality) -> set[tuple[str | None, str]]:

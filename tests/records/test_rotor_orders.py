@@ -11,7 +11,7 @@ import pytest
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.synthetic import ModalSystem, simulate
 from jackettwin.records import Channel, Record, write_record
-from jackettwin.records.processing.rotor_orders import rotor_speed, without_orders
+from jackettwin.records.processing.tones import rotor_speed, without_orders
 from jackettwin.twin import examine_file
 from jackettwin.twin.examine import examine
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.records.clocks.shift import PAD, earlier
+from jackettwin.records.clocks.correction import PAD, earlier
 
 
 def signal(t: np.ndarray) -> np.ndarray:

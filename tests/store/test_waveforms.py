@@ -8,7 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from jackettwin.records import Channel, Record
-from jackettwin.records.identity import record_id
+from jackettwin.records.record import record_id
 from jackettwin.store import read_waveform, waveform_path, write_waveform
 from jackettwin.store.waveforms import packed_samples
 

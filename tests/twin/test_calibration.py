@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from jackettwin.errors import InputError
 from jackettwin.records import Channel, Record
-from jackettwin.records.identity import record_id
+from jackettwin.records.record import record_id
 from jackettwin.twin import observe, read_twin, twin_model
 from jackettwin.twin.calibration import calibrated
 

@@ -19,7 +19,7 @@ from jackettwin.identification import ModalEstimate
 from jackettwin.identification.many_records.fusion import average as average_of_sightings
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record, read_record
-from jackettwin.records.identity import record_id
+from jackettwin.records.record import record_id
 from jackettwin.twin import (
     OBSERVATION,
     STATE,

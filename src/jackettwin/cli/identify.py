@@ -277,7 +277,7 @@ def _settings(path: str | None, method: str | None, real_poles: bool) -> Identif
 def _unsaid(sample_rate: float | None, unit: str | None, gain: float | None, zone: str | None) -> Unsaid:
     from jackettwin.quantities import plain_unit, vibration_of
     from jackettwin.records.readers.channels import Unsaid
-    from jackettwin.records.readers.zones import read_zone
+    from jackettwin.records.readers.stamps import read_zone
 
     if unit is not None:
         vibration_of(plain_unit(unit), field="--unit")

@@ -17,7 +17,7 @@ from jackettwin.files import atomic_path, check_room
 from jackettwin.records import Record, read_record
 from jackettwin.records.readers import record_files
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.zones import UNSAID, read_zone
+from jackettwin.records.readers.stamps import UNSAID, read_zone
 from jackettwin.structure import assemble
 from jackettwin.study.draft import Draft, draft_twin
 from jackettwin.twin import read_twin

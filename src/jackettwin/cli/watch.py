@@ -15,7 +15,7 @@ from jackettwin.cli.console import FiniteFloat, output, print_json, progress
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_folder, write_json
-from jackettwin.records.readers.description import parse_time
+from jackettwin.records.readers.stamps import parse_time
 from jackettwin.report.pages.watch import build_watch_page
 
 _SHOWN = 4

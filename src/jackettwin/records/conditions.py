@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jackettwin.records.processing.rotor_orders import rotor_speed
+from jackettwin.records.processing.tones import rotor_speed
 from jackettwin.records.processing.yaw import knows_yaw, yaw_of
 
 if TYPE_CHECKING:

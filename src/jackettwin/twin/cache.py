@@ -16,7 +16,7 @@ from jackettwin.identification import Identification, IdentificationSettings, Mo
 from jackettwin.identification.comparison import Comparison
 from jackettwin.identification.picks import Pick
 from jackettwin.records import Record
-from jackettwin.records.identity import record_id
+from jackettwin.records.record import record_id
 from jackettwin.twin.codec import StoredSchema, digest
 from jackettwin.version import __version__
 

@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_path
 from jackettwin.files.codec import decode, encode
-from jackettwin.records.identity import DIGITS
+from jackettwin.records.record import DIGITS
 
 T = TypeVar("T")
 Plain = dict[str, Any]

@@ -25,9 +25,9 @@ from jackettwin.identification.tones.rotor_speed import higher_orders
 from jackettwin.quantities import known_units
 from jackettwin.records import Record, assess, detrend, read_record, repair, to_rotor_axes
 from jackettwin.records.conditions import with_conditions
-from jackettwin.records.processing.rotor_orders import RotorOrder, rotor_speed, stated_orders, without_orders
+from jackettwin.records.processing.tones import RotorOrder, rotor_speed, stated_orders, without_orders
 from jackettwin.records.processing.yaw import is_horizontal, knows_yaw, yaw_of
-from jackettwin.records.quality.assess import Quality
+from jackettwin.records.quality.record_quality import Quality
 from jackettwin.records.quality.repair import common_time
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.twin.cache import IDENTIFIED, NOT_KEPT, Identified, Keep, identified_key, kept

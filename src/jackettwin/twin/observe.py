@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from jackettwin.findings import Finding
 from jackettwin.records import Record
-from jackettwin.records.identity import record_id
+from jackettwin.records.record import record_id
 from jackettwin.twin.cache import NOT_KEPT, Keep
 from jackettwin.twin.calibration import calibrated, sensors_at, uncalibrated
 from jackettwin.twin.examine import Examination, examine

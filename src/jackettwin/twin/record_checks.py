@@ -14,7 +14,7 @@ from jackettwin.identification import Identification
 from jackettwin.identification.status import ModeStatus
 from jackettwin.records import Record
 from jackettwin.records.quality.length import CYCLES, SHARE, slow_share
-from jackettwin.records.quality.repetition import without_repeats
+from jackettwin.records.quality.repeats import without_repeats
 from jackettwin.records.quality.zero_steps import without_step, zero_step
 
 if TYPE_CHECKING:

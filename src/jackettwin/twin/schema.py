@@ -16,7 +16,7 @@ from jackettwin.files import Schema, one_of
 from jackettwin.loads import WaterSchema
 from jackettwin.quantities import plain_unit, vibration_of
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.zones import read_zone
+from jackettwin.records.readers.stamps import read_zone
 from jackettwin.response import Sensor, sensor_kinds
 from jackettwin.structure import RayleighSchema, Structure
 from jackettwin.twin.calibration import Calibration, Calibrations

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.records.readers.sentinels import without_sentinels
+from jackettwin.records.readers.channels import without_sentinels
 
 
 @pytest.mark.parametrize("value", [-9999.0, -999.25, 1e30, 32767.0])

@@ -15,7 +15,7 @@ from jackettwin.errors import InputError
 from jackettwin.records import read_record
 from jackettwin.records.readers import read_record_pieces
 from jackettwin.records.readers.channels import Unsaid
-from jackettwin.records.readers.zones import TWICE, in_utc, read_zone
+from jackettwin.records.readers.stamps import TWICE, in_utc, read_zone
 
 LOCAL = datetime(2025, 6, 1, 14, 0, 0)
 TWELVE = datetime(2025, 6, 1, 12, tzinfo=UTC)

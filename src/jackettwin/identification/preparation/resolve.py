@@ -11,8 +11,8 @@ from jackettwin.identification.estimate import ResolvedSettings
 from jackettwin.identification.preparation.spectra import FEWEST_CYCLES, lowest_peak_hz, welch
 from jackettwin.quantities import VIBRATIONS
 from jackettwin.records import Record, decimate
-from jackettwin.records.quality.duplicates import duplicate_channels
 from jackettwin.records.quality.repair import without_stuck
+from jackettwin.records.quality.repeats import duplicate_channels
 from jackettwin.records.record import SMALLEST
 
 if TYPE_CHECKING:

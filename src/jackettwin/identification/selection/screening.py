@@ -32,7 +32,7 @@ from jackettwin.identification.selection.one_sensor import FEWEST_PEERS, of_one_
 from jackettwin.identification.selection.peaks import clear_peaks_hz, contrast, share_of_one_part
 from jackettwin.identification.selection.second_look import SAME_SHAPE, SecondLook, second_look, seen_again
 from jackettwin.identification.status import ModeStatus
-from jackettwin.records.clocks.other_day import may_be_compared
+from jackettwin.records.clocks.another_time import may_be_compared
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

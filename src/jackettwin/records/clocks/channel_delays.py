@@ -1,4 +1,8 @@
-"""Delays of pairs brought down to one a channel, against the largest group of channels that go together."""
+"""Delays of single channels: those of pairs brought down to one a channel, and which of them are late.
+
+The largest group of channels that go together is taken to be right. A channel is late behind it by a delay
+that stays or drifts: that of a logger with a clock of its own.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy  # scipy.sparse is loaded where it is used
 
-from jackettwin.arrays import BoolArray, FloatArray, IntArray
+from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jackettwin.records.clocks.delays import Phases, doubled, objective, refined_peak
+from jackettwin.records.clocks.jumps import SIGMAS, lines, scatter
+from jackettwin.records.clocks.results import LateClock
 
 REACH_RAD = 0.25
 """Phase, at the root mean square frequency of the pairs, of the least delay that parts two channels: those of
@@ -143,3 +150,142 @@ def without_gaps(values: FloatArray, reach: float) -> list[list[int]]:
     order = np.argsort(values, kind="stable")
     cuts = np.flatnonzero(np.diff(values[order]) > reach) + 1
     return [sorted(int(i) for i in part) for part in np.split(order, cuts)]
+
+
+DRIFT_RAD = 0.1
+"""The same of a drift over the whole record: changes are free of what the modes do."""
+PARALLEL = 1.5
+"""Spreads of the slopes within either group that the gap between them exceeds: channels of one logger drift
+alike, those of modes that take turns each in its own way."""
+FEWEST_ON_A_LINE = 6
+"""Windows: the scatter about a line through fewer is not known well enough to tell a drift."""
+PARTED = 0.1
+"""Share of the spread of the slopes of all channels within which that of a sharp one is known."""
+LEAST_GAIN = 0.04
+"""Rise of the explained share of the phases: they must come nearer to 0 or π by 8° (rms) at least …"""
+OVER_NOTHING, OVER_PHASE = 1.5, 0.7
+"""… and by so many times what is left unexplained; and so much more than one phase for all bands does."""
+EXPLAINED = 0.75
+"""Share of the phases a delay must explain."""
+CERTAIN_RAD = {False: 1.2, True: 0.4}
+"""Phase at the upper end of the band from which a delay is certain: of one channel, whose few modes may be
+complex by chance as a delay would make them, and of several that agree."""
+BLOCKS = 6
+"""Of the bins, left out in turn: the delay must be that of all bands."""
+DELAY_SIGMAS = 4.0
+"""Standard deviations, by that, of the least delay believed."""
+OCTAVE = 1.6
+"""Upper over lower frequency of the middle 80 % of the weight, at least."""
+
+
+def drifts(series: FloatArray, network: Network) -> tuple[FloatArray, FloatArray]:
+    """Return the slope of each channel [s a window], 0 for the main group's, and its deviation.
+
+    Channels whose slopes are alike are of one logger and share their mean; one whose slope is hardly known
+    goes with the nearest.
+    """
+    n = len(series)
+    slope, rest = lines(series)
+    power = float(np.sum((np.arange(n) - 0.5 * (n - 1)) ** 2))
+    std = np.maximum(scatter(series), rest.std(axis=0)) / np.sqrt(power)
+    least = DRIFT_RAD / REACH_RAD * network.reach_s / n
+    out, spread = np.zeros(len(slope)), np.zeros(len(slope))
+    if n < FEWEST_ON_A_LINE:
+        return out, spread
+    for part in joined(network):
+        clear = max(0.4 * least, PARTED * float(np.ptp(slope[part])))
+        sharp = [i for i in part if std[i] < clear]
+        if len(sharp) < 2:
+            continue
+        groups = [[sharp[i] for i in g] for g in without_gaps(slope[sharp], least)]
+        middle = np.array([np.average(slope[g], weights=1.0 / np.maximum(std[g], 1e-9) ** 2) for g in groups])
+        own = {i: int(np.argmin(np.abs(middle - slope[i]))) for i in part}
+        sizes = [sorted(i for i in part if own[i] == k) for k in range(len(groups))]
+        main = sizes.index(largest(sizes))
+        spread_in = np.array([np.ptp(slope[g]) for g in groups])
+        known = np.array([1.0 / np.sqrt(np.sum(1.0 / np.maximum(std[g], 1e-9) ** 2)) for g in groups])
+        for i, k in own.items():
+            apart, error = middle[k] - middle[main], float(np.hypot(known[k], known[main]))
+            gap = np.abs(slope[groups[k]][:, None] - slope[groups[main]]).min()
+            alike = gap > PARALLEL * max(spread_in[k], spread_in[main])
+            if alike and abs(apart) > max(least, SIGMAS * error):
+                out[i], spread[i] = apart, error
+    return out, spread
+
+
+def late_clocks(
+    seen: Phases, network: Network, far_s: FloatArray, drift: tuple[FloatArray, FloatArray], middle_s: float
+) -> tuple[LateClock, ...]:
+    """Return the groups that are late by a delay that all bands and pairs agree on, or that drift.
+
+    Parameters
+    ----------
+    far_s : (n_channels,)
+        Delays that were taken back before.
+    drift : (n_channels,), (n_channels,)
+        Slopes, which were taken back as well, and their deviations.
+    middle_s : float
+        Time for which the delays of the phases hold.
+    """
+    z = doubled(seen)
+    search = seen.search_s
+    delay, value = refined_peak(search, objective(seen, z, search))
+    weight = np.where(network.informative, np.maximum(value, 0.0), 0.0)
+    each = against_main(network, per_channel(network, delay, weight)[None, :])[0]
+    main = np.flatnonzero((np.abs(each) <= network.reach_s) & (far_s == 0.0))
+    found: list[LateClock] = []
+    for rows in _alike(each, far_s, drift[0], network.reach_s):
+        before, grows = float(far_s[rows[0]]), float(drift[0][rows[0]])
+        known = None if np.isin(main, rows).any() else _confirmed(seen, network, z, rows, main, before)
+        if known is None and grows == 0.0 and before == 0.0:
+            continue
+        late, std, certain = known or (0.0, 0.0, True)
+        late += before - grows * middle_s
+        spread = float(np.max(drift[1][rows])) if grows else 0.0
+        found.append(LateClock(tuple(rows), late, std, grows, spread, certain))
+    return tuple(found)
+
+
+def _alike(delay_s: FloatArray, far_s: FloatArray, drift: FloatArray, reach_s: float) -> list[list[int]]:
+    """Return the channels of one delay and one drift."""
+    out: list[list[int]] = []
+    for group in without_gaps(delay_s + far_s, reach_s):
+        for value in np.unique(drift[group]):
+            out.append([i for i in group if drift[i] == value])
+    return out
+
+
+def _confirmed(
+    seen: Phases, network: Network, z: ComplexArray, rows: list[int], main: IntArray, before_s: float
+) -> tuple[float, float, bool] | None:
+    """Return delay, deviation and certainty of a group behind the main one, None if not all bands say so."""
+    i, j = seen.pairs.T
+    ahead = np.isin(i, rows) & np.isin(j, main) & network.informative
+    behind = np.isin(j, rows) & np.isin(i, main) & network.informative
+    if not (ahead | behind).any():
+        return None
+    both = z[:, ahead].sum(axis=1) + z[:, behind].sum(axis=1).conj()
+    weight = seen.weight[:, ahead | behind].sum(axis=1)
+    search = seen.search_s
+    turns = np.exp(4j * np.pi * np.outer(search, seen.frequency_hz))
+    passed = np.cumsum(weight) / weight.sum()
+    block = np.minimum((passed * BLOCKS).astype(int), BLOCKS - 1)
+    columns = np.stack([both, *(np.where(block == b, 0.0, both) for b in range(BLOCKS))], axis=1)
+    delay, value = refined_peak(search, np.asarray((turns @ columns).real))
+    std = float(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((delay[1:] - delay[1:].mean()) ** 2)))
+    explained, before = float(value[0] / weight.sum()), float(both.real.sum() / weight.sum())
+    one_phase = float(np.abs(both.sum()) / weight.sum())
+    low, high = seen.frequency_hz[np.searchsorted(passed, (0.1, 0.9))]
+    left = 1.0 - explained
+    if before_s != 0.0:
+        # that the clock is another is known already
+        return (float(delay[0]), std, True) if explained > EXPLAINED else None
+    believed = (
+        explained > EXPLAINED
+        and explained - before > max(LEAST_GAIN, OVER_NOTHING * left)
+        and explained - one_phase > OVER_PHASE * left
+        and abs(delay[0]) > DELAY_SIGMAS * std
+        and high > OCTAVE * low
+    )
+    certain = 2.0 * np.pi * high * abs(delay[0]) > CERTAIN_RAD[len(rows) > 1]
+    return (float(delay[0]), std, bool(certain)) if believed else None

@@ -24,7 +24,7 @@ import numpy as np
 import scipy  # scipy.fft is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
-from jackettwin.records.processing.transforms import hann_lines
+from jackettwin.records.processing.spectra import hann_lines
 
 FEWEST_LINES = 4
 """Lines over which a cross spectrum is averaged at least: the coherence of independent lines is biased by a

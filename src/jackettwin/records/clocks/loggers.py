@@ -9,22 +9,38 @@ the same pairs.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.clocks.results import LoggerClocks
+from jackettwin.records.processing.filters import bridge
+from jackettwin.records.quality.faults import is_constant
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Record
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
-from jackettwin.arrays import FloatArray, IntArray
+from jackettwin.arrays import IntArray
+from jackettwin.records.clocks.another_time import may_be_compared, spanning_pairs, strangers
 from jackettwin.records.clocks.channel_delays import (
+    EXPLAINED,
     REACH_RAD,
     Network,
     against_main,
     by_channel,
+    drifts,
+    late_clocks,
     per_channel,
     ties,
     without_gaps,
 )
+from jackettwin.records.clocks.correction import rejoined
 from jackettwin.records.clocks.delays import (
     Phases,
     aligned,
@@ -35,13 +51,10 @@ from jackettwin.records.clocks.delays import (
     phases,
     trajectories,
 )
-from jackettwin.records.clocks.found import ClockJump, LoggerClocks, Strangers
-from jackettwin.records.clocks.late import EXPLAINED, drifts, late_clocks
-from jackettwin.records.clocks.lost_time import lost_time, rejoined
-from jackettwin.records.clocks.other_day import may_be_compared, spanning_pairs, strangers
-from jackettwin.records.processing.filters import bridge
-from jackettwin.records.quality.gain_changes import gain_changes, sign_turns
-from jackettwin.records.quality.jumps import runs, steps
+from jackettwin.records.clocks.gain_changes import gain_changes, sign_turns
+from jackettwin.records.clocks.jumps import runs, steps
+from jackettwin.records.clocks.lost_time import lost_time
+from jackettwin.records.clocks.results import ClockJump, Strangers
 
 LEAST_WEIGHT = 20.0
 """Sum of the weights of a pair that says anything: two bins of full coherence, or twenty of half."""
@@ -53,12 +66,44 @@ FEWEST_WINDOWS = 4
 """Of a stretch that is judged."""
 
 
+LEAST_PRESENT = 0.75
+"""Share of the samples of a channel whose clock can be judged: a longer gap, bridged, looks like another
+time."""
+
+
 @dataclass(frozen=True)
 class _Seen:
     """Phases, and which channels they hold against each other."""
 
     phases: Phases
     network: Network
+
+
+def clocks_of(record: Record, slow_free: FloatArray) -> LoggerClocks:
+    """Return what the vibrations of a record say of the clocks of its loggers.
+
+    Parameters
+    ----------
+    slow_free : (n_channels, n_samples)
+        Its samples without mean and drift; NaN marks missing ones.
+    """
+    rows = [
+        i
+        for i, channel in enumerate(record.channels)
+        if channel.quantity in VIBRATIONS
+        and np.isfinite(slow_free[i]).mean() > LEAST_PRESENT
+        and not is_constant(slow_free[i])
+    ]
+    if len(rows) < 2:
+        return LoggerClocks(stop=record.data.shape[1])
+    found = logger_clocks(
+        np.array([bridge(slow_free[i]) for i in rows]),
+        record.sample_rate_hz,
+        velocity=[record.channels[i].quantity == "velocity" for i in rows],
+        places=[record.channels[i].node or record.channels[i].height_m for i in rows],
+        directions=[record.channels[i].direction for i in rows],
+    )
+    return found.of_rows(rows)
 
 
 def logger_clocks(

@@ -15,8 +15,9 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.clocks.channel_delays import TIE, largest
+from jackettwin.records.clocks.correction import rejoined
 from jackettwin.records.clocks.delays import Phases, band_lines, in_common, phases, trajectories
-from jackettwin.records.clocks.found import LostTime
+from jackettwin.records.clocks.results import LostTime
 
 GO_ON = 0.75
 """Share of the phases of two groups that short delays explain while their clocks go on."""
@@ -77,21 +78,6 @@ def lost_time(
             best, go_on = tried
     # one channel that parts and is nowhere found again may have fallen silent
     return best, best is not None or len(parting.rows) > 1
-
-
-def rejoined(y: FloatArray, lost: LostTime) -> FloatArray:
-    """Return a channel with room for the samples it lost, NaN there; less than none are taken out.
-
-    >>> rejoined(np.arange(8.0), LostTime((0,), 3, 4, 2))
-    array([ 0.,  1.,  2., nan, nan, nan,  4.,  5.])
-    """
-    out = np.full_like(y, np.nan)
-    out[: lost.start] = y[: lost.start]
-    first = max(lost.stop, lost.stop - lost.samples)
-    after = y[first : len(y) - max(lost.samples, 0)]
-    at = first + lost.samples
-    out[at : at + len(after)] = after
-    return out
 
 
 def _parting(seen: Phases, same_place: IntArray) -> _Parting | None:

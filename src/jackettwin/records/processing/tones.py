@@ -1,10 +1,28 @@
-"""A tone whose phase is known, steady or drifting: taken out of a signal by least squares."""
+r"""Tones whose phase is known, taken out by least squares: the orders of a rotor whose speed is measured.
+
+With the azimuth :math:`\theta(t) = \int \Omega\, dt` the tone of order k is
+:math:`\mathrm{Re}\, c\, e^{ik\theta}`, one complex amplitude a channel, whatever the speed does. A mode is
+driven at random and has no fixed phase towards the rotor: over T seconds the fit takes no more of it than a
+line of width 1/T. A speed wrong by more than a few tenths of a turn over the record leaves the tone in, for
+its statistics to tell.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.quantities import VIBRATIONS
+from jackettwin.records.processing.filters import bridge
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from jackettwin.records.record import Record
+
 
 FEWEST_SAMPLES = 30
 """A channel with fewer keeps what it has: three unknowns a channel, tenfold."""
@@ -35,3 +53,83 @@ def less_phase(y: FloatArray, phase: FloatArray) -> FloatArray:
             seen = basis[:, there]
             row[there] -= np.linalg.solve(seen @ seen.T, seen @ row[there])[:2] @ seen[:2]
     return out
+
+
+ORDERS = (1, 3, 6)
+"""Multiples of the rotor's speed at which three blades excite a tower."""
+FEWEST_TURNS = 20.0
+"""Fewer turns in a record are a rotor at rest, or too few to tell a tone."""
+SPEED_KEYS = ("rotor_speed_rpm", "mean_rotor_speed_rpm", "rotor_rpm")
+"""Names of the mean speed of the rotor among a record's conditions."""
+SPREAD = 0.05
+"""Relative range of the speed about a mean that is stated, within ten minutes of operation."""
+
+
+@dataclass(frozen=True)
+class RotorOrder:
+    """A multiple of the rotor's speed.
+
+    Attributes
+    ----------
+    order : int
+        3 for 3P.
+    low_hz, high_hz : float
+        Where its frequency lay, 1st to 99th percentile.
+    share : float
+        Largest share of a channel's power that was taken out.
+    """
+
+    order: int
+    low_hz: float
+    high_hz: float
+    share: float
+
+
+def rotor_speed(record: Record) -> FloatArray | None:
+    """Return the rotor's speed [rad/s], gaps bridged; None if it is not measured or the rotor stands."""
+    rows = [i for i, c in enumerate(record.channels) if c.quantity == "rotor speed"]
+    if not rows or not np.isfinite(record.data[rows[0]]).any():
+        return None
+    speed = np.abs(bridge(record.data[rows[0]]))
+    turns = float(np.sum(speed)) / record.sample_rate_hz / (2.0 * np.pi)
+    return speed if turns >= FEWEST_TURNS else None
+
+
+def stated_orders(conditions: Mapping[str, Any], duration_s: float) -> tuple[RotorOrder, ...]:
+    """Return where the orders lie by a mean speed that the conditions state; none for a rotor at rest."""
+    stated = [conditions[key] for key in SPEED_KEYS if isinstance(conditions.get(key), int | float)]
+    turns_a_second = abs(stated[0]) / 60.0 if stated else 0.0
+    if turns_a_second * duration_s < FEWEST_TURNS:
+        return ()
+    low, high = turns_a_second * (1.0 - SPREAD), turns_a_second * (1.0 + SPREAD)
+    return tuple(RotorOrder(k, k * low, k * high, 0.0) for k in ORDERS)
+
+
+def without_orders(record: Record, speed_rad_s: FloatArray) -> tuple[Record, tuple[RotorOrder, ...]]:
+    """Return the record with the tones of the rotor taken from its vibration channels, and what they were.
+
+    Parameters
+    ----------
+    speed_rad_s : (n_samples,)
+        Without gaps.
+    """
+    azimuth = np.cumsum(speed_rad_s) / record.sample_rate_hz
+    nyquist = 0.5 * record.sample_rate_hz
+    data, orders = record.data.copy(), []
+    vibrating = [i for i, c in enumerate(record.channels) if c.quantity in VIBRATIONS]
+    for k in ORDERS:
+        low, high = np.percentile(k * speed_rad_s, [1.0, 99.0]) / (2.0 * np.pi)
+        if high >= nyquist:
+            continue
+        left = less_phase(data[vibrating], k * azimuth)
+        share = max(map(_share, data[vibrating], data[vibrating] - left), default=0.0)
+        data[vibrating] = left
+        orders.append(RotorOrder(k, float(low), float(high), share))
+    return replace(record, data=data), tuple(orders)
+
+
+def _share(y: FloatArray, tone: FloatArray) -> float:
+    """Return the share of a channel's power that is the tone's."""
+    there = np.isfinite(y)
+    power = float(np.var(y[there])) if there.any() else 0.0
+    return float(np.var(tone[there])) / power if power > 0.0 else 0.0

@@ -15,13 +15,13 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records.clocks.findings import in_step, stretch
+from jackettwin.records.clocks.correction import in_step, stretch
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults
-from jackettwin.records.quality.assess import DRIFT_CYCLES, shortest_stuck
+from jackettwin.records.quality.record_quality import DRIFT_CYCLES, shortest_stuck
 
 if TYPE_CHECKING:
-    from jackettwin.records.quality.assess import Quality
+    from jackettwin.records.quality.record_quality import Quality
     from jackettwin.records.record import Record
 
 

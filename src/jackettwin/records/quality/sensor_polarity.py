@@ -24,7 +24,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.records.processing.filters import bridge
-from jackettwin.records.processing.transforms import hann_lines
+from jackettwin.records.processing.spectra import hann_lines
 from jackettwin.records.quality import faults
 
 if TYPE_CHECKING:

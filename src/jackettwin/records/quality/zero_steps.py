@@ -13,7 +13,7 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.records.processing.filters import bridge
-from jackettwin.records.processing.transforms import of_fast_length
+from jackettwin.records.processing.spectra import of_fast_length
 
 SLOW = 20
 """Cycles a record below which motion is slow."""

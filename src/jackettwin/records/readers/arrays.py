@@ -1,4 +1,4 @@
-"""Named arrays (npz, MATLAB, HDF5): one set of rules for what they mean.
+"""Named arrays (npz, MATLAB, HDF5): one set of rules for what they mean; NumPy's own files.
 
 A scalar named like a rate is the rate; a vector named like a time holds the stamps; a text named
 ``description`` is the JSON of a record. A matrix holds one channel along its shorter side, named
@@ -17,18 +17,17 @@ import numpy.typing as npt
 
 from jackettwin.errors import InputError
 from jackettwin.records.readers.delimited import RATE_KEYS
-from jackettwin.records.readers.description import (
-    ChannelEntry,
-    description_text,
-    parse_description,
-    parse_time,
-)
+from jackettwin.records.readers.description import ChannelEntry, description_text, parse_description
+from jackettwin.records.readers.stamps import parse_time
 from jackettwin.records.readers.table import ReadTable, is_time, seconds, time_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
+    from jackettwin.records.readers.table import ReadTable
     from jackettwin.records.record import Record
+
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -221,3 +220,25 @@ def _rate(scalars: dict[str, float]) -> float | None:
             "is not a rate", field="sample_rate_hz", value=rate, allowed="> 0 Hz", remedy="correct it"
         )
     return rate
+
+
+def read(path: Path) -> ReadTable:
+    """Read the archive; pickled objects are refused."""
+    # np.load leaves a file open that it opened itself and could not read.
+    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
+        return table_from_arrays({key: archive[key] for key in archive.files})
+
+
+def read_single(path: Path) -> ReadTable:
+    """Read a single array: a matrix of channels, a vector, or the named fields of a structured array."""
+    with path.open("rb") as stream:
+        array = np.load(stream, allow_pickle=False)
+    if array.dtype.names:
+        return table_from_arrays({name: array[name] for name in array.dtype.names})
+    return table_from_arrays({"channel": array})
+
+
+def write(record: Record, path: Path) -> None:
+    """Write data, rate, names and the description."""
+    with path.open("wb") as stream:
+        np.savez_compressed(stream, allow_pickle=False, **arrays_from_record(record))

@@ -21,8 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.errors import InputError
-from jackettwin.records.readers.description import parse_time
-from jackettwin.records.readers.stamps import has_zone, is_stamp, stamps, with_one_stamp
+from jackettwin.records.readers.stamps import has_zone, is_stamp, parse_time, stamps, with_one_stamp
 from jackettwin.records.readers.table import ReadTable, climbs_evenly, table_from_columns
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import json
 import math
 from collections import Counter
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ from pydantic import ConfigDict, Field
 
 from jackettwin.errors import InputError, did_you_mean, located
 from jackettwin.files import Schema, validate
-from jackettwin.records.readers.zones import read_zone
+from jackettwin.records.readers.stamps import parse_time, read_zone
 from jackettwin.records.record import Frame
 
 if TYPE_CHECKING:
@@ -125,28 +125,6 @@ def parse_description(text: str, *, file: Path | str | None = None) -> Descripti
         conditions=entries.conditions,
         metadata={**metadata, CHANNEL_METADATA: further} if further else metadata,
     )
-
-
-def parse_time(text: str, *, file: Path | str | None = None) -> datetime:
-    """Return an ISO 8601 time in UTC; a time without zone is UTC.
-
-    Raises
-    ------
-    InputError
-        If it is not ISO 8601.
-    """
-    try:
-        time = datetime.fromisoformat(text.strip())
-        return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
-    except (ValueError, OverflowError):
-        raise InputError(
-            "is not an ISO 8601 time",
-            file=file,
-            field="start_utc",
-            value=text,
-            allowed="2025-01-01T13:00:00Z",
-            remedy="write the start in UTC",
-        ) from None
 
 
 def describe(record: Record) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from jackettwin.errors import InputError, JackettwinError, did_you_mean
 from jackettwin.files import atomic_path
 from jackettwin.plugins import plugins_of_type
-from jackettwin.records.readers import delimited, hdf5, matlab, npz, openfast, parquet, tdms, uff
+from jackettwin.records.readers import arrays, delimited, hdf5, matlab, openfast, parquet, tdms, uff
 from jackettwin.records.readers.channels import Unsaid
 from jackettwin.records.readers.description import Description, description_text, read_description
 from jackettwin.records.readers.table import ReadTable, to_record
@@ -46,8 +46,8 @@ FORMATS = (
         delimited.write,
         pieces=delimited.pieces,
     ),
-    Format("NumPy archive", (".npz",), npz.read, npz.write, json_beside=False),
-    Format("NumPy array", (".npy",), npz.read_single),
+    Format("NumPy archive", (".npz",), arrays.read, arrays.write, json_beside=False),
+    Format("NumPy array", (".npy",), arrays.read_single),
     Format("HDF5", (".h5", ".hdf5"), hdf5.read, hdf5.write, json_beside=False, pieces=hdf5.pieces),
     Format("MATLAB", (".mat",), matlab.read, matlab.write, json_beside=False),
     Format("universal file", (".uff", ".unv"), uff.read, uff.write),

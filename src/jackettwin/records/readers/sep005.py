@@ -14,7 +14,8 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.files import validate
-from jackettwin.records.readers.description import CHANNEL_METADATA, ChannelEntry, parse_time
+from jackettwin.records.readers.description import CHANNEL_METADATA, ChannelEntry
+from jackettwin.records.readers.stamps import parse_time
 from jackettwin.records.readers.table import ReadTable, seconds, to_record
 
 if TYPE_CHECKING:

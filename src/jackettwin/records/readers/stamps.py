@@ -1,20 +1,26 @@
-"""Times as loggers write them: a date with a time, in one column or two, or a time of day alone."""
+"""Times as loggers write them, and the zones of clocks that do not say theirs.
+
+A stamp is a date with a time, in one column or two, or a time of day alone.
+"""
 
 from __future__ import annotations
 
 import re
 from contextlib import suppress
+from datetime import UTC, datetime, timedelta, timezone, tzinfo
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
 from jackettwin.errors import InputError, require
-from jackettwin.records.readers.description import parse_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy.typing as npt
+
 
 # Day and month with strokes between them stand in either order: 31/01/2025 shows which, 01/02/2025 does not.
 _NO_MONTH = r"(?:1[3-9]|2\d|3[01])"
@@ -138,3 +144,78 @@ def _stamp(text: str, line: int) -> np.datetime64:
         return np.datetime64(parse_time(text).replace(tzinfo=None), "ns")
     except InputError as error:
         raise error.at(field=f"line {line}") from None
+
+
+def parse_time(text: str, *, file: Path | str | None = None) -> datetime:
+    """Return an ISO 8601 time in UTC; a time without zone is UTC.
+
+    Raises
+    ------
+    InputError
+        If it is not ISO 8601.
+    """
+    try:
+        time = datetime.fromisoformat(text.strip())
+        return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
+    except (ValueError, OverflowError):
+        raise InputError(
+            "is not an ISO 8601 time",
+            file=file,
+            field="start_utc",
+            value=text,
+            allowed="2025-01-01T13:00:00Z",
+            remedy="write the start in UTC",
+        ) from None
+
+
+_OFFSET = re.compile(
+    r"^(?:UTC|GMT)?(?P<sign>[+\-−])(?P<hours>\d{1,2})(?::?(?P<minutes>\d{2}))?$", re.IGNORECASE
+)
+_UTC = ("utc", "gmt", "z")
+
+UNSAID = (
+    "the clock does not say its zone: taken as UTC "
+    '("clock" in the JSON beside the file, logger.clock of a twin, or --timezone, says another)'
+)
+"""Remark on a record whose stamps have no zone."""
+
+TWICE = "the clock's zone has this hour twice, or never: taken as the first (summer time); state start_utc"
+"""Remark on a record that begins in an hour in which clocks are put back or forward."""
+
+
+def read_zone(text: str, *, field: str = "clock") -> tzinfo:
+    """Return a zone: ``UTC``, an offset (``+02:00``, ``UTC+2``), or a name (``Europe/Berlin``).
+
+    Raises
+    ------
+    InputError
+        If it is none.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> in_utc(datetime(2025, 6, 1, 14), read_zone("UTC+2")).hour
+    12
+    """
+    text = text.strip()
+    if text.lower() in _UTC:
+        return UTC
+    match = _OFFSET.match(text.replace(" ", ""))
+    if match is not None and int(match["hours"]) <= 14:
+        offset = timedelta(hours=int(match["hours"]), minutes=int(match["minutes"] or 0))
+        return timezone(offset if match["sign"] == "+" else -offset)
+    try:
+        return ZoneInfo(text)
+    except (ZoneInfoNotFoundError, ValueError, OSError):
+        raise InputError(
+            "is not a time zone",
+            field=field,
+            value=text,
+            allowed="UTC, an offset like +02:00, or a name like Europe/Berlin",
+            remedy="state the zone of the logger's clock",
+        ) from None
+
+
+def in_utc(time: datetime, zone: tzinfo) -> datetime:
+    """Return what a clock in a zone shows as UTC; an hour that is there twice is the first."""
+    return time.replace(tzinfo=zone).astimezone(UTC)

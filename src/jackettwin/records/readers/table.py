@@ -16,11 +16,22 @@ from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import guess_quantity, names_other
 from jackettwin.records.clocks.grid import between_ticks, regularise
 from jackettwin.records.readers.channel_names import Reading, read_name, told
-from jackettwin.records.readers.channels import Described, Unsaid, described_channel, merged
+from jackettwin.records.readers.channels import (
+    Described,
+    Unsaid,
+    described_channel,
+    merged,
+    without_sentinels,
+)
 from jackettwin.records.readers.description import ChannelEntry, Description
-from jackettwin.records.readers.sentinels import without_sentinels
-from jackettwin.records.readers.stamps import ambiguous_date, refuse_ambiguous
-from jackettwin.records.readers.zones import TWICE, UNSAID, in_utc, read_zone
+from jackettwin.records.readers.stamps import (
+    TWICE,
+    UNSAID,
+    ambiguous_date,
+    in_utc,
+    read_zone,
+    refuse_ambiguous,
+)
 from jackettwin.records.record import LARGEST, Record
 
 if TYPE_CHECKING:

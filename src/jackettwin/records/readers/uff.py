@@ -15,7 +15,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
-from jackettwin.records.readers.description import ChannelEntry, describe, parse_time
+from jackettwin.records.readers.description import ChannelEntry, describe
+from jackettwin.records.readers.stamps import parse_time
 from jackettwin.records.readers.table import ReadTable
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import pyarrow as pa
 from pyarrow import csv
 
 from jackettwin.errors import InputError
-from jackettwin.records.readers.zones import in_utc, read_zone
+from jackettwin.records.readers.stamps import in_utc, read_zone
 
 Value = float | str | None
 _TIMES = ("time_utc", "time", "timestamp", "datetime", "date_time", "date", "zeit", "pctimestamp")

@@ -156,7 +156,7 @@ def _check(record: Record, file: File) -> None:
 
 def stored(record: Record, asset: str, store: Path) -> Parsed:
     """Keep the samples of a record in the store, by their content."""
-    from jackettwin.records.identity import record_id
+    from jackettwin.records.record import record_id
     from jackettwin.store import waveform_path, write_waveform
 
     assert record.start_utc is not None

@@ -15,7 +15,7 @@ import scipy  # scipy.sparse is loaded where it is used
 from jackettwin.arrays import BoolArray, FloatArray, IntArray
 from jackettwin.records.clocks.channel_delays import connected
 from jackettwin.records.clocks.delays import BandLines, Phases, band_lines, long_delays
-from jackettwin.records.clocks.found import Strangers
+from jackettwin.records.clocks.results import Strangers
 
 COMMON = 75.0
 """Sum of ``long_delays`` from which two channels have something in common: that of independent ones is larger

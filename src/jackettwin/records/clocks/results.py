@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jackettwin.findings import Finding
+
+if TYPE_CHECKING:
+    from jackettwin.records.record import Record
 
 
 @dataclass(frozen=True)
@@ -127,3 +134,92 @@ class LoggerClocks:
             for key in ("late", "jumps", "gains", "growing", "strangers", "lost")
         }
         return replace(self, **named)
+
+
+def clock_findings(record: Record, clocks: LoggerClocks) -> Iterator[Finding]:
+    """Yield what is worth saying about the clocks."""
+    rate = record.sample_rate_hz
+    for stranger in clocks.strangers:
+        code = "stored_backwards" if stranger.backwards else "another_time"
+        yield _said(code, stranger.fewer, channels=_names(record, stranger.rows))
+    for lost in clocks.lost:
+        yield _said(
+            "time_lost",
+            True,
+            channels=_names(record, lost.rows),
+            lost_s=abs(lost.samples) / rate,
+            lost="lost" if lost.samples > 0 else "gained",
+            from_s=lost.start / rate,
+            to_s=lost.stop / rate,
+        )
+    for growing in clocks.growing:
+        yield _said(
+            "gain_grows", True, channels=_names(record, growing.rows), factor=float(np.exp(growing.rate))
+        )
+    for gain in clocks.gains:
+        if min(gain.factor) < 0.0:
+            yield _said(
+                "sign_turns",
+                True,
+                channels=_names(record, gain.rows),
+                from_s=gain.start / rate,
+                to_s=gain.stop / rate,
+            )
+            continue
+        at, factor = ("from", gain.factor[1]) if gain.factor[0] == 1.0 else ("until", gain.factor[0])
+        yield _said(
+            "gain_jump",
+            True,
+            channels=_names(record, gain.rows),
+            factor=factor,
+            at=at,
+            time_s=(gain.stop if at == "from" else gain.start) / rate,
+            from_s=gain.start / rate,
+            to_s=gain.stop / rate,
+        )
+    for jump in clocks.jumps:
+        yield _said(
+            "clock_jump",
+            channels=_names(record, jump.rows),
+            by_s=jump.by_s,
+            from_s=jump.start / rate,
+            to_s=jump.stop / rate,
+        )
+    if not clocks.judged:
+        yield _said("clocks_wander")
+        return
+    if clocks.jumps:
+        yield _said("clock_cut", True, from_s=clocks.start / rate, to_s=clocks.stop / rate)
+    for late in clocks.late:
+        yield _late(record, late)
+
+
+def _late(record: Record, late: LateClock) -> Finding:
+    names = _names(record, late.rows)
+    middle = late.delay_s + 0.5 * late.drift * record.duration_s
+    common: dict[str, float | str] = {
+        "channels": names,
+        "delay_s": abs(middle),
+        "late": "later" if middle > 0.0 else "earlier",
+    }
+    if not late.certain:
+        return _said("clock_late_or_complex", False, **common)
+    if late.drift:
+        return _said(
+            "clock_drift",
+            True,
+            channels=names,
+            drift_ppm=1e6 * abs(late.drift),
+            std_ppm=1e6 * late.drift_std,
+            slow="slow" if late.drift > 0.0 else "fast",
+            delay_s=middle,
+        )
+    return _said("clock_late", True, std_s=late.delay_std_s, **common)
+
+
+def _said(code: str, repaired: bool = False, **params: float | str) -> Finding:
+    return Finding(code, None, params, repaired)
+
+
+def _names(record: Record, rows: tuple[int, ...]) -> str:
+    return ", ".join(record.channels[i].name for i in rows)

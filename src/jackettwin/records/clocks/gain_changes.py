@@ -9,8 +9,8 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.records.clocks.channel_delays import Network, by_channel, without_gaps
 from jackettwin.records.clocks.delays import Phases, gain_trajectories
-from jackettwin.records.clocks.found import GainJump, GrowingGain
-from jackettwin.records.quality.jumps import SIGMAS, lines, runs, steps
+from jackettwin.records.clocks.jumps import SIGMAS, lines, runs, steps
+from jackettwin.records.clocks.results import GainJump, GrowingGain
 
 LEAST_FACTOR = 1.15
 """Least change of sensitivity that counts."""

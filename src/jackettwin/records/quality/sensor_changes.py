@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jackettwin.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from jackettwin.records.processing.transforms import of_fast_length
+from jackettwin.records.processing.spectra import of_fast_length
 from jackettwin.records.quality.sensor_polarity import LEAST_CYCLES, strongest_line
 from jackettwin.signals import tukey
 

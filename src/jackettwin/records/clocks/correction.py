@@ -1,4 +1,4 @@
-r"""Samples of a channel as they would have been read a little earlier or later.
+r"""Channels brought into step: lost seconds given back, delays, drifts and changes of sensitivity taken back.
 
 A band-limited signal is known between its samples: its transform times :math:`e^{2\pi i f\tau}` is exact.
 The ends are extended by point reflection; a gap stays a gap, wider by the sample the shift touches. For a
@@ -12,6 +12,7 @@ import numpy as np
 import scipy  # scipy.interpolate is loaded where it is used
 
 from jackettwin.arrays import FloatArray
+from jackettwin.records.clocks.results import LoggerClocks, LostTime
 from jackettwin.records.processing.filters import bridge, remove_line
 
 PAD = 256
@@ -76,3 +77,57 @@ def _turned(y: FloatArray, share: float) -> FloatArray:
 def _finer(y: FloatArray) -> FloatArray:
     """Return the periodic signal at ``FINER`` times the rate."""
     return np.asarray(np.fft.irfft(np.fft.rfft(y), FINER * len(y)) * FINER)
+
+
+def in_step(data: FloatArray, clocks: LoggerClocks, sample_rate_hz: float) -> FloatArray:
+    """Return samples with what is certainly late brought into step, NaN where no clock is known."""
+    data = data.copy()
+    for i in (i for one in clocks.strangers if one.backwards for i in one.rows):
+        data[i] = data[i, ::-1]
+    for lost in clocks.lost:
+        for i in lost.rows:
+            data[i] = rejoined(data[i], lost)
+    out = data.copy()
+    for late in clocks.late:
+        if late.certain:
+            for i in late.rows:
+                out[i] = earlier(data[i], late.delay_s * sample_rate_hz, late.drift)
+    for jump in clocks.gains:
+        rows = list(jump.rows)
+        out[rows, : jump.start] /= jump.factor[0]
+        out[rows, jump.stop :] /= jump.factor[1]
+        out[rows, jump.start : jump.stop] = np.nan
+    time = np.linspace(-0.5, 0.5, data.shape[1])
+    for gain in clocks.growing:
+        out[list(gain.rows)] *= np.exp(-gain.rate * time)
+    out[:, : clocks.start] = np.nan
+    out[:, clocks.stop :] = np.nan
+    return out
+
+
+def stretch(clocks: LoggerClocks, n_samples: int, sample_rate_hz: float) -> tuple[int, int]:
+    """Return first and last sample (excluded) that all channels have once they are in step."""
+    ends = [
+        (late.delay_s + late.drift * t) * sample_rate_hz
+        for late in clocks.late
+        if late.certain
+        for t in (0.0, n_samples / sample_rate_hz)
+    ]
+    first = max(clocks.start, int(np.ceil(-min(ends, default=0.0))))
+    last = min(clocks.stop, n_samples - int(np.ceil(max(ends, default=0.0))))
+    return max(first, 0), last
+
+
+def rejoined(y: FloatArray, lost: LostTime) -> FloatArray:
+    """Return a channel with room for the samples it lost, NaN there; less than none are taken out.
+
+    >>> rejoined(np.arange(8.0), LostTime((0,), 3, 4, 2))
+    array([ 0.,  1.,  2., nan, nan, nan,  4.,  5.])
+    """
+    out = np.full_like(y, np.nan)
+    out[: lost.start] = y[: lost.start]
+    first = max(lost.stop, lost.stop - lost.samples)
+    after = y[first : len(y) - max(lost.samples, 0)]
+    at = first + lost.samples
+    out[at : at + len(after)] = after
+    return out
