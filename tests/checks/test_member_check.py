@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.checks.member_check import DesignBasis, member_uses
+from jackettwin.checks import DesignBasis, frame_use
 from jackettwin.decks import read_structure
 from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
 from jackettwin.response.system import build_system
@@ -33,7 +33,7 @@ def displaced(structure: Structure, **forces: tuple[float, ...]) -> tuple:
 def test_a_column_s_buckling_length_is_not_its_pieces() -> None:
     """A 10 m cantilever in two pieces has K·L = 20 m; 5 MN in compression: 1.18·81.20/298.70 = 0.32078."""
     structure = cantilever()
-    uses = member_uses(*displaced(structure, n2=(0.0, 0.0, -5e6)))
+    uses = frame_use(*displaced(structure, n2=(0.0, 0.0, -5e6))).members
     for use in uses:
         assert use.by_check["compression"] == pytest.approx(0.32078, rel=1e-4)
         assert use.covered
@@ -41,7 +41,7 @@ def test_a_column_s_buckling_length_is_not_its_pieces() -> None:
 
 def test_bending_at_the_foot() -> None:
     """200 kN at 10 m: σ = 2 MN·m/Z_e = 135.22 MPa, 1.05·135.22/420.49; half of it at mid-height."""
-    lower, upper = member_uses(*displaced(cantilever(), n2=(2e5, 0.0, 0.0)))
+    lower, upper = frame_use(*displaced(cantilever(), n2=(2e5, 0.0, 0.0))).members
     assert lower.by_check["bending"] == pytest.approx(1.05 * 2e6 / Z_E / 420.49e6, rel=1e-4)
     assert upper.by_check["bending"] == pytest.approx(0.5 * lower.by_check["bending"], rel=1e-6)
     assert lower.check in ("section", "bending")  # the same without axial force
@@ -52,7 +52,7 @@ def test_bending_at_the_foot() -> None:
 def test_the_worst_instant_counts() -> None:
     assembly, u = displaced(cantilever(), n2=(2e5, 0.0, 1e6))
     history = np.array([0.2, -1.0, 0.5])[:, None] * u
-    record, push, pull = (member_uses(assembly, v) for v in (history, -u, 0.5 * u))
+    record, push, pull = (frame_use(assembly, v).members for v in (history, -u, 0.5 * u))
     for worst, one, other in zip(record, push, pull, strict=True):
         wanted = {name: max(one.by_check[name], other.by_check[name]) for name in one.by_check}
         assert worst.by_check == pytest.approx(wanted, rel=1e-9)
@@ -61,7 +61,7 @@ def test_the_worst_instant_counts() -> None:
 def test_forces_are_those_of_the_worst_place_and_instant() -> None:
     """A cantilever under (Fx, Fy, Fz) and a torque at its top: N = Fz, M = F·(L − z) (statics)."""
     assembly, u = displaced(cantilever(), n2=(2e5, 1e5, -3e5, 0.0, 0.0, 4e5))
-    lower, upper = member_uses(assembly, np.stack([0.5 * u, u, 0.1 * u]))
+    lower, upper = frame_use(assembly, np.stack([0.5 * u, u, 0.1 * u])).members
     # local axes of a vertical member: x up, y = −Y, z = X (structure.md)
     root = (-3e5, -1e5, 2e5, 4e5, -2e6, -1e6)
     assert (lower.worst.position, upper.worst.position) == (0.0, 0.0)
@@ -75,7 +75,7 @@ def test_forces_are_those_of_the_worst_place_and_instant() -> None:
 
 def test_a_factor_given_for_a_part_or_member_counts() -> None:
     assembly, u = displaced(cantilever(), n2=(0.0, 0.0, -5e6))
-    lower, upper = member_uses(assembly, u, DesignBasis(K={"tower": 1.0, "m1": 0.7}))
+    lower, upper = frame_use(assembly, u, DesignBasis(K={"tower": 1.0, "m1": 0.7})).members
     assert (lower.buckling.K, upper.buckling.K) == (1.0, 0.7)
     assert lower.by_check["compression"] > upper.by_check["compression"]
 
@@ -85,7 +85,7 @@ def test_the_legs_stand_in_compression_under_the_weight() -> None:
     structure = read_structure("jacket15")
     assembly = assemble(structure)
     u = static_displacement(build_system(assembly, pinned(structure)), self_weight(assembly))
-    uses = {use.member: use for use in member_uses(assembly, u)}
+    uses = {use.member: use for use in frame_use(assembly, u).members}
     legs = [uses[f"leg_{k}_bay_1"] for k in (1, 2, 3, 4)]
     assert all(leg.by_check["tension"] == 0.0 and leg.covered for leg in legs)
     assert not uses["tower_1"].covered

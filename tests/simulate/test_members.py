@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jackettwin.checks.member_check import member_uses
+from jackettwin.checks import frame_use
 from jackettwin.decks import read_structure
 from jackettwin.loads.sea.waves import wave_number
 from jackettwin.response.motion.static import nodal_load, self_weight, static_displacement
@@ -21,7 +21,7 @@ def test_calm_is_statics_and_waves_add_to_it(scenario_file) -> None:
     structure = read_structure("jacket15")
     assembly = assemble(structure)
     rest = static_displacement(build_system(assembly, pinned(structure)), self_weight(assembly))
-    still = {use.member: use for use in member_uses(assembly, rest, along=element_weight(assembly))}
+    still = {use.member: use for use in frame_use(assembly, rest, along=element_weight(assembly)).members}
     calm = scenario_uses(read_scenario(scenario_file(support="pinned"))).members
     for use in calm:
         assert use.by_check == pytest.approx(still[use.member].by_check, rel=1e-6, abs=1e-12)
@@ -60,7 +60,7 @@ def test_the_foot_of_a_monopile_feels_the_overturning_moment(scenario_file, tmp_
     pushed = static_displacement(
         build_system(assembly, clamped(structure)), nodal_load(assembly, {"top": (1e6, 0.0, 0.0)})
     )
-    per_moment = member_uses(assembly, pushed)[0].by_check["bending"] / 30e6
+    per_moment = frame_use(assembly, pushed).members[0].by_check["bending"] / 30e6
     waves = {"type": "airy", "height_m": 3.0, "period_s": 12.0, "direction_deg": 30.0}
     scenario = read_scenario(scenario_file(structure=str(file), support="clamped", waves=waves))
     moment = loads_document(scenario)["mudline"]["overturning_moment_n_m"]

@@ -1,1 +1,5 @@
-"""Code checks of members and joints to ISO 19902."""
+"""Code checks: members and joints against ISO 19902."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -23,7 +23,7 @@ from jackettwin.checks.iso19902_pressure import PRESSURE_CHECKS, HoopStrength, h
 from jackettwin.checks.joint_check import BraceUse, joint_plans, joint_uses, worst_joints
 from jackettwin.errors import InputError
 from jackettwin.structure import Assembly
-from jackettwin.structure.forces import SectionForces, section_forces, von_mises_stress
+from jackettwin.structure.forces import SectionForces, section_forces, tube_radius, von_mises_stress
 
 ALL_CHECKS = CHECKS | PRESSURE_CHECKS
 """Checks of a member and their clauses; those under pressure only where there is some."""
@@ -112,18 +112,6 @@ class FrameUse:
         return FrameUse(worst_uses(self.members, other.members), worst_joints(self.joints, other.joints))
 
 
-def member_uses(
-    assembly: Assembly,
-    displacement: FloatArray,
-    basis: DesignBasis | None = None,
-    *,
-    along: FloatArray | None = None,
-    pressure: FloatArray | None = None,
-) -> tuple[MemberUse, ...]:
-    """Return the use of every member; arguments as in ``frame_use``."""
-    return frame_use(assembly, displacement, basis, along=along, pressure=pressure).members
-
-
 def frame_use(
     assembly: Assembly,
     displacement: FloatArray,
@@ -155,7 +143,7 @@ def frame_use(
             allowed="circular tubes (MType 1c)",
             remedy="check other sections by their own code",
         )
-    held = _Held(assembly, basis, pressure)
+    check = _MemberCheck(assembly, basis, pressure)
     plans = joint_plans(assembly, basis.yield_strength_pa)
     cases = displacement.reshape(-1, assembly.n_dof)
     spread = None if along is None else along.reshape(-1, *along.shape[-2:])
@@ -165,12 +153,12 @@ def frame_use(
         loads = spread if spread is None or len(spread) == 1 else spread[here]
         forces = section_forces(assembly, cases[here], along=loads)
         joints = joint_uses(assembly, plans, forces, conservative=basis.conservative_joints)
-        worst = worst.worse(FrameUse(held.uses(forces), joints))
+        worst = worst.worse(FrameUse(check.uses(forces), joints))
     return worst
 
 
-class _Held:
-    """What the checks of members hold through all instants: tubes, strengths, pressure."""
+class _MemberCheck:
+    """Tubes, strengths and pressure of all members, which are the same at every instant."""
 
     def __init__(self, assembly: Assembly, basis: DesignBasis, pressure: FloatArray | None) -> None:
         self.assembly, self.basis = assembly, basis
@@ -261,8 +249,7 @@ def section_stress(assembly: Assembly, forces: SectionForces) -> Stress:
 def _dimensions(assembly: Assembly) -> tuple[FloatArray, FloatArray]:
     """Return outer diameter and wall of every element from its area and second moment."""
     p = assembly.mesh.properties
-    outer, inner = 8.0 * p.I / p.A + 2.0 * p.A / np.pi, 8.0 * p.I / p.A - 2.0 * p.A / np.pi
-    D = np.sqrt(outer)
+    D, inner = 2.0 * tube_radius(p), 8.0 * p.I / p.A - 2.0 * p.A / np.pi
     return D, 0.5 * (D - np.sqrt(np.maximum(inner, 0.0)))
 
 

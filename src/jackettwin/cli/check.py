@@ -9,10 +9,16 @@ import numpy as np
 from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.checks.iso19902 import EDITIONS
-from jackettwin.checks.iso19902_joints import KINDS
-from jackettwin.checks.joint_check import BraceUse
-from jackettwin.checks.member_check import ALL_CHECKS, DesignBasis, FrameUse, MemberUse, frame_use
+from jackettwin.checks import (
+    ALL_CHECKS,
+    EDITIONS,
+    KINDS,
+    BraceUse,
+    DesignBasis,
+    FrameUse,
+    MemberUse,
+    frame_use,
+)
 from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print_json
 from jackettwin.cli.modes import support_option
 from jackettwin.decks import read_structure

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jackettwin.axes import DOFS_PER_NODE
-from jackettwin.checks.member_check import member_uses
+from jackettwin.checks import frame_use
 from jackettwin.cli.check import nodal_force
 from jackettwin.cli.console import PageFile, numbers_of, output, print_json
 from jackettwin.cli.modes import rayleigh_option, support_option
@@ -237,7 +237,8 @@ def _uses(
     """Return utilisation and stress at rest under the weight and the forces given."""
     u = static_displacement(system, self_weight(assembly) + nodal_load(assembly, forces))
     along = element_weight(assembly)
-    uses = np.array([use.utilisation for use in member_uses(assembly, u, along=along)])[assembly.mesh.member]
+    members = frame_use(assembly, u, along=along).members
+    uses = np.array([use.utilisation for use in members])[assembly.mesh.member]
     sections = section_forces(assembly, u, along=along)
     return (
         ColouredQuantity("utilisation at rest, ISO 19902", "–", np.minimum(uses, _MOST_USED), from_zero=True),

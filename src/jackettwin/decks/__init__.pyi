@@ -1,6 +1,6 @@
 from .blade_files import read_flexible_rotor as read_flexible_rotor
 from .formats import read_structure as read_structure, shipped_structures as shipped_structures
-from .openfast import Deck as Deck, Row as Row, read_deck as read_deck, to_float as to_float
+from .openfast import Deck as Deck, DeckRow as DeckRow, read_deck as read_deck, to_float as to_float
 from .sacs import is_sacs as is_sacs, sacs_remarks as sacs_remarks
 from .structure_yaml import RnaSchema as RnaSchema, StructureChoice as StructureChoice
 from .subdyn import DeckDamping as DeckDamping, read_deck_damping as read_deck_damping

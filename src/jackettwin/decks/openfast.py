@@ -20,7 +20,7 @@ _TEXT = ("ssifile",)
 """Optional columns that hold no number."""
 
 
-class Row(dict[str, str]):
+class DeckRow(dict[str, str]):
     """A row of a table, column by column; ``line`` is the number of its line in the file, from 1.
 
     A column that the row does not have is the file's fault, and named.
@@ -111,7 +111,7 @@ class Deck:
         columns: tuple[str, ...] = (),
         optional: tuple[str, ...] = (),
         nth: int = 0,
-    ) -> tuple[Row, ...]:
+    ) -> tuple[DeckRow, ...]:
         """Return the rows of the table whose count line has one of the keywords.
 
         Parameters
@@ -134,13 +134,15 @@ class Deck:
         rows = range(number + 3, number + 3 + count)
         return tuple(self._row(at, keys, len(columns), keywords[0], count) for at in rows)
 
-    def table_below(self, word: str, count: int) -> tuple[Row, ...]:
+    def table_below(self, word: str, count: int) -> tuple[DeckRow, ...]:
         """Return the rows of the table whose header begins with a word, wherever its count stands."""
         for at, line in enumerate(self.lines):
             header = line.lower().split()
             if header[:1] == [word.lower()]:
                 rows = range(at + 2, min(at + 2 + count, len(self.lines)))
-                return tuple(Row(dict(zip(header, self.lines[k].split(), strict=False)), k + 1) for k in rows)
+                return tuple(
+                    DeckRow(dict(zip(header, self.lines[k].split(), strict=False)), k + 1) for k in rows
+                )
         return ()
 
     def header(self, *keywords: str) -> tuple[str, ...]:
@@ -150,13 +152,13 @@ class Deck:
             return ()
         return tuple(self.lines[number + 1].lower().split())
 
-    def _row(self, at: int, keys: list[str], needed: int, keyword: str, count: int) -> Row:
+    def _row(self, at: int, keys: list[str], needed: int, keyword: str, count: int) -> DeckRow:
         words = self.lines[at].split() if at < len(self.lines) else []
         if len(words) < min(len(keys), 2) or not words or words[0].startswith("---"):
             raise _short(keyword, count)
         if needed:
             words = _without_remark(words, needed, keys)
-        return Row(dict(zip(keys, words, strict=False)), at + 1)
+        return DeckRow(dict(zip(keys, words, strict=False)), at + 1)
 
 
 def _short(keyword: str, count: int) -> InputError:

@@ -19,7 +19,13 @@ import numpy as np
 
 from jackettwin.errors import InputError, located, require
 from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.model import Member, PointMass, Reaction, RigidLink
+from jackettwin.structure.model import (
+    Member,
+    PointMass,
+    Reaction,
+    RigidLink,
+    Vector,
+)
 
 log = logging.getLogger(__name__)
 _G = 9.80665
@@ -67,7 +73,6 @@ class _Part:
     length: float | None
 
 
-_Shift = tuple[float, float, float]
 _HERE = (0.0, 0.0, 0.0)
 
 
@@ -79,7 +84,7 @@ class _Bar:
     b: str
     group: str
     code: str = ""
-    shifts: tuple[_Shift, _Shift] | None = None
+    shifts: tuple[Vector, Vector] | None = None
 
 
 @dataclass
@@ -87,7 +92,7 @@ class _Deck:
     """What the cards of a deck say, in SI units."""
 
     units: _Units = _ENGLISH
-    nodes: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    nodes: dict[str, Vector] = field(default_factory=dict)
     held: dict[str, str] = field(default_factory=dict)
     groups: dict[str, list[_Part]] = field(default_factory=dict)
     tubes: dict[str, tuple[Section, Section]] = field(default_factory=dict)
@@ -140,7 +145,7 @@ def _cards(path: Path) -> _Deck:
         word = line[:6].split(" ")[0].strip() if line[:1].isalpha() else ""
         if not word or word in _SILENT or not line[len(word) :].strip():
             continue
-        if word == "OPTIONS"[:6]:
+        if word == "OPTION":
             deck.units = _units(line)
         elif word == "LOADCN":
             deck.condition = line[6:10].strip()
@@ -307,7 +312,7 @@ def _structure(deck: _Deck, name: str) -> Structure:
     )
 
 
-def _ends(nodes: dict[str, tuple[float, float, float]], bar: _Bar) -> tuple[str, str]:
+def _ends(nodes: dict[str, Vector], bar: _Bar) -> tuple[str, str]:
     """Return the nodes between which a member runs: its joints, or new ones beside them."""
     names = []
     for joint, letter, shift in zip((bar.a, bar.b), "AB", bar.shifts or (_HERE, _HERE), strict=True):
@@ -318,7 +323,7 @@ def _ends(nodes: dict[str, tuple[float, float, float]], bar: _Bar) -> tuple[str,
 
 
 def _segments(
-    nodes: dict[str, tuple[float, float, float]],
+    nodes: dict[str, Vector],
     name: str,
     ends: tuple[str, str],
     group: str,
@@ -342,9 +347,7 @@ def _segments(
         previous = node
 
 
-def _place(
-    nodes: Mapping[str, tuple[float, float, float]], node: str, a: str, b: str
-) -> tuple[float, float, float]:
+def _place(nodes: Mapping[str, Vector], node: str, a: str, b: str) -> Vector:
     require(
         node in nodes, "a member of no joint", field=f"member {a}-{b}", value=node, allowed="a JOINT card's"
     )

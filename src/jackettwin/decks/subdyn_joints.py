@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from jackettwin.decks.openfast import Deck, Row
+from jackettwin.decks.openfast import Deck, DeckRow
 from jackettwin.errors import require
 from jackettwin.structure.model import RigidLink, Vector, reached_by
 from jackettwin.structure.two_node import TwoNodeElement, spring_matrix, two_node_element
@@ -19,7 +19,7 @@ _RIGIDLY, _UNIVERSAL, _PIN, _BALL = "1", "2", "3", "4"
 Ends = dict[str, tuple[str, str]]
 
 
-def joint_rows(deck: Deck) -> tuple[Row, ...]:
+def joint_rows(deck: Deck) -> tuple[DeckRow, ...]:
     """Return the rows of the table of joints."""
     return deck.table(
         "NJoints",
@@ -29,7 +29,7 @@ def joint_rows(deck: Deck) -> tuple[Row, ...]:
     )
 
 
-def member_rows(deck: Deck) -> tuple[Row, ...]:
+def member_rows(deck: Deck) -> tuple[DeckRow, ...]:
     """Return the rows of the table of members.
 
     The number behind a member's type is a cosine matrix up to OpenFAST 4.0, then a beam's spin; only the
@@ -97,7 +97,7 @@ def with_hinges(
     return nodes, ends, links, springs
 
 
-def _free_axes(row: Row, kind: str) -> tuple[Vector, ...]:
+def _free_axes(row: DeckRow, kind: str) -> tuple[Vector, ...]:
     place = f"JointID {row['jointid']}"
     if kind == _BALL:
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -120,7 +120,7 @@ def _free_axes(row: Row, kind: str) -> tuple[Vector, ...]:
     return (cast("Vector", tuple(float(value) / length for value in axis)),)
 
 
-def _joint_springs(row: Row, axes: tuple[Vector, ...], nodes: list[str]) -> list[TwoNodeElement]:
+def _joint_springs(row: DeckRow, axes: tuple[Vector, ...], nodes: list[str]) -> list[TwoNodeElement]:
     stiffness = row.number("jointstiff", 0.0)
     if stiffness == 0.0:
         return []

@@ -12,7 +12,7 @@ from typing import cast
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.decks.openfast import Deck, Row, to_float
+from jackettwin.decks.openfast import Deck, DeckRow, to_float
 from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
 from jackettwin.errors import InputError, located, look_up, require
 from jackettwin.structure import Material, Section
@@ -90,11 +90,11 @@ def read_parts(deck: Deck, *, divisions: int, shear: bool) -> Parts:
     return parts
 
 
-def _kind(row: Row) -> str:
+def _kind(row: DeckRow) -> str:
     return row.get("mtype", "1").lower().strip("\"'")
 
 
-def _unsupported(row: Row, kind: str) -> InputError:
+def _unsupported(row: DeckRow, kind: str) -> InputError:
     return InputError(
         f"unsupported member type ({_REFUSED.get(kind, 'unknown')})",
         field=f"MemberID {row['memberid']}.MType",
@@ -108,15 +108,15 @@ def _unsupported(row: Row, kind: str) -> InputError:
 class _Tables:
     """Property tables of a deck, by number."""
 
-    tubes: dict[str, Row]
-    rectangles: dict[str, Row]
-    arbitrary: dict[str, Row]
-    cables: dict[str, Row]
-    rigid: dict[str, Row]
-    springs: dict[str, Row]
-    cosines: dict[str, Row]
+    tubes: dict[str, DeckRow]
+    rectangles: dict[str, DeckRow]
+    arbitrary: dict[str, DeckRow]
+    cables: dict[str, DeckRow]
+    rigid: dict[str, DeckRow]
+    springs: dict[str, DeckRow]
+    cosines: dict[str, DeckRow]
 
-    def find(self, table: dict[str, Row], row: Row, key: str) -> Row:
+    def find(self, table: dict[str, DeckRow], row: DeckRow, key: str) -> DeckRow:
         """Return the property set that a member names."""
         return look_up(table, row[key], "property set", field=f"MemberID {row['memberid']}")
 
@@ -124,7 +124,7 @@ class _Tables:
 def _tables(deck: Deck) -> _Tables:
     def rows(
         *keywords: str, columns: tuple[str, ...], optional: tuple[str, ...] = (), nth: int = 0
-    ) -> dict[str, Row]:
+    ) -> dict[str, DeckRow]:
         found = deck.table(*keywords, columns=columns, optional=optional, nth=nth)
         return {row[columns[0]]: row for row in found}
 
@@ -146,7 +146,7 @@ def _tables(deck: Deck) -> _Tables:
     )
 
 
-def _pieces(row: Row, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int) -> int:
+def _pieces(row: DeckRow, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int) -> int:
     """Return how many elements a beam has: MDivSize overrides NDiv."""
     size = row.get("mdivsize", "")
     if _kind(row) not in _BEAMS or not size[:1].isdigit():
@@ -166,7 +166,7 @@ def _along(parts: Parts, name: str, ends: tuple[str, str], pieces: int) -> list[
     return [ends[0], *names, ends[1]]
 
 
-def _add_tube(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int) -> None:
+def _add_tube(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str], pieces: int) -> None:
     name = row["memberid"]
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
@@ -200,7 +200,7 @@ def _between(a: Section, b: Section, share: float) -> Section:
 
 
 def _add_beam(
-    parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str], pieces: int, *, shear: bool
+    parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str], pieces: int, *, shear: bool
 ) -> None:
     """Add a beam of any section as elements; both ends must name one property set."""
     name = row["memberid"]
@@ -219,7 +219,7 @@ def _add_beam(
         parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
 
 
-def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+def _any_section(tables: _Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of an arbitrary beam."""
     p = tables.find(tables.arbitrary, row, "mpropsetid1")
     E, G, rho, A, A_x, A_y, I_x, I_y, I_p = p.numbers(*_ARBITRARY_KEYS)
@@ -228,7 +228,7 @@ def _any_section(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
     return [E, G, rho], BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
 
 
-def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
+def _rectangle(tables: _Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of a rectangular beam."""
     p = tables.find(tables.rectangles, row, "mpropsetid1")
     E, G, rho, a, b, t = p.numbers(*_RECTANGLE_KEYS)
@@ -236,7 +236,7 @@ def _rectangle(tables: _Tables, row: Row) -> tuple[list[float], BeamSection]:
         return [E, G, rho], rectangular_section(a, b, t, poisson_ratio=0.5 * E / G - 1.0)
 
 
-def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> FloatArray:
+def _axes(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> FloatArray:
     """Return (3, 3): along the member, then the section's x and y, in rows."""
     spin, chosen = row.get("mspin/cosmid", row.get("cosmid/mspin", "0")), row.get("cosmid", "-1")
     if chosen != "-1" and chosen in tables.cosines:
@@ -251,7 +251,7 @@ def _axes(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> Flo
     return np.array([z, np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x])
 
 
-def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
+def _cable(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.cables, row, "mpropsetid1")
     EA, rho, T = p.numbers("ea", "matdens", "t0")
     a, b = (np.array(parts.nodes[node]) for node in ends)
@@ -259,7 +259,7 @@ def _cable(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> Tw
     return two_node_element(row["memberid"], "cable", ends, K, M)
 
 
-def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> TwoNodeElement:
+def _spring(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
     p = tables.find(tables.springs, row, "mpropsetid1")
     k = np.zeros((6, 6))
     k[np.triu_indices(6)] = p.numbers(*_SPRING_KEYS)
@@ -274,12 +274,12 @@ def _spring(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> T
         allowed=", ".join(tables.cosines) or None,
         remedy="give a cosine matrix",
     )
-    axes = _axes(parts, tables, Row({**row, "cosmid": chosen}, row.line), ends)
+    axes = _axes(parts, tables, DeckRow({**row, "cosmid": chosen}, row.line), ends)
     # a spring's own order is x, y, z with z along it
     return two_node_element(row["memberid"], "spring", ends, spring_matrix(k, np.roll(axes, -1, axis=0)))
 
 
-def _rigid_mass(parts: Parts, tables: _Tables, row: Row, ends: tuple[str, str]) -> list[TwoNodeElement]:
+def _rigid_mass(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> list[TwoNodeElement]:
     p = tables.rigid.get(row["mpropsetid1"])
     density = p.number("matdens") if p else 0.0
     if density == 0.0:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.checks.member_check import DesignBasis, FrameUse, frame_use
+from jackettwin.checks import DesignBasis, FrameUse, frame_use
 from jackettwin.loads import loads_along, outside_pressure, still_water, wave_number
 from jackettwin.response import build_system, self_weight, static_displacement
 from jackettwin.simulate.motion.motion import Motion, simulate_motion

@@ -74,10 +74,15 @@ def body_from_static_moments(
     return PointMass(node, mass_kg, (float(a[0]), float(a[1]), float(a[2])), cast("Inertia", inertia), part)
 
 
+def about_vertical(angle: float) -> FloatArray:
+    """Return the rotation (3, 3) about the vertical by ``angle`` [rad], right-handed."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
 def turned_body(body: PointMass, angle: float) -> PointMass:
     """Return a body turned about the vertical through its node by ``angle`` [rad], right-handed."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    R = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    R = about_vertical(angle)
     a, I = R @ np.array(body.cg_offset_m), R @ body.inertia_tensor @ R.T  # noqa: E741
     inertia = (I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2])
     return replace(

@@ -25,7 +25,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.structure.blades import BladeModes, BladeStructure, blade_modes
-from jackettwin.structure.masses import rigid_body_mass, rigid_transfer, turned_body
+from jackettwin.structure.masses import about_vertical, rigid_body_mass, rigid_transfer, turned_body
 from jackettwin.structure.model import PointMass, Structure, Vector
 from jackettwin.structure.two_node import TwoNodeElement, two_node_element
 
@@ -165,20 +165,17 @@ def turned_nacelle(structure: Structure, angle: float) -> Structure:
     top = structure.top_node
     masses = tuple(turned_body(m, angle) if m.node == top else m for m in structure.masses)
     elements = tuple(_turned(e, angle) if e.kind == KIND else e for e in structure.elements)
-    moved = {e.end: _beside(structure, top, e.end, angle) for e in structure.elements if e.kind == KIND}
+    at = np.array(structure.nodes[top])
+    moved: dict[str, Vector] = {}
+    for e in structure.elements:
+        if e.kind == KIND:
+            x, y, z = map(float, at + about_vertical(angle) @ (np.array(structure.nodes[e.end]) - at))
+            moved[e.end] = (x, y, z)
     return replace(structure, nodes={**structure.nodes, **moved}, masses=masses, elements=elements)
 
 
-def _beside(structure: Structure, top: str, node: str, angle: float) -> Vector:
-    (x, y, z), place = structure.nodes[top], structure.nodes[node]
-    along, across = place[0] - x, place[1] - y
-    cos, sin = float(np.cos(angle)), float(np.sin(angle))
-    return (x + cos * along - sin * across, y + sin * along + cos * across, z)
-
-
 def _turned(element: TwoNodeElement, angle: float) -> TwoNodeElement:
-    cos, sin = np.cos(angle), np.sin(angle)
-    R = np.kron(np.eye(4), np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
+    R = np.kron(np.eye(4), about_vertical(angle))
 
     def turned(matrix: tuple[tuple[float, ...], ...]) -> FloatArray:
         return np.asarray(R @ np.array(matrix) @ R.T)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from jackettwin.arrays import FloatArray
-from jackettwin.decks import Deck, Row, read_deck, to_float
+from jackettwin.decks import Deck, DeckRow, read_deck, to_float
 from jackettwin.errors import located, require
 from jackettwin.loads.members.coefficients import Coefficients, GrowthBand, Strip, StripTable, growth_bands
 from jackettwin.loads.members.ends import EndCoefficients
@@ -39,7 +39,7 @@ class HydroDynMembers(NamedTuple):
 class _Tubes:
     """The file's members: rows, ends (n, 2, 3) [m] from still water, and the structure's members they are."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[DeckRow, ...]
     ends: Mapping[str, FloatArray]
     names: Mapping[str, str]
 
@@ -103,7 +103,7 @@ def _simple(deck: Deck) -> tuple[Strip, Strip]:
     return _strip(rows[0], "simpl", ""), _strip(rows[0], "simpl", "mg")
 
 
-def _strip(row: Row, prefix: str, suffix: str) -> Strip:
+def _strip(row: DeckRow, prefix: str, suffix: str) -> Strip:
     cd, ca, cp = row.numbers(*(f"{prefix}{name}{suffix}" for name in ("cd", "ca", "cp")))
     return Strip(cd, ca, cp)
 

@@ -1,0 +1,11 @@
+from .columns import StraightRun as StraightRun, columns as columns
+from .iso19902 import EDITIONS as EDITIONS
+from .iso19902_joints import KINDS as KINDS
+from .joint_check import BraceUse as BraceUse
+from .member_check import (
+    ALL_CHECKS as ALL_CHECKS,
+    DesignBasis as DesignBasis,
+    FrameUse as FrameUse,
+    MemberUse as MemberUse,
+    frame_use as frame_use,
+)
