@@ -34,7 +34,7 @@ from jackettwin.watching import History, Look, Pattern, Watch, diagnose, general
 from jackettwin.watching.block import Block, begin, no_begins, watched as columns_watched
 from jackettwin.watching.design import Design, design_of, fresh, regressors
 from jackettwin.watching.directions import SHARES, Directions, directions_of
-from jackettwin.watching.memory import OCTAVES, learn
+from jackettwin.watching.learning import OCTAVES, learn
 from jackettwin.watching.watch import KINDS as KINDS_OF_QUANTITIES, Begins
 
 LABELS = ("bending_1", "bending_2", "bending_3", "bending_4")

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.stats import multivariate_normal
 
 from jackettwin.watching.causes import Cause, sizes_about
+from jackettwin.watching.change import Change
 from jackettwin.watching.diagnosis import TAIL, _free, _judge, _likelihood, _misfit, _moved
-from jackettwin.watching.watch import Change
 
 KINDS = ("frequency", "damping", "frequency")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import f as fisher, norm
 
+from jackettwin.watching.diagnosis import expected_information
 from jackettwin.watching.directions import SIZE_WEIGHTS, SIZES, Pattern, directions_of, log_bayes_factors
-from jackettwin.watching.next_look import expected_information
 from jackettwin.watching.scatter import STRONGER, log_ratios, steadiness
 
 LABELS, HZ = ("a", "b", "c"), np.array([0.30, 0.31, 1.0])

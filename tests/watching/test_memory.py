@@ -7,7 +7,7 @@ import pytest
 
 from jackettwin.watching.design import RegressionPrior
 from jackettwin.watching.hours import Hours
-from jackettwin.watching.memory import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
+from jackettwin.watching.learning import LARGER, OCTAVES, Learnt, _larger, _pooled, learn
 
 PRIOR = RegressionPrior(np.zeros((2, 1)), np.full((2, 1), 5.0))
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from jackettwin.watching.directions import directions_of
+from jackettwin.watching.directions import directions_of, increments, log_ramps
 from jackettwin.watching.memory import Bank
-from jackettwin.watching.ramps import increments, log_ramps
 
 DAYS = np.arange(60.0)
 STD = 2e-4

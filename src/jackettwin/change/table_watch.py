@@ -26,8 +26,8 @@ from jackettwin.watching import (
     step,
 )
 from jackettwin.watching.design import WHOLE_YEAR_DAYS, fresh, regressors
-from jackettwin.watching.explained import shares, slopes, unexplained_std
 from jackettwin.watching.history import deviations, typical
+from jackettwin.watching.variance_shares import shares, slopes, unexplained_std
 from jackettwin.watching.watch import columns_to_watch
 
 _PATTERNS, _UNLIKELY = 3, 0.001

@@ -4,9 +4,14 @@ from .causes import (
     sensor_noise as sensor_noise,
     sizes_about as sizes_about,
 )
+from .change import Change as Change
 from .design import Slope as Slope
-from .diagnosis import CauseVerdict as CauseVerdict, Diagnosis as Diagnosis, diagnose as diagnose
+from .diagnosis import (
+    CauseVerdict as CauseVerdict,
+    Diagnosis as Diagnosis,
+    diagnose as diagnose,
+    expected_information as expected_information,
+)
 from .directions import Pattern as Pattern
 from .history import History as History
-from .next_look import expected_information as expected_information
-from .watch import Change as Change, Look as Look, Watch as Watch, start as start, step as step
+from .watch import Look as Look, Watch as Watch, start as start, step as step

@@ -12,7 +12,8 @@ from jackettwin.watching.design import Design, Slope
 from jackettwin.watching.directions import Directions, log_bayes_factors
 from jackettwin.watching.history import History, Kind, deviations, middles, std_power
 from jackettwin.watching.hours import ENOUGH, NEIGHBOURS, OUTLIER, Hours, by_hour, outliers
-from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered, learn
+from jackettwin.watching.learning import learn
+from jackettwin.watching.memory import Bank, Belief, Filtered, Memory, empty_bank, filtered
 from jackettwin.watching.scatter import log_ratios, steadiness
 
 WINDOW_DAYS = 1.0 / 24.0

@@ -1,0 +1,321 @@
+"""The models of what no condition explains that a baseline makes likely, with their uncertainty.
+
+Time constants and shares of the Ornstein-Uhlenbeck processes are one of a family of spectra, from a single
+process of hours to 1/f from hours to a season; no one of them is believed. Several, weighted by how well they
+predicted the baseline and whatever came after, predict together: a plugged-in estimate would be too sure of
+itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+from scipy.special import chdtr
+
+from jackettwin.arrays import BoolArray, FloatArray
+from jackettwin.watching.design import RegressionPrior
+from jackettwin.watching.hours import Hours
+from jackettwin.watching.memory import Belief, Filtered, Memory, empty_bank, filtered, prior_belief
+
+Spectrum = tuple[tuple[float, ...], tuple[float, ...]]
+"""Time constants [days] and shares of the variance."""
+
+SHORT_DAYS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Time constants of a single short process."""
+LONG_DAYS = (12.0, 90.0)
+"""Those of the two parts of a long process beside it: weeks, and a season, of which a baseline of a year
+holds few independent values."""
+LONG_SHARES = (0.02, 0.003, 0.06, 0.2)
+"""Shares of the long process in the variance; the first is tried with every short one."""
+OCTAVES = (0.1, 0.4, 1.6, 6.4, 25.6, 100.0)
+"""Time constants of a power law's processes."""
+SLOPES = (-0.35, 0.0, 0.35)
+"""Powers of the time constant by which shares grow: 0 is 1/f over these times."""
+_SCALE_STD, _SLOW_STD = 0.5, 1.5
+"""Prior spread in ln of the factor on stated standard deviations, and of the slow processes' size."""
+_LEAST = 1e-3
+"""The least standard deviation of a process, in those of the quantity."""
+SLOW_DAYS = 1.0
+"""From this time constant on processes have a correlation of their own where no conditions are given: the
+weather is then among them, which modes share, while what moves within a day is each one's own."""
+AGREEMENT = (1.0, 0.7)
+"""Shares of the estimated correlation between quantities that are tried."""
+CORRELATIONS = np.array([-0.8, -0.5, -0.2, 0.1, 0.35, 0.6, 0.75, 0.85, 0.93, 0.98])
+"""Correlations between two quantities that are tried."""
+SHARED = np.append(CORRELATIONS, 0.995)
+"""The same of slow processes where modes share hidden weather."""
+_LEAST_OWN, _LEAST_OWN_SHARED = 0.02, 0.005
+"""The least eigenvalue of a correlation that is believed, and where modes share hidden weather."""
+MOST_SPECTRA, MOST_TRIED = 3, 10
+_HANDICAP = 1.5
+"""In ln of the likelihood: models should differ in what they expect."""
+LARGER = (1.0, 1.3, 1.7)
+"""Factors on the slow processes' standard deviations, of all quantities alike, that a baseline may miss."""
+STORMY = (1.0, 1.7, 3.0)
+"""The same where no conditions are given: storms are rare and far larger than what is usual."""
+_LEAST_FREEDOM = 4.0
+ONE_LARGER = (2.0, 0.1)
+"""Standard deviations of its ln by which one quantity's slow processes may be larger, and its chance."""
+_LEAST_APART = 0.25
+"""The least of that difference: a model that predicts the same is of no use."""
+_MOST_APART = 4
+"""Quantities that have such a model, the least certain first."""
+_USUAL_APART = 0.2
+"""Standard deviation of ln size from quantity to quantity that is granted; more, if they show it."""
+_APART = 0.3
+_LIKELY = 7.0
+"""Spectra whose likelihood falls short of the best one's by more than so much in ln are not followed up."""
+_FIRST_STEPS, _MORE_STEPS = 40, 16
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """Models, the likeliest first, and what each knows at the end of the baseline.
+
+    Attributes
+    ----------
+    log_weights : (n_models,)
+    """
+
+    memories: tuple[Memory, ...]
+    beliefs: tuple[Belief, ...]
+    log_weights: FloatArray
+
+
+def _beside(short: float, share: float) -> Spectrum:
+    """Return a short process with some of a long one."""
+    return (short, *LONG_DAYS), (1.0 - share, share / 2.0, share / 2.0)
+
+
+def _power_law(slope: float) -> Spectrum:
+    weight = np.array(OCTAVES) ** slope
+    return OCTAVES, tuple(weight / weight.sum())
+
+
+def learn(
+    hours: Hours, prior: RegressionPrior, *, told: tuple[Spectrum, ...] = (), hidden: bool = False
+) -> Learnt:
+    """Return the models that a baseline makes likely.
+
+    Each quantity alone finds its scale and size under every spectrum; the spectrum is one for all. Then all
+    quantities together weigh the models.
+
+    Parameters
+    ----------
+    prior : what is known of the coefficients
+    told : the spectra that it can be, if that is known
+    hidden : whether no conditions are given, so that what they do is part of the unexplained
+    """
+    m = len(prior.std)
+    single = [hours.of([q]) for q in range(m)]
+    fits: dict[Spectrum, list[_Fit]] = {}
+
+    def fit(spectra: list[Spectrum]) -> None:
+        for spectrum in spectra:
+            before = next(reversed(fits.values()), [None] * m)
+            fits[spectrum] = [_alone(own, prior.of([q]), spectrum, before[q]) for q, own in enumerate(single)]
+
+    def scores() -> dict[Spectrum, float]:
+        return {spectrum: sum(one.score for one in found) for spectrum, found in fits.items()}
+
+    fit([*told] or [*(_beside(short, LONG_SHARES[0]) for short in SHORT_DAYS), *map(_power_law, SLOPES)])
+    total = scores()
+    likely = [] if told else [days[0] for days, _ in total if total[days, _] > max(total.values()) - _LIKELY]
+    fit([_beside(short, share) for short in SHORT_DAYS if short in likely for share in LONG_SHARES[1:]])
+    total = scores()
+    bases = [
+        Memory(
+            np.array([one.scale for one in fits[spectrum]]), np.array([one.std for one in fits[spectrum]]),
+            np.array(spectrum[0]), np.array(spectrum[1]), np.stack([np.eye(m)] * len(spectrum[0])),
+        )
+        for spectrum in sorted(total, key=lambda one: -total[one])
+        if total[spectrum] > max(total.values()) - _LIKELY
+    ]  # fmt: skip
+    return _weighed(bases[:MOST_TRIED], hours, prior, hidden)
+
+
+def _weighed(bases: list[Memory], hours: Hours, prior: RegressionPrior, hidden: bool) -> Learnt:
+    """Return models with the quantities' correlation, weighed by all quantities together."""
+    m = len(prior.std)
+    fast, slow = _correlations(hours, bases[0], prior, hidden)
+    scored: list[tuple[float, Memory]] = []
+    for base in bases:
+        correlation = np.where((base.days < SLOW_DAYS)[:, None, None], fast, slow)
+        each = [
+            replace(base, correlation=share * correlation + (1.0 - share) * np.eye(m))
+            for share in (AGREEMENT if m > 1 else (1.0,))
+        ]
+        found = [_end(memory, prior, hours).log_likelihood for memory in each]
+        scored.append((float(np.logaddexp.reduce(found)), each[int(np.argmax(found))]))
+    kept = _different(scored)
+    freedom = np.array([_freedom(hours, q, kept[0][1], prior) for q in range(m)])
+    shift, spread = _pooled(np.log(kept[0][1].std), 0.5 / np.maximum(freedom, _LEAST_FREEDOM))
+    memories = [replace(memory, std=memory.std * np.exp(shift)) for _, memory in kept]
+    first = memories[0]
+    known = _LEAST_FREEDOM if hidden else max(float(np.median(freedom)) - m + 1.0, _LEAST_FREEDOM)
+    factors = STORMY if hidden else LARGER
+    larger = _larger(known, factors)
+    apart = np.argsort(-spread)[: _MOST_APART if m > 1 else 0]
+    one = ONE_LARGER[1] * (1.0 - ONE_LARGER[1]) ** max(len(apart) - 1, 0)
+    memories += [replace(first, std=g * first.std) for g in factors[1:]]
+    memories += [_one_larger(first, q, spread[q]) for q in apart]
+    weights = np.exp([score - kept[0][0] for score, _ in kept])
+    weights = weights / weights.sum() * (1.0 - one * len(apart)) * larger[0]
+    beliefs = tuple(_end(memory, prior, hours).belief for memory in memories)
+    return Learnt(
+        tuple(memories), beliefs, np.log([*weights, *larger[1:], *[one * larger[0] for _ in apart]])
+    )
+
+
+def _pooled(log_std: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return by how much ln size of each quantity moves towards that of all, and how uncertain it stays.
+
+    Sizes are taken as drawn about a common one; how far they differ is estimated by moments (DerSimonian &
+    Laird 1986), so that a quantity whose size the baseline hardly tells leans on the others.
+    """
+    weight = 1.0 / variance
+    middle = weight @ log_std / weight.sum()
+    excess = float(weight @ (log_std - middle) ** 2) - (len(log_std) - 1)
+    between = max(excess / max(float(weight.sum() - weight @ weight / weight.sum()), 1e-12), _USUAL_APART**2)
+    if len(log_std) == 1:
+        return np.zeros(1), np.sqrt(variance)
+    common = (log_std / (variance + between)).sum() / (1.0 / (variance + between)).sum()
+    return (common - log_std) * variance / (variance + between), np.sqrt(1.0 / (weight + 1.0 / between))
+
+
+def _one_larger(memory: Memory, q: int, spread: float) -> Memory:
+    """Return a model in which the slow processes of one quantity are larger."""
+    std = memory.std.copy()
+    std[q] *= np.exp(max(ONE_LARGER[0] * spread, _LEAST_APART))
+    return replace(memory, std=std)
+
+
+def _different(scored: list[tuple[float, Memory]]) -> list[tuple[float, Memory]]:
+    """Return the likeliest models, each further one of the same time constants at a handicap."""
+    left = list(scored)
+    kept: list[tuple[float, Memory]] = []
+    while left and len(kept) < MOST_SPECTRA:
+        times = [one.days[0] for _, one in kept]
+        best = max(left, key=lambda one: one[0] - _HANDICAP * times.count(one[1].days[0]))
+        left = [one for one in left if one is not best]
+        kept.append(best)
+    return sorted(kept, key=lambda one: -one[0])
+
+
+def _larger(freedom: float, factors: tuple[float, ...]) -> FloatArray:
+    """Return the probabilities that slow processes are larger by these factors than estimated.
+
+    An excursion of processes whose covariance is known by ν independent values is one of Student's t with ν
+    degrees of freedom: the estimated covariance times ν/χ²_ν, one factor for all quantities.
+    """
+    between = np.sqrt(np.array(factors[1:]) * np.array(factors[:-1]))
+    above = np.append(chdtr(freedom, freedom / between**2), 0.0)
+    share = np.concatenate([[1.0 - above[0]], above[:-1] - above[1:]])
+    return np.asarray(np.maximum(share, 1e-12))
+
+
+def _freedom(hours: Hours, q: int, memory: Memory, prior: RegressionPrior) -> float:
+    """Return how many independent values of the slow processes of a quantity the baseline holds.
+
+    ln of a standard deviation that is known by ν values has the variance 1/(2ν).
+    """
+    own, of = hours.of([q]), memory.of([q])
+    at = [
+        _end(replace(of, std=of.std * np.exp(x)), prior.of([q]), own).log_likelihood
+        for x in (-_APART, 0.0, _APART)
+    ]
+    return float(0.5 * (2.0 * at[1] - at[0] - at[2]) / _APART**2)
+
+
+def _end(memory: Memory, prior: RegressionPrior, hours: Hours) -> Filtered:
+    """Return what a model knows after the baseline."""
+    belief = prior_belief(memory, prior)
+    return filtered(memory, belief, empty_bank(len(prior.std), belief.mean.size), hours, -np.inf)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Scale and size of one quantity under a spectrum, and its log posterior."""
+
+    scale: float
+    std: float
+    score: float
+
+
+def _alone(own: Hours, prior: RegressionPrior, spectrum: Spectrum, near: _Fit | None) -> _Fit:
+    """Return the most likely scale and size of one quantity; ``near`` is where to start from."""
+    spread = float(np.std(own.values))
+    typical = float(np.sqrt(np.median(own.noise)))
+    usual = np.log([1.0, max(0.3 * spread, 0.1 * typical)])
+    at = usual if near is None else np.log([near.scale, near.std])
+    low, high = np.log([_LEAST * spread, 10.0 * spread])
+    days, shares = map(np.array, spectrum)
+
+    def loss(x: FloatArray) -> float:
+        y = np.clip(x, [-3.0, low], [3.0, high])
+        memory = Memory(np.exp(y[:1]), np.exp(y[1:]), days, shares, np.ones((days.size, 1, 1)))
+        penalty = ((y - usual) / [_SCALE_STD, _SLOW_STD]) ** 2
+        outside = np.sum((x - y) ** 2)
+        return float(0.5 * penalty.sum() + outside - _end(memory, prior, own).log_likelihood)
+
+    steps = np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.3]])
+    found = minimize(
+        loss, at, method="Nelder-Mead",
+        options={
+            "maxfev": _FIRST_STEPS if near is None else _MORE_STEPS, "initial_simplex": at + steps,
+            "xatol": 0.03, "fatol": 0.05,
+        },
+    )  # fmt: skip
+    scale, std = np.exp(np.clip(found.x, [-3.0, low], [3.0, high]))
+    return _Fit(float(scale), float(std), -float(found.fun))
+
+
+def _correlations(
+    hours: Hours, memory: Memory, prior: RegressionPrior, hidden: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Return the correlation between quantities of fast and of slow processes, alike unless ``hidden``.
+
+    Two by two, the posterior's mean; fast and slow ones in turn, twice, the others as they are known by then.
+    """
+    m = len(memory.scale)
+    slow = memory.days >= SLOW_DAYS
+    result = np.stack([np.eye(m)] * 2)
+    for i in range(m):
+        for j in range(i):
+            own, pair, two = hours.of([j, i]), memory.of([j, i]), prior.of([j, i])
+            each = _pair_mean(own, pair, two, np.zeros(slow.size), slow | ~slow, CORRELATIONS)
+            for _ in range(2 if hidden and slow.any() else 0):
+                each = _pair_mean(own, pair, two, each, slow, SHARED)
+                each = _pair_mean(own, pair, two, each, ~slow, CORRELATIONS)
+            result[:, i, j] = result[:, j, i] = [each[np.argmin(memory.days)], each[np.argmax(memory.days)]]
+    return _positive(result[0], _LEAST_OWN), _positive(result[1], _LEAST_OWN_SHARED if hidden else _LEAST_OWN)
+
+
+def _pair_mean(
+    own: Hours, pair: Memory, prior: RegressionPrior, correlation: FloatArray, chosen: BoolArray,
+    tried: FloatArray,
+) -> FloatArray:  # fmt: skip
+    """Return the correlations of two quantities' processes, (k,): for chosen ones the posterior's mean.
+
+    The prior falls with 1 − ρ² (Lewandowski, Kurowicka & Joe 2009): quantities whose processes drown in noise
+    are taken as nearly independent.
+    """
+    if not chosen.any():
+        return correlation
+    each = np.where(chosen, tried[:, None], correlation)
+    crossed = each[:, :, None, None] * (1.0 - np.eye(2)) + np.eye(2)
+    likelihood = np.array([
+        _end(replace(pair, correlation=one), prior, own).log_likelihood for one in crossed
+    ])  # fmt: skip
+    weight = np.exp(likelihood - likelihood.max()) * np.gradient(tried) * (1.0 - tried**2)
+    return np.where(chosen, weight @ tried / weight.sum(), correlation)
+
+
+def _positive(correlation: FloatArray, least: float) -> FloatArray:
+    """Return the nearest correlation with no eigenvalue below the least."""
+    values, vectors = np.linalg.eigh(correlation)
+    mended = (vectors * np.maximum(values, least)) @ vectors.T
+    size = np.sqrt(np.diag(mended))
+    return np.asarray(mended / np.outer(size, size))
