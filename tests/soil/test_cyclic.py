@@ -10,9 +10,8 @@ from jackettwin.soil.piles.cyclic import CyclicPile, Sliders, advance, cyclic_pi
 from jackettwin.soil.piles.impedance import head_impedance
 from jackettwin.soil.piles.piles import Pile, stations
 from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves
-from jackettwin.structure import Section
 
-PILE = Pile(30.0, Section(2.0, 0.05), spacing_m=2.0)
+PILE = Pile(30.0, 2.0, 0.05, element_m=2.0)
 GROUND = SoilProfile((Layer(10.0, 8e3, clay=Clay((60e3, 80e3), 0.01)), Layer(40.0, 10e3, Sand(35.0))))
 
 
@@ -75,7 +74,7 @@ def test_the_ground_softens_and_loses_more_as_it_moves_more(pile) -> None:
 def test_a_stiff_short_pile_is_the_sum_of_its_springs() -> None:
     """Translation without rotation of a rigid pile: F = L p(y), loss by Masing's integral of one tanh."""
     curve = Tanh(capacity=1e5, initial_stiffness=1e7)
-    short = Pile(4.0, Section(3.0, 1.5), spacing_m=2.0)
+    short = Pile(4.0, 3.0, 1.5, element_m=2.0)
     at = stations(short)
     every = (curve,) * at.depth.size
     springs = cyclic_pile(short, PileCurves(at, every, every, curve, 3.0))

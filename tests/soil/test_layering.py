@@ -9,9 +9,8 @@ from jackettwin.soil.ground.profile import Clay, Layer, Point, Sand, Scour, Soil
 from jackettwin.soil.ground.py_curves import sand_coefficients
 from jackettwin.soil.piles.piles import Pile
 from jackettwin.soil.piles.reaction_curves import CurveOptions, linearised, pile_curves
-from jackettwin.structure import Section
 
-PILE = Pile(40.0, Section(2.0, 0.05))
+PILE = Pile(40.0, 2.0, 0.05)
 GEORGIADIS = CurveOptions(layering="georgiadis")
 # two hundred trapezoids a layer, whose force has a kink
 TRAPEZOIDS = 1e-3

@@ -9,11 +9,10 @@ from jackettwin.soil.ground.profile import Clay, Layer, Sand, SoilProfile
 from jackettwin.soil.piles.capacity import axial_capacity, push, pushover
 from jackettwin.soil.piles.piles import Pile, stations
 from jackettwin.soil.piles.reaction_curves import PileCurves, pile_curves
-from jackettwin.structure import Section
-from jackettwin.structure.model import STEEL, Material
+from jackettwin.structure.model import STEEL
 
 D, L = 2.0, 20.0
-STUBBY = Pile(L, Section(D, 0.05), Material(1e4 * STEEL.youngs_modulus_pa, 1e14, 7850.0))
+STUBBY = Pile(L, D, 0.05, 1e4 * STEEL.youngs_modulus_pa)
 
 
 def plastic(pile: Pile, p_u: float, t_u: float = 1.0, q_u: float = 1.0) -> PileCurves:
@@ -58,7 +57,7 @@ def test_a_stiff_short_pile_turns_over_as_broms_says(arm: float) -> None:
 @pytest.mark.parametrize("arm", [300.0, -30.0])
 def test_a_far_load_and_a_deep_one_stop_at_the_limit_too(arm: float) -> None:
     """Small beside all that resists, or so deep that the head goes backwards: the load is found to 0.1 %."""
-    pile = Pile(40.0, Section(D, 0.05))
+    pile = Pile(40.0, D, 0.05)
     curves = pile_curves(pile, SoilProfile((Layer(60.0, 9e3, clay=Clay((1e5, 1e5))),)))
     found = pushover(pile, curves, arm_m=arm, steps=2)
     more = 1.001 * found.ultimate_n
@@ -69,7 +68,7 @@ def test_a_far_load_and_a_deep_one_stop_at_the_limit_too(arm: float) -> None:
 def test_moments_are_those_of_the_loads_below_the_head() -> None:
     """The largest moment of a free head in uniform plastic ground: H e + H²/2p at depth H/p."""
     p, arm = 1e5, 3.0
-    slender = Pile(60.0, Section(D, 0.05), STEEL, spacing_m=0.5)
+    slender = Pile(60.0, D, 0.05, element_m=0.5)
     found = pushover(slender, plastic(slender, p), arm_m=arm, steps=3)
     H = found.load_n[-1]
     # the last millimetre of every spring is elastic
@@ -83,7 +82,5 @@ def test_ground_that_holds_nothing_is_refused() -> None:
 
 def test_sand_carries_more_the_deeper() -> None:
     profile = SoilProfile((Layer(80.0, 10e3, Sand(35.0)),))
-    shallow, deep = (
-        axial_capacity(pile_curves(Pile(length, Section(D, 0.05)), profile)) for length in (20.0, 40.0)
-    )
+    shallow, deep = (axial_capacity(pile_curves(Pile(length, D, 0.05), profile)) for length in (20.0, 40.0))
     assert deep.shaft_n > 2.0 * shallow.shaft_n

@@ -1,6 +1,7 @@
 """Piles in soil: closed-form heads, scour, non-linear equilibrium, and jacket15 on its piles."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,11 @@ from jackettwin.soil.piles.capacity import push
 from jackettwin.soil.piles.impedance import head_impedance, lumped_head
 from jackettwin.soil.piles.piles import Pile, dashpots, linear_springs, stations
 from jackettwin.soil.piles.reaction_curves import linearised, pile_curves
-from jackettwin.structure import Section, assemble
+from jackettwin.structure import assemble
 from jackettwin.structure.masses import body_from_static_moments
 from jackettwin.structure.sections import tube_properties
 
-PILE = Pile(60.0, Section(2.0, 0.05))
+PILE = Pile(60.0, 2.0, 0.05)
 EI = 2.1e11 * float(tube_properties(np.array(2.0), np.array(0.05)).I)
 BENDING = np.ix_([0, 4], [0, 4])
 
@@ -63,7 +64,7 @@ def test_head_in_linear_subgrade(n_h: float) -> None:
 def test_simpson_springs_converge_with_the_fourth_power() -> None:
     flexibility = []
     for spacing in (2.0, 1.0, 0.5, 0.1):
-        pile = Pile(60.0, PILE.section, spacing_m=spacing)
+        pile = replace(PILE, element_m=spacing)
         springs = linear_springs(pile, lateral=lambda z: 1e7 * z, axial=lambda z: 1e8 + 0.0 * z)
         flexibility.append(np.linalg.inv(head_impedance(pile, springs, 0.0)[0].real[BENDING])[0, 0])
     error = np.abs(np.array(flexibility[:3]) / flexibility[3] - 1.0)
@@ -120,7 +121,7 @@ def test_scour_is_a_shorter_pile_with_a_stick_up() -> None:
     S = 2.0
     sand = Layer(60.0, 10e3, Sand(35.0))
     scoured = pile_curves(PILE, SoilProfile((sand,), Scour(general_m=S)))
-    fresh = pile_curves(Pile(58.0, PILE.section), SoilProfile((sand,)))
+    fresh = pile_curves(replace(PILE, length_m=58.0), SoilProfile((sand,)))
     y = 0.02
     below = scoured.at.depth >= S
     below[np.flatnonzero(below)[0]] = False  # the upper side of the cut

@@ -14,7 +14,7 @@ from jackettwin.soil.foundation import read_foundation
 from jackettwin.soil.piles.impedance import head_impedance, lumped_head
 from jackettwin.soil.piles.piles import Pile, linear_springs
 from jackettwin.soil.piles.radiation import Radiation, axial_radiation, lateral_radiation
-from jackettwin.structure import Section, assemble
+from jackettwin.structure import assemble
 
 SOIL = {"density_kg_m3": 1900.0, "shear_wave_m_s": 200.0, "D": 2.0, "omega": 6.0}
 
@@ -43,7 +43,7 @@ def test_bad_soils_are_refused() -> None:
 
 def test_dashpots_along_a_pile_add_up_to_its_length() -> None:
     """20 m of pile, D 2 m: 5 m near the surface and 15 m below; the node on the edge goes below."""
-    pile = Pile(20.0, Section(2.0, 0.05), spacing_m=0.5)
+    pile = Pile(20.0, 2.0, 0.05, element_m=0.5)
     springs = linear_springs(pile, lateral=lambda z: 1e7 + 0.0 * z, axial=lambda z: 1e8 + 0.0 * z)
     found = Radiation(1900.0, 200.0, 3.0 / np.pi, poisson_ratio=0.4).on(pile, springs)
     deep, shallow = (lateral_radiation(**SOIL, poisson_ratio=0.4, shallow=s) for s in (False, True))
@@ -52,7 +52,7 @@ def test_dashpots_along_a_pile_add_up_to_its_length() -> None:
 
 
 def test_scoured_ground_radiates_nothing() -> None:
-    pile = Pile(20.0, Section(2.0, 0.05), spacing_m=0.5)
+    pile = Pile(20.0, 2.0, 0.05, element_m=0.5)
     springs = linear_springs(pile, lateral=lambda z: 1e7 * (z > 4.0), axial=lambda z: 1e8 * (z > 4.0))
     found = Radiation(1900.0, 200.0, 3.0 / np.pi).on(pile, springs)
     assert (found.lateral[found.node_depth < 3.9] == 0.0).all()
@@ -61,7 +61,7 @@ def test_scoured_ground_radiates_nothing() -> None:
 
 def test_the_lumped_head_loses_what_the_exact_one_does() -> None:
     """Im K*/ω towards ω = 0 is TᵀCT by Rayleigh's principle."""
-    pile = Pile(40.0, Section(2.0, 0.05))
+    pile = Pile(40.0, 2.0, 0.05)
     springs = linear_springs(pile, lateral=lambda z: 1e7 * z, axial=lambda z: 1e8 + 0.0 * z)
     lost = Radiation(1900.0, 200.0, 3.0 / np.pi).on(pile, springs)
     K = head_impedance(pile, springs, 0.01j, dashpots=lost)[0]

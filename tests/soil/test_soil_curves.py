@@ -8,7 +8,6 @@ import pytest
 from jackettwin.errors import InputError
 from jackettwin.soil import Clay, CurveOptions, Pile, Point, Sand, SoilCurve, read_foundation
 from jackettwin.soil.piles import soil_curves
-from jackettwin.structure import Section
 
 ROOT = Path(__file__).parents[2]
 GROUND = """
@@ -30,7 +29,7 @@ def test_every_kind_is_built_by_its_name(kind: SoilCurve) -> None:
     soil = Sand(35.0) if kind.reaction.startswith("sand") else Clay((80e3, 80e3))
     point = Point(10.0, 100e3, 80e3, 80e3, soil)
     options = CurveOptions(**{kind.reaction: kind.name})
-    curve = options.curve(kind.reaction[-2:], point, Pile(40.0, Section(2.0, 0.05)))
+    curve = options.curve(kind.reaction[-2:], point, Pile(40.0, 2.0, 0.05))
     assert curve.force(0.0) == 0.0
     assert 0.0 < float(curve.force(1e-3)) <= curve.capacity
     assert float(curve.force(-1e-3)) == -float(curve.force(1e-3))

@@ -76,8 +76,8 @@ def _document(
         "foundation": name,
         "pile": {
             "length_m": pile.length_m,
-            "outer_diameter_m": pile.section.outer_diameter_m,
-            "thickness_m": pile.section.thickness_m,
+            "outer_diameter_m": pile.outer_diameter_m,
+            "thickness_m": pile.thickness_m,
         },
         "frequency_hz": frequency_hz,
         "head_stiffness": K.real,

@@ -104,46 +104,33 @@ def _unsupported(row: DeckRow, kind: str) -> InputError:
     )
 
 
-@dataclass(frozen=True)
-class _Tables:
-    """Property tables of a deck, by number."""
-
-    tubes: dict[str, DeckRow]
-    rectangles: dict[str, DeckRow]
-    arbitrary: dict[str, DeckRow]
-    cables: dict[str, DeckRow]
-    rigid: dict[str, DeckRow]
-    springs: dict[str, DeckRow]
-    cosines: dict[str, DeckRow]
-
-    def find(self, table: dict[str, DeckRow], row: DeckRow, key: str) -> DeckRow:
-        """Return the property set that a member names."""
-        return look_up(table, row[key], "property set", field=f"MemberID {row['memberid']}")
+Tables = dict[str, dict[str, DeckRow]]
+"""Property sets of a deck by number, of each of the tables below."""
+_TABLES: dict[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
+    "tube": (("NPropSetsCyl", "NPropSets"), _TUBE_KEYS, ()),
+    "any": (("NXPropSets",), _ARBITRARY_KEYS, ("xsecjt",)),
+    "cable": (("NCablePropSets",), ("ea", "matdens", "t0"), ()),
+    "rigid": (("NRigidPropSets",), ("matdens",), ()),
+    "spring": (("NSpringPropSets",), _SPRING_KEYS, ()),
+    "cosines": (("NCOSMs",), tuple(f"cosm{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)), ()),
+}
+"""Keywords of the count line, columns behind the number, and those of newer formats."""
 
 
-def _tables(deck: Deck) -> _Tables:
-    def rows(
-        *keywords: str, columns: tuple[str, ...], optional: tuple[str, ...] = (), nth: int = 0
-    ) -> dict[str, DeckRow]:
-        found = deck.table(*keywords, columns=columns, optional=optional, nth=nth)
-        return {row[columns[0]]: row for row in found}
-
+def _tables(deck: Deck) -> Tables:
+    rows = {
+        name: deck.table(*keywords, columns=("propsetid", *columns), optional=more)
+        for name, (keywords, columns, more) in _TABLES.items()
+    }
     # OpenFAST 4 gave both tables of sections one keyword
-    named = deck.find("NPropSetsRec") is not None
+    keyword, nth = ("NPropSetsRec", 0) if deck.find("NPropSetsRec") is not None else ("NPropSets", 1)
+    rows["rectangle"] = deck.table(keyword, columns=("propsetid", *_RECTANGLE_KEYS), nth=nth)
+    return {name: {row["propsetid"]: row for row in table} for name, table in rows.items()}
 
-    return _Tables(
-        tubes=rows("NPropSetsCyl", "NPropSets", columns=("propsetid", *_TUBE_KEYS)),
-        rectangles=rows(
-            "NPropSetsRec" if named else "NPropSets",
-            columns=("propsetid", *_RECTANGLE_KEYS),
-            nth=0 if named else 1,
-        ),
-        arbitrary=rows("NXPropSets", columns=("propsetid", *_ARBITRARY_KEYS), optional=("xsecjt",)),
-        cables=rows("NCablePropSets", columns=("propsetid", "ea", "matdens", "t0")),
-        rigid=rows("NRigidPropSets", columns=("propsetid", "matdens")),
-        springs=rows("NSpringPropSets", columns=("propsetid", *_SPRING_KEYS)),
-        cosines=rows("NCOSMs", columns=("cosmid", *(f"cosm{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))),
-    )
+
+def _properties(tables: Tables, name: str, row: DeckRow, key: str = "mpropsetid1") -> DeckRow:
+    """Return the property set that a member names."""
+    return look_up(tables[name], row[key], "property set", field=f"MemberID {row['memberid']}")
 
 
 def _pieces(row: DeckRow, nodes: dict[str, Vector], ends: dict[str, tuple[str, str]], divisions: int) -> int:
@@ -166,12 +153,11 @@ def _along(parts: Parts, name: str, ends: tuple[str, str], pieces: int) -> list[
     return [ends[0], *names, ends[1]]
 
 
-def _add_tube(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str], pieces: int) -> None:
+def _add_tube(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str], pieces: int) -> None:
     name = row["memberid"]
     sections, materials = [], []
     for key in ("mpropsetid1", "mpropsetid2"):
-        properties = tables.find(tables.tubes, row, key)
-        E, G, rho, D, t = properties.numbers(*_TUBE_KEYS)
+        E, G, rho, D, t = _properties(tables, "tube", row, key).numbers(*_TUBE_KEYS)
         with located(field=f"PropSetID {row[key]}"):
             # SubDyn takes a wall of zero as solid
             sections.append(Section(D, t or 0.5 * D))
@@ -200,7 +186,7 @@ def _between(a: Section, b: Section, share: float) -> Section:
 
 
 def _add_beam(
-    parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str], pieces: int, *, shear: bool
+    parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str], pieces: int, *, shear: bool
 ) -> None:
     """Add a beam of any section as elements; both ends must name one property set."""
     name = row["memberid"]
@@ -219,29 +205,28 @@ def _add_beam(
         parts.elements.append(two_node_element(piece, "beam", pair, K, M, polar_radius_m=radius))
 
 
-def _any_section(tables: _Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
+def _any_section(tables: Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of an arbitrary beam."""
-    p = tables.find(tables.arbitrary, row, "mpropsetid1")
+    p = _properties(tables, "any", row)
     E, G, rho, A, A_x, A_y, I_x, I_y, I_p = p.numbers(*_ARBITRARY_KEYS)
     # decks before OpenFAST 4.1 have one number for inertia and torsion
     J = p.number("xsecjt", I_p)
     return [E, G, rho], BeamSection(A, A_x, A_y, I_x, I_y, I_p, J)
 
 
-def _rectangle(tables: _Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
+def _rectangle(tables: Tables, row: DeckRow) -> tuple[list[float], BeamSection]:
     """Return E, G, ρ and the section of a rectangular beam."""
-    p = tables.find(tables.rectangles, row, "mpropsetid1")
-    E, G, rho, a, b, t = p.numbers(*_RECTANGLE_KEYS)
+    E, G, rho, a, b, t = _properties(tables, "rectangle", row).numbers(*_RECTANGLE_KEYS)
     with located(field=f"PropSetID {row['mpropsetid1']}"):
         return [E, G, rho], rectangular_section(a, b, t, poisson_ratio=0.5 * E / G - 1.0)
 
 
-def _axes(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> FloatArray:
+def _axes(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str]) -> FloatArray:
     """Return (3, 3): along the member, then the section's x and y, in rows."""
     spin, chosen = row.get("mspin/cosmid", row.get("cosmid/mspin", "0")), row.get("cosmid", "-1")
-    if chosen != "-1" and chosen in tables.cosines:
+    if chosen != "-1" and chosen in tables["cosines"]:
         keys = [f"cosm{i}{j}" for i in (3, 1, 2) for j in (1, 2, 3)]
-        return np.array(tables.cosines[chosen].numbers(*keys)).reshape(3, 3)
+        return np.array(tables["cosines"][chosen].numbers(*keys)).reshape(3, 3)
     a, b = (np.array(parts.nodes[node]) for node in ends)
     z = (b - a) / np.linalg.norm(b - a)
     level = float(np.hypot(z[0], z[1]))
@@ -251,27 +236,25 @@ def _axes(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) ->
     return np.array([z, np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x])
 
 
-def _cable(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
-    p = tables.find(tables.cables, row, "mpropsetid1")
-    EA, rho, T = p.numbers("ea", "matdens", "t0")
+def _cable(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
+    EA, rho, T = _properties(tables, "cable", row).numbers("ea", "matdens", "t0")
     a, b = (np.array(parts.nodes[node]) for node in ends)
     K, M = cable_matrices(a, b, EA=EA, tension=T, mass_per_m=rho)
     return two_node_element(row["memberid"], "cable", ends, K, M)
 
 
-def _spring(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
-    p = tables.find(tables.springs, row, "mpropsetid1")
+def _spring(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str]) -> TwoNodeElement:
     k = np.zeros((6, 6))
-    k[np.triu_indices(6)] = p.numbers(*_SPRING_KEYS)
+    k[np.triu_indices(6)] = _properties(tables, "spring", row).numbers(*_SPRING_KEYS)
     k = k + np.triu(k, 1).T
     chosen = row.get("cosmid", row.get("mspin/cosmid", row.get("cosmid/mspin", "-1")))
     apart = np.linalg.norm(np.subtract(parts.nodes[ends[1]], parts.nodes[ends[0]])) > 0.0
     require(
-        chosen in tables.cosines or apart,
+        chosen in tables["cosines"] or apart,
         "a spring between joints at one place needs its axes",
         field=f"MemberID {row['memberid']}.COSMID",
         value=chosen,
-        allowed=", ".join(tables.cosines) or None,
+        allowed=", ".join(tables["cosines"]) or None,
         remedy="give a cosine matrix",
     )
     axes = _axes(parts, tables, DeckRow({**row, "cosmid": chosen}, row.line), ends)
@@ -279,8 +262,8 @@ def _spring(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) 
     return two_node_element(row["memberid"], "spring", ends, spring_matrix(k, np.roll(axes, -1, axis=0)))
 
 
-def _rigid_mass(parts: Parts, tables: _Tables, row: DeckRow, ends: tuple[str, str]) -> list[TwoNodeElement]:
-    p = tables.rigid.get(row["mpropsetid1"])
+def _rigid_mass(parts: Parts, tables: Tables, row: DeckRow, ends: tuple[str, str]) -> list[TwoNodeElement]:
+    p = tables["rigid"].get(row["mpropsetid1"])
     density = p.number("matdens") if p else 0.0
     if density == 0.0:
         return []

@@ -23,13 +23,11 @@ from jackettwin.soil.piles.radiation import Radiation
 from jackettwin.soil.piles.reaction_curves import PileCurves, linearised, pile_curves
 from jackettwin.soil.piles.soil_curves import CurveOptions
 from jackettwin.soil.support import ELASTIC, Support
-from jackettwin.structure import Material, Section, Structure
+from jackettwin.structure import Structure
 
 SLENDER = 10.0
 """Diameters of length below which a pile is not slender: on monopiles, of 2 to 6, shear at the base and along
 the sides counts as well (Byrne et al. 2015, the PISA tests)."""
-_MOST_ELEMENTS = 2000
-"""Along a pile."""
 
 Stiffness = Annotated[float, Field(ge=0.0, le=1e15)]
 """Of linear ground [N/m³, N/m² or N/m]: the upper end is rigid."""
@@ -91,41 +89,6 @@ class Foundation:
         return structure, self.heads(structure)
 
 
-class PileSchema(Schema):
-    """A pile."""
-
-    length_m: Annotated[float, Field(gt=0.0, le=300.0)]
-    outer_diameter_m: Annotated[float, Field(ge=0.05, le=20.0)]
-    thickness_m: Annotated[float, Field(ge=1e-3, le=10.0)]
-    youngs_modulus_pa: Annotated[float, Field(ge=1e9, le=1e13)] = 210e9
-    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
-    density_kg_m3: Annotated[float, Field(ge=500.0, le=50e3)] = 7850.0
-    plugged: bool = False
-    element_m: Annotated[float, Field(gt=0.0, le=300.0)] | None = None
-
-    def build(self) -> Pile:
-        """Return the pile."""
-        require(
-            self.element_m is None or self.length_m <= _MOST_ELEMENTS * self.element_m,
-            "too many elements",
-            field="element_m",
-            value=self.element_m,
-            allowed=f"≥ {self.length_m / _MOST_ELEMENTS:.3g} m for this length",
-            remedy="leave it out: half a diameter leaves 0.03 %",
-        )
-        return Pile(
-            length_m=self.length_m,
-            section=Section(self.outer_diameter_m, self.thickness_m),
-            material=Material(
-                youngs_modulus_pa=self.youngs_modulus_pa,
-                poisson_ratio=self.poisson_ratio,
-                density_kg_m3=self.density_kg_m3,
-            ),
-            spacing_m=self.element_m,
-            plugged=self.plugged,
-        )
-
-
 class LinearSchema(Schema):
     """Linear ground: k_h = lateral·z, constant k_v, a spring under the tip."""
 
@@ -151,7 +114,7 @@ class FoundationDampingSchema(Schema):
 class FoundationSchema(Schema):
     """A foundation file."""
 
-    pile: PileSchema
+    pile: Placed[Pile]
     soil: SoilSchema
     scour: Placed[Scour] | None = None
     curves: Placed[CurveOptions] = CurveOptions()
@@ -169,11 +132,9 @@ class FoundationSchema(Schema):
         elif self.law is not None:
             with located(field="law"):
                 law = self.law.build()
-        with located(field="pile"):
-            pile = self.pile.build()
-        curves = self._curves(pile)
-        springs = self._linear(pile) if curves is None else linearised(curves)
-        return Foundation(pile, springs, law, self.radiation, curves, self._notes())
+        curves = self._curves()
+        springs = self._linear() if curves is None else linearised(curves)
+        return Foundation(self.pile, springs, law, self.radiation, curves, self._notes())
 
     def _notes(self) -> tuple[str, ...]:
         """Return what to beware of in layered ground: a pile that is longer than the layers, or stout."""
@@ -194,15 +155,15 @@ class FoundationSchema(Schema):
             )
         return tuple(notes)
 
-    def _curves(self, pile: Pile) -> PileCurves | None:
+    def _curves(self) -> PileCurves | None:
         layers, linear = self.soil.layers, self.soil.linear
         one = (layers is None) != (linear is None)
         require(one, "the ground is either layers or linear", field="soil", remedy="give one of them")
         if layers is None:
             return None
-        return pile_curves(pile, SoilProfile(tuple(layers), self.scour or Scour()), self.curves)
+        return pile_curves(self.pile, SoilProfile(tuple(layers), self.scour or Scour()), self.curves)
 
-    def _linear(self, pile: Pile) -> PileSprings:
+    def _linear(self) -> PileSprings:
         linear = self.soil.linear
         assert linear is not None
         require(
@@ -212,7 +173,7 @@ class FoundationSchema(Schema):
             remedy="describe the ground by layers",
         )
         return linear_springs(
-            pile,
+            self.pile,
             lateral=lambda z: linear.lateral_n_m3 * z,
             axial=lambda z: np.full_like(z, linear.axial_n_m2),
             tip_n_m=linear.tip_n_m,

@@ -12,8 +12,17 @@ from jackettwin.decks import RnaSchema, StructureChoice, read_structure
 from jackettwin.errors import InputError, located, require
 from jackettwin.files import Placed, Schema
 from jackettwin.response import build_system, undamped_modes
-from jackettwin.soil import CurveOptions, Foundation, Radiation, Scour, Support, read_foundation, read_support
-from jackettwin.soil.foundation import FoundationDampingSchema, FoundationSchema, PileSchema, SoilSchema
+from jackettwin.soil import (
+    CurveOptions,
+    Foundation,
+    Pile,
+    Radiation,
+    Scour,
+    Support,
+    read_foundation,
+    read_support,
+)
+from jackettwin.soil.foundation import FoundationDampingSchema, FoundationSchema, SoilSchema
 from jackettwin.soil.laws.files import LawSchema
 from jackettwin.soil.support import standing
 from jackettwin.structure import Rayleigh, RayleighSchema, Structure, assemble
@@ -70,7 +79,7 @@ class AssetSchema(Schema):
     gravity: bool = False
     damping: SteelDampingSchema = SteelDampingSchema()
     soil: GroundSchema | None = None
-    piles: PileSchema | None = None
+    piles: Placed[Pile] | None = None
     foundation: str | None = None
     support: str | None = None
 

@@ -207,9 +207,8 @@ def _largest_moment(pile: Pile, curves: PileCurves, loaded: LoadedPile) -> float
     """Return the largest bending moment [N·m]: EI times the curvature of the elements' ends."""
     z, u = curves.at.node_depth, loaded.displacement
     L = np.diff(z)
-    section = pile.section
-    D, d = section.outer_diameter_m, section.outer_diameter_m - 2.0 * section.thickness_m
-    EI = pile.material.youngs_modulus_pa * np.pi / 64.0 * (D**4 - d**4)
+    D, d = pile.outer_diameter_m, pile.outer_diameter_m - 2.0 * pile.thickness_m
+    EI = pile.youngs_modulus_pa * np.pi / 64.0 * (D**4 - d**4)
     # slope dx/dz downwards is −θ_y; M = EI x'' at both ends of a cubic element
     x, slope = u[:, 0], -u[:, 4]
     chord = np.diff(x) / L

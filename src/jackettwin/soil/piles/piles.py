@@ -8,48 +8,74 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import ceil, pi
+from functools import cached_property
+from math import ceil, inf, pi
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from jackettwin.arrays import FloatArray, IntArray
-from jackettwin.errors import InputError
+from jackettwin.errors import InputError, require
 from jackettwin.soil.laws.viscoelastic import Law, Prony, kelvin_voigt
 from jackettwin.soil.support import ELASTIC, Spring, Support
 from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.model import STEEL, Member, Reaction, Vector
+from jackettwin.structure.model import Member, Reaction, Vector, require_wall
+
+_MOST_ELEMENTS = 2000
+"""Along a pile."""
 
 
 @dataclass(frozen=True)
 class Pile:
-    """A vertical open tube driven to ``length_m`` below the mudline.
+    """A vertical open tube driven to ``length_m`` below the mudline; a foundation file gives these keys.
 
-    ``spacing_m`` bounds the length of its elements; None is half a diameter, which leaves 0.03 % in a head
-    flexibility.
+    ``element_m`` bounds the length of its elements; None is half a diameter, which leaves 0.03 % in a head
+    flexibility. A ``plugged`` tip bears on its full area, else on steel alone.
     """
 
-    length_m: float
-    section: Section
-    material: Material = STEEL
-    spacing_m: float | None = None
+    length_m: Annotated[float, Field(gt=0.0, le=300.0)]
+    outer_diameter_m: Annotated[float, Field(ge=0.05, le=20.0)]
+    thickness_m: Annotated[float, Field(ge=1e-3, le=10.0)]
+    youngs_modulus_pa: Annotated[float, Field(ge=1e9, le=1e13)] = 210e9
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.3
+    density_kg_m3: Annotated[float, Field(ge=500.0, le=50e3)] = 7850.0
     plugged: bool = False
-    """Whether the tip bears on its full area, or on steel alone."""
+    element_m: Annotated[float, Field(gt=0.0, le=300.0)] | None = None
 
     def __post_init__(self) -> None:
-        for field in ("length_m", "spacing_m"):
-            value = getattr(self, field)
-            if value is not None and not (np.isfinite(value) and value > 0.0):
-                raise InputError("must be positive", field=f"pile.{field}", value=value, allowed="> 0")
+        require_wall("thickness_m", self.thickness_m, self.outer_diameter_m)
+        for field, value in (("length_m", self.length_m), ("element_m", self.longest_element_m)):
+            require(0.0 < value < inf, "must be positive", field=field, value=value, allowed="> 0")
+        require(
+            self.length_m <= _MOST_ELEMENTS * self.longest_element_m,
+            "too many elements",
+            field="element_m",
+            value=self.element_m,
+            allowed=f"≥ {self.length_m / _MOST_ELEMENTS:.3g} m for this length",
+            remedy="leave it out: half a diameter leaves 0.03 %",
+        )
+
+    @cached_property
+    def section(self) -> Section:
+        """Its tube."""
+        return Section(self.outer_diameter_m, self.thickness_m)
+
+    @cached_property
+    def material(self) -> Material:
+        """Its steel."""
+        E, nu, rho = self.youngs_modulus_pa, self.poisson_ratio, self.density_kg_m3
+        return Material(youngs_modulus_pa=E, poisson_ratio=nu, density_kg_m3=rho)
 
     @property
-    def element_m(self) -> float:
+    def longest_element_m(self) -> float:
         """Longest element allowed."""
-        return 0.5 * self.section.outer_diameter_m if self.spacing_m is None else self.spacing_m
+        return 0.5 * self.outer_diameter_m if self.element_m is None else self.element_m
 
     @property
     def tip_area_m2(self) -> float:
         """Area the soil under the tip pushes on."""
-        D, t = self.section.outer_diameter_m, self.section.thickness_m
+        D, t = self.outer_diameter_m, self.thickness_m
         return 0.25 * pi * (D**2 if self.plugged else D**2 - (D - 2.0 * t) ** 2)
 
 
@@ -84,7 +110,7 @@ def stations(pile: Pile, boundaries: FloatArray | tuple[float, ...] = ()) -> Sta
     node_depth, parts = [np.zeros(1)], []
     first = 0
     for layer, (top, bottom) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
-        n = 2 * max(1, ceil((bottom - top) / (2.0 * pile.element_m) - 1e-9))
+        n = 2 * max(1, ceil((bottom - top) / (2.0 * pile.longest_element_m) - 1e-9))
         z = np.linspace(top, bottom, n + 1)
         simpson = np.where(np.arange(n + 1) % 2 == 1, 4.0, 2.0)
         simpson[[0, -1]] = 1.0
@@ -161,15 +187,15 @@ def with_piles(
         below, tubes = pile_beams(foot, nodes[foot], pile, springs.node_depth)
         nodes |= below
         members += tubes
-        held += _held((foot, *below), springs, law)
+        held += _springs_at((foot, *below), springs, law)
         if dashpots is not None:
-            held += _held((foot, *below), dashpots, Prony(c=1.0))
+            held += _springs_at((foot, *below), dashpots, Prony(c=1.0))
     reactions = tuple(Reaction(foot) for foot in structure.reaction_nodes)
     piled = replace(structure, nodes=nodes, members=tuple(members), reactions=reactions)
     return piled, Support(springs=tuple(held))
 
 
-def _held(names: tuple[str, ...], springs: PileSprings, law: Law) -> list[Spring]:
+def _springs_at(names: tuple[str, ...], springs: PileSprings, law: Law) -> list[Spring]:
     return [
         Spring(name, np.diag([h, h, v, 0.0, 0.0, t]), law)
         for name, h, v, t in zip(names, springs.lateral, springs.axial, springs.torsional, strict=True)

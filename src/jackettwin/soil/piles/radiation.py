@@ -38,7 +38,7 @@ class Radiation:
 
         Each node stands for half of the elements beside it.
         """
-        z, D = springs.node_depth, pile.section.outer_diameter_m
+        z, D = springs.node_depth, pile.outer_diameter_m
         half = 0.5 * np.diff(z)
         length = np.concatenate([half, [0.0]]) + np.concatenate([[0.0], half])
         waves = (self.density_kg_m3, self.shear_wave_m_s, D, 2.0 * np.pi * self.frequency_hz)

@@ -45,7 +45,7 @@ def pile_curves(pile: Pile, profile: SoilProfile, options: CurveOptions | None =
         allowed=f"< {pile.length_m:g} m",
         remedy="lengthen the pile, or check the unit of the scour",
     )
-    D = pile.section.outer_diameter_m
+    D = pile.outer_diameter_m
     at = stations(pile, np.append(profile.boundaries_m, scour))
     layer = _layers(pile, profile, at)
 

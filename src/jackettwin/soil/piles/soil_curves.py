@@ -93,7 +93,7 @@ def _sand_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
         friction_angle_deg=soil.friction_angle_deg,
         stress_pa=point.stress_pa,
         z=point.depth_m,
-        D=pile.section.outer_diameter_m,
+        D=pile.outer_diameter_m,
         cyclic=options.cyclic,
         modulus_n_m3=soil.modulus_n_m3,
     )
@@ -105,7 +105,7 @@ def _clay_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
         "strength_pa": point.strength_pa,
         "stress_pa": point.stress_pa,
         "z": point.depth_m,
-        "D": pile.section.outer_diameter_m,
+        "D": pile.outer_diameter_m,
         "strain_50": soil.strain_50,
     }
     if not soil.stiff:
@@ -119,13 +119,13 @@ def _clay_py(point: Point, pile: Pile, options: CurveOptions) -> Curve:
 def _sand_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     soil = cast("Sand", point.soil)
     f = sand_friction(stress_pa=point.stress_pa, beta=soil.beta, limit_pa=soil.limit_friction_pa)
-    return sand_tz(friction_pa=f, D=pile.section.outer_diameter_m, form=options.sand_tz)
+    return sand_tz(friction_pa=f, D=pile.outer_diameter_m, form=options.sand_tz)
 
 
 def _clay_tz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     soil = cast("Clay", point.soil)
     f = clay_friction(strength_pa=point.strength_pa, stress_pa=point.stress_pa)
-    return clay_tz(friction_pa=f, D=pile.section.outer_diameter_m, residual=soil.residual)
+    return clay_tz(friction_pa=f, D=pile.outer_diameter_m, residual=soil.residual)
 
 
 def _sand_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
@@ -133,12 +133,12 @@ def _sand_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     q = sand_bearing(
         stress_pa=point.stress_pa, bearing_factor=soil.bearing_factor, limit_pa=soil.limit_bearing_pa
     )
-    return tip_qz(bearing_pa=q, D=pile.section.outer_diameter_m, area_m2=pile.tip_area_m2)
+    return tip_qz(bearing_pa=q, D=pile.outer_diameter_m, area_m2=pile.tip_area_m2)
 
 
 def _clay_qz(point: Point, pile: Pile, options: CurveOptions) -> Curve:
     q = clay_bearing(point.strength_pa)
-    return tip_qz(bearing_pa=q, D=pile.section.outer_diameter_m, area_m2=pile.tip_area_m2)
+    return tip_qz(bearing_pa=q, D=pile.outer_diameter_m, area_m2=pile.tip_area_m2)
 
 
 SOIL_CURVES = (
