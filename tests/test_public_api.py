@@ -16,7 +16,7 @@ import jackettwin
 
 PACKAGES = {
     "records": "Channel Record assess decimate detrend read_record repair write_record",
-    "report": "PageSection PageTable Plot Text build_report",
+    "report": "PageSection Plot Table TableColumn Text build_report",
     "decks": "read_structure shipped_structures",
     "structure": "Assembly Material Rayleigh Section Structure assemble check jacket",
 }

@@ -14,9 +14,9 @@ import pytest
 from click.testing import CliRunner
 
 from jackettwin.cli import console, main
-from jackettwin.cli.main import COMMANDS
 
 README = Path(__file__).parents[2] / "README.md"
+COMMANDS = main.summaries
 
 
 def command(name: str) -> click.Command:
@@ -68,7 +68,10 @@ def test_a_command_says_what_it_does_before_it_is_read(monkeypatch: pytest.Monke
     start = time.monotonic()
     assert main.get_command(click.Context(main), "run") is not None
     assert time.monotonic() - start < 5.0  # waits 0.3 s; a machine may be busy
-    assert Heard.lines[0] == "run: Go from records to modes to updated supports (reading the program)"
+    assert (
+        Heard.lines[0]
+        == "run: Go from records to modes to updated supports, and report it (reading the program)"
+    )
 
 
 def test_watching_a_table_needs_no_statistics_library() -> None:
@@ -76,6 +79,24 @@ def test_watching_a_table_needs_no_statistics_library() -> None:
     code = "import sys, jackettwin.cli.watch; print('scipy.stats' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False"]
+
+
+def test_a_slow_command_says_so_at_most_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines: list[str] = []
+    monkeypatch.setattr(console, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(console, "EVERY_S", 0.0)
+    monkeypatch.setattr(console.messages, "print", lambda line, **_: lines.append(line))
+    with console._reading_said("run", "Run it."):
+        time.sleep(0.3)
+    assert lines == ["run: Run it (reading the program)", "still reading the program"]
+
+
+def test_the_help_has_the_groups_of_the_readme_and_breaks_no_line() -> None:
+    shown = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
+    headings = re.findall(r"^\| \*\*(.*?)\*\*", README.read_text(), re.MULTILINE)
+    assert [line[:-1].lower() for line in shown.splitlines() if line.endswith(":")][2:] == headings
+    for name, summary in COMMANDS.items():
+        assert re.search(rf"^  {name} +{re.escape(summary)}$", shown, re.MULTILINE), name
 
 
 def test_an_unknown_command_is_bad_input() -> None:

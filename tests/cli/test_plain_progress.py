@@ -34,8 +34,8 @@ def test_lines_come_at_once_then_every_two_seconds_come_what_may(
 
 
 def test_the_thread_ends_with_the_block() -> None:
-    with module.plain_progress(1, lambda _: None) as progress:
-        progress.announce("work")
+    with module.plain_progress(1, lambda _: None) as step:
+        step("work")
     assert not [
         t
         for t in module.threading.enumerate()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from jackettwin.answers import Answers
-from jackettwin.cli.console import output
+from jackettwin.cli.console import output, say
 from jackettwin.files.codec import encode
 from jackettwin.report.tables.sentences import sentences
 
@@ -17,9 +17,9 @@ def print_answers(answers: Answers) -> None:
     for line in said.headline:
         output.print(f"[bold]{line}[/bold]")
     for question in said.questions:
-        output.print(f"\n{question.title}")
+        say(f"\n{question.title}")
         for line in question.short:
-            output.print(f"  {line}", markup=False)
+            say(f"  {line}")
 
 
 def answers_document(answers: Answers) -> dict[str, Any]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import click
 import numpy as np
-from rich.table import Table
 
 from jackettwin.arrays import FloatArray
 from jackettwin.checks import (
@@ -19,7 +19,7 @@ from jackettwin.checks import (
     MemberUse,
     frame_use,
 )
-from jackettwin.cli.console import FiniteFloat, fixed, numbers_of, output, print_json
+from jackettwin.cli.console import FiniteFloat, Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.cli.modes import support_option
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
@@ -30,6 +30,7 @@ from jackettwin.loads import (
     outside_pressure,
     still_water as still_water_loads,
 )
+from jackettwin.report import Table, TableColumn
 from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
 from jackettwin.simulate import read_scenario, scenario_uses, water_notes
 from jackettwin.structure import Assembly, assemble
@@ -39,7 +40,6 @@ from jackettwin.structure.forces import element_weight
 _SHOWN = 15
 """Members in the terminal."""
 _COMPONENTS = ("axial_n", "shear_y_n", "shear_z_n", "torsion_nm", "bending_y_nm", "bending_z_nm")
-_JOINT_FORCES = ("N", "M in plane", "M out of plane")
 _TRACE = 0.005
 """A share of a joint's class that rounds to nothing."""
 _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
@@ -75,7 +75,7 @@ _HEADINGS = ("N", "Vy", "Vz", "T", "My", "Mz")
 @click.option(
     "--subdivide", type=click.IntRange(1, 1000), help="Elements a member; default: the structure's own."
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 def check_command(
     structure: str | None,
     scenario: str | None,
@@ -88,9 +88,11 @@ def check_command(
     still_water: bool,
     flooded: tuple[str, ...],
     subdivide: int | None,
-    as_json: bool,
-) -> None:
-    """Check members and joints of STRUCTURE at rest under weight and forces given, or of a scenario."""
+) -> Reply:
+    """Check members and joints of STRUCTURE, or of a scenario.
+
+    STRUCTURE is at rest under its weight and the forces given.
+    """
     basis = DesignBasis(yield_strength, edition, conservative_joints=joints == "conservative")
     if (structure is None) == (scenario is None):
         raise InputError(
@@ -103,8 +105,7 @@ def check_command(
             raise InputError("a scenario has its own water", field="--still-water", remedy="leave it out")
         chosen_scenario = read_scenario(scenario)
         use = scenario_uses(chosen_scenario, basis)
-        _report(chosen_scenario.name, use, water_notes(chosen_scenario), as_json)
-        return
+        return _answer(chosen_scenario.name, use, water_notes(chosen_scenario))
     assert structure is not None
     assembly = assemble(read_structure(structure), subdivide=subdivide)
     held = support_option(support, assembly)
@@ -116,7 +117,7 @@ def check_command(
         load, along, pressure = _in_water(assembly, Water(flooded), load, along)
     u = static_displacement(build_system(assembly, held), load)
     use = frame_use(assembly, u, basis, along=along, pressure=pressure)
-    _report(assembly.structure.name, use, [], as_json)
+    return _answer(assembly.structure.name, use, [])
 
 
 def _in_water(
@@ -140,7 +141,7 @@ def _in_water(
     return load + wet.load, wet.along if along is None else along + wet.along, pressure
 
 
-def _report(name: str, use: FrameUse, notes: list[str], as_json: bool) -> None:
+def _answer(name: str, use: FrameUse, notes: list[str]) -> Reply:
     document = {
         "structure": name,
         "largest_von_mises_stress_pa": max(one.von_mises_pa for one in use.members),
@@ -148,10 +149,7 @@ def _report(name: str, use: FrameUse, notes: list[str], as_json: bool) -> None:
         "joints": [_joint_row(one) for one in sorted(use.joints, key=lambda one: -one.utilisation)],
         "warnings": [*_warnings(use), *notes],
     }
-    if as_json:
-        print_json(document)
-    else:
-        _print(document)
+    return Reply(document, lambda: _show(document))
 
 
 def nodal_force(text: str) -> tuple[str, tuple[float, ...]]:
@@ -230,56 +228,65 @@ def _warnings(use: FrameUse) -> list[str]:
     return found
 
 
-def _print(document: dict[str, Any]) -> None:
-    shown, left_out = document["members"][:_SHOWN], len(document["members"]) - _SHOWN
-    use = Table("member", "part", "utilisation", "governed by", "K", r"L \[m]", title_justify="left")
-    use.title = document["structure"]
-    forces = Table(
-        "member", "at", *_HEADINGS, title=r"section forces there \[kN, kN·m]", title_justify="left"
-    )
-    for row in shown:
-        K, L = row["effective_length_factor"], row["column_length_m"]
-        use.add_row(
-            row["member"], row["part"], f"{row['utilisation']:.3f}", row["clause"], f"{K:g}", f"{L:.2f}"
-        )
-        governing = row["governing"]
-        forces.add_row(
-            row["member"],
-            _place(governing["position"]),
-            *(fixed(governing[name] / 1e3, 1) for name in _COMPONENTS),
-        )
-    output.print(use)
-    output.print(forces)
-    if left_out > 0:
-        output.print(f"and {left_out} more members; --json has all of them, with the forces at both ends")
-    _print_joints(document["joints"])
-    output.print(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
-    for warning in document["warnings"]:
-        output.print(f"warning: {warning}")
+def _show(document: dict[str, Any]) -> None:
+    members = document["members"]
+    show_table(Table(document["structure"], _USE, members[:_SHOWN]))
+    show_table(Table("section forces there [kN, kN·m]", _SECTION_FORCES, members[:_SHOWN]))
+    if len(members) > _SHOWN:
+        more = len(members) - _SHOWN
+        say(f"and {more} more members; --json has all of them, with the forces at both ends")
+    if document["joints"]:
+        _show_joints(document["joints"])
+    say(f"largest von Mises stress {document['largest_von_mises_stress_pa'] / 1e6:.1f} MPa")
+    say_all(document["warnings"], "warning")
 
 
-def _print_joints(rows: list[dict[str, Any]]) -> None:
-    if not rows:
-        return
-    table = Table(
-        "joint", "chord", "brace", "utilisation", "class", "β", "γ", "θ [°]", *_JOINT_FORCES,
-        title="tubular joints, ISO 19902 14.3; forces in kN, kN·m", title_justify="left",
-    )  # fmt: skip
-    for row in rows[:_SHOWN]:
-        kinds = " ".join(f"{kind} {share:.2f}" for kind, share in row["shares"].items() if share > _TRACE)
-        table.add_row(
-            *(row[name] for name in ("node", "chord", "brace")),
-            f"{row['utilisation']:.3f}" + ("*" if row["beyond_validity"] else ""),
-            kinds,
-            *(fixed(row[name], digits) for name, digits in (("beta", 2), ("gamma", 1), ("theta_deg", 0))),
-            *(fixed(row[name] / 1e3, 1) for name in ("axial_n", "in_plane_nm", "out_of_plane_nm")),
-        )
-    output.print(table)
+def _show_joints(rows: list[dict[str, Any]]) -> None:
+    show_table(Table("tubular joints, ISO 19902 14.3; forces in kN, kN·m", _JOINTS, rows[:_SHOWN]))
     if any(row["beyond_validity"] for row in rows[:_SHOWN]):
-        output.print("* beyond the ranges of 14.3.1; --json says in what")
+        say("* beyond the ranges of 14.3.1; --json says in what")
     if len(rows) > _SHOWN:
-        output.print(f"and {len(rows) - _SHOWN} more braces at joints; --json has all of them")
+        say(f"and {len(rows) - _SHOWN} more braces at joints; --json has all of them")
 
 
-def _place(position: float) -> str:
-    return {0.0: "start", 1.0: "end"}.get(position, f"{position:.2f} L")
+def _governing(name: str) -> Callable[[dict[str, Any]], float]:
+    return lambda row: row["governing"][name]
+
+
+_PLACES = {0.0: "start", 1.0: "end"}
+_USE = (
+    TableColumn("member", "member"),
+    TableColumn("part", "part"),
+    TableColumn("utilisation", "utilisation", ".3f"),
+    TableColumn("governed by", "clause"),
+    TableColumn("K", "effective_length_factor", "g"),
+    TableColumn("L [m]", "column_length_m", ".2f"),
+)
+_SECTION_FORCES = (
+    TableColumn("member", "member"),
+    TableColumn("at", lambda row: _PLACES.get(at := row["governing"]["position"], f"{at:.2f} L")),
+    *(
+        TableColumn(heading, _governing(name), ",.1f", 1e-3)
+        for heading, name in zip(_HEADINGS, _COMPONENTS, strict=True)
+    ),
+)
+_JOINTS = (
+    TableColumn("joint", "node"),
+    TableColumn("chord", "chord"),
+    TableColumn("brace", "brace"),
+    TableColumn(
+        "utilisation", lambda row: f"{row['utilisation']:.3f}{'*' if row['beyond_validity'] else ''}"
+    ),
+    TableColumn(
+        "class",
+        lambda row: " ".join(
+            f"{kind} {share:.2f}" for kind, share in row["shares"].items() if share > _TRACE
+        ),
+    ),
+    TableColumn("β", "beta", ".2f"),
+    TableColumn("γ", "gamma", ".1f"),
+    TableColumn("θ [°]", "theta_deg", ".0f"),
+    TableColumn("N", "axial_n", ",.1f", 1e-3),
+    TableColumn("M in plane", "in_plane_nm", ",.1f", 1e-3),
+    TableColumn("M out of plane", "out_of_plane_nm", ",.1f", 1e-3),
+)

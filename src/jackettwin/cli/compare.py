@@ -8,59 +8,45 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.table import Table
 
 from jackettwin.answers.compare import ChangedNumber, compare
-from jackettwin.cli.console import number, output, print_json
+from jackettwin.cli.console import Reply, answers, say, show_table
 from jackettwin.errors import InputError
+from jackettwin.report import Table, TableColumn
 
 
 @click.command("compare")
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def compare_command(a: Path, b: Path, as_json: bool) -> None:
-    """Say what changed from run A to run B, and by how much of its uncertainty.
+@answers
+def compare_command(a: Path, b: Path) -> Reply:
+    """Say what changed from run A to run B, against its uncertainty.
 
     A and B are folders that `jackettwin run` wrote, or their result.json.
     """
     before, after = _result(a), _result(b)
     changes = compare(before, after)
-    if as_json:
-        print_json(
+    document = {
+        "changes": [
             {
-                "changes": [
-                    {
-                        "what": c.what,
-                        "unit": c.unit,
-                        "before": c.before,
-                        "after": c.after,
-                        "relative_change": None if c.log_change is None else expm1(c.log_change),
-                        "sigmas": c.sigmas,
-                        "verdict": c.verdict,
-                    }
-                    for c in changes
-                ],
-                "headline": {"before": before.get("headline"), "after": after.get("headline")},
+                **{key: getattr(c, key) for key in ("what", "unit", "before", "after")},
+                "relative_change": None if c.log_change is None else expm1(c.log_change),
+                "sigmas": c.sigmas,
+                "verdict": c.verdict,
             }
-        )
-        return
-    output.print(_summary(changes))
-    for name, run in ((a, before), (b, after)):
-        if not ((run.get("answers") or {}).get("fit") or {}).get("fits", True):
-            output.print(f"Beware, {name}: {run['headline'][0]}", markup=False)
-    table = Table("what", "before", "after", "change [%]", "over its σ", "verdict")
-    for c in changes:
-        unit = "" if c.unit == "-" else f" {c.unit}"
-        table.add_row(
-            f"{c.what}{unit and f' [{c.unit}]'}",
-            number(c.before),
-            number(c.after),
-            "–" if c.log_change is None else _percent(c.log_change),
-            "–" if c.sigmas is None else f"{c.sigmas:+.1f}",
-            c.verdict,
-        )
-    output.print(table)
+            for c in changes
+        ],
+        "headline": {"before": before.get("headline"), "after": after.get("headline")},
+    }
+
+    def show() -> None:
+        say(_summary(changes))
+        for name, run in ((a, before), (b, after)):
+            if not ((run.get("answers") or {}).get("fit") or {}).get("fits", True):
+                say(f"Beware, {name}: {run['headline'][0]}")
+        show_table(Table("", _COLUMNS, changes))
+
+    return Reply(document, show)
 
 
 def _summary(changes: tuple[ChangedNumber, ...]) -> str:
@@ -88,3 +74,13 @@ def _result(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict) or "updates" not in document:
         raise InputError("not the result of a run", file=file, remedy="result.json of `jackettwin run`")
     return document
+
+
+_COLUMNS = (
+    TableColumn("what", lambda c: c.what if c.unit in ("", "-") else f"{c.what} [{c.unit}]"),
+    TableColumn("before", lambda c: c.before, ".4g"),
+    TableColumn("after", lambda c: c.after, ".4g"),
+    TableColumn("change [%]", lambda c: None if c.log_change is None else _percent(c.log_change)),
+    TableColumn("over its σ", lambda c: c.sigmas, "+.1f"),
+    TableColumn("verdict", lambda c: c.verdict),
+)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import logging
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import wraps
 from importlib import import_module
+from itertools import count
 from math import isfinite
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 import click
 from rich.console import Console
@@ -20,6 +22,12 @@ from rich.console import Console
 from jackettwin.cli.interrupts import insisting
 from jackettwin.cli.plain_progress import EVERY_S, plain_progress
 from jackettwin.errors import InputError, JackettwinError
+from jackettwin.progress import Told
+
+if TYPE_CHECKING:
+    from jackettwin.report import Table
+
+P = ParamSpec("P")
 
 OUR_FAULT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -33,21 +41,31 @@ output = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatt
 
 @contextmanager
 def _reading_said(command: str, summary: str) -> Iterator[None]:
-    """Say what a command does while it is still being read, as often as any progress is told."""
+    """Say what a slow command does while it is still being read, and once more that it still is."""
     done = Event()
+    first = f"{command}: {summary.rstrip('.')} (reading the program)"
 
     def say() -> None:
-        waits, words = _PATIENCE_S, f"{command}: {summary.rstrip('.')} (reading the program)"
-        while not done.wait(waits):
+        for wait_s, words in ((_PATIENCE_S, first), (EVERY_S, "still reading the program")):
+            if done.wait(wait_s):
+                return
             messages.print(words, soft_wrap=True, markup=False)
-            waits, words = EVERY_S, "still reading the program"
 
-    thread = Thread(target=say, daemon=True)
-    thread.start()
+    Thread(target=say, daemon=True).start()
     try:
         yield
     finally:
         done.set()
+
+
+class CommandGroup(click.Group):
+    """A group whose help shows the whole first sentence of every command."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what every command does."""
+        found = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, one.get_short_help_str(1000)) for name, one in found if one])
 
 
 class Commands(click.Group):
@@ -55,36 +73,34 @@ class Commands(click.Group):
 
     Parameters
     ----------
-    summaries : {name: sentence}
-        Of every command; ``a-b`` is ``a_b_command`` in ``jackettwin.cli.a_b``.
+    groups : {heading: {name: sentence}}
+        What every command does; ``a-b`` is ``a_b_command`` in ``jackettwin.cli.a_b``.
     """
 
-    def __init__(self, *args: Any, summaries: Mapping[str, str], **kwargs: Any) -> None:
+    def __init__(self, *args: Any, groups: Mapping[str, Mapping[str, str]], **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.summaries = summaries
+        self.groups = groups
+        self.summaries = {name: text for group in groups.values() for name, text in group.items()}
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
-        return sorted(self.summaries)
+        return list(self.summaries)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Read a command; None if there is no such one."""
         if cmd_name not in self.summaries:
             return None
         name = cmd_name.replace("-", "_")
-        with _reading_said(cmd_name, self.summaries[cmd_name].split(": ")[0]):
+        with _reading_said(cmd_name, self.summaries[cmd_name]):
             command: click.Command = getattr(import_module(f"jackettwin.cli.{name}"), f"{name}_command")
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write what every command does, in a line each."""
-        width = formatter.width - 6 - max(map(len, self.summaries))
-        rows = []
-        for name in self.list_commands(ctx):
-            summary = click.Command(name, help=self.summaries[name])
-            rows.append((name, summary.get_short_help_str(width)))
-        with formatter.section("Commands"):
-            formatter.write_dl(rows)
+        """Write what every command does, group by group."""
+        longest = max(map(len, self.summaries))
+        for heading, group in self.groups.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(longest), text) for name, text in group.items()])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; turn errors into one message and an exit code."""
@@ -93,19 +109,17 @@ class Commands(click.Group):
             with insisting():
                 return super().invoke(ctx)
         except InputError as error:
-            messages.print(f"[bold red]error:[/] {plain(str(error))}", soft_wrap=True)
+            _failed("error", str(error))
             ctx.exit(BAD_INPUT)
         except KeyboardInterrupt:
             messages.print("interrupted: nothing half-written is left behind")
             ctx.exit(INTERRUPTED)
         except OSError as error:
             what = f"{error.strerror or error}: {error.filename}" if error.filename else str(error)
-            messages.print(
-                f"[bold red]error:[/] {plain(what)}; check the path and its rights", soft_wrap=True
-            )
+            _failed("error", f"{what}; check the path and its rights")
             ctx.exit(BAD_INPUT)
         except JackettwinError as error:
-            messages.print(f"[bold red]failed:[/] {plain(str(error))}", soft_wrap=True)
+            _failed("failed", str(error))
             ctx.exit(OUR_FAULT)
         except click.Abort:
             messages.print("stopped: nothing was changed")
@@ -115,12 +129,13 @@ class Commands(click.Group):
         except Exception as error:
             if ctx.params.get("traceback"):
                 traceback.print_exc()
-            messages.print(
-                f"[bold red]internal error:[/] {plain(f'{type(error).__name__}: {error}')}; "
-                "this is a fault of jackettwin: run again with --traceback and report it",
-                soft_wrap=True,
-            )
+            fault = "this is a fault of jackettwin: run again with --traceback and report it"
+            _failed("internal error", f"{type(error).__name__}: {error}; {fault}")
             ctx.exit(OUR_FAULT)
+
+
+def _failed(kind: str, what: str) -> None:
+    messages.print(f"[bold red]{kind}:[/] {plain(what)}", soft_wrap=True)
 
 
 class PageFile(click.Path):
@@ -185,43 +200,23 @@ def plain(text: str) -> str:
     return text.replace("[", r"\[")
 
 
-@dataclass(frozen=True)
-class ConsoleStep:
-    """Announces the next step when called; ``within`` says how far the present one is."""
-
-    announce: Callable[[str], None]
-    within: Callable[[str], None]
-
-    def __call__(self, what: str) -> None:
-        """Announce the next step."""
-        self.announce(what)
-
-
 @contextmanager
-def progress(total: int, title: str) -> Iterator[ConsoleStep]:
+def progress(total: int, title: str) -> Iterator[Told]:
     """Yield what announces the next of ``total`` steps: a bar on a terminal, else plain lines, on stderr."""
     if not messages.is_terminal:
-        with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as say:
-            yield ConsoleStep(say.announce, say.within)
+        with plain_progress(total, lambda line: messages.print(line, soft_wrap=True, markup=False)) as told:
+            yield told
         return
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total}"),
-        TimeElapsedColumn(),
-    )
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=messages) as bar:
         task = bar.add_task(title, total=total)
-        started = False
-
-        def announce(what: str) -> None:
-            nonlocal started
-            bar.update(task, description=what, advance=1 if started else 0)
-            started = True
-
-        yield ConsoleStep(announce, lambda what: bar.update(task, description=what))
+        steps = count()
+        yield Told(
+            lambda what: bar.update(task, description=what, completed=next(steps)),
+            lambda what: bar.update(task, description=what),
+        )
         bar.update(task, completed=total, description=title)
 
 
@@ -240,18 +235,68 @@ def print_json(document: object) -> None:
     sys.stdout.writelines(json_pieces(document))
 
 
-def number(value: float | None, digits: int = 4) -> str:
-    """Return a number for a table, a dash if it is not known."""
-    return "–" if value is None or value != value else f"{value:.{digits}g}"
+@dataclass(frozen=True)
+class Reply:
+    """What a command answers.
 
-
-def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals; what rounds to zero has no sign.
-
-    >>> fixed(-1e-9, 2)
-    '0.00'
+    Attributes
+    ----------
+    document : mapping
+        For programs.
+    show : function
+        Prints it for people.
+    exit_code : int
+        Of the process.
     """
-    return f"{round(value, decimals) + 0.0:,.{decimals}f}"
+
+    document: object
+    show: Callable[[], object]
+    exit_code: int = 0
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def answers(function: Callable[P, Reply]) -> Callable[P, None]:
+    """Let a command print what it returns: for people, or with ``--json`` for programs."""
+
+    @wraps(function)
+    def command(*args: P.args, **kwargs: P.kwargs) -> None:
+        as_json = kwargs.pop("as_json")
+        answer = function(*args, **kwargs)
+        if as_json:
+            print_json(answer.document)
+        else:
+            answer.show()
+        if answer.exit_code:
+            click.get_current_context().exit(answer.exit_code)
+
+    return json_option(command)
+
+
+def say(line: str) -> None:
+    """Print a line for people, as it is."""
+    output.print(line, markup=False)
+
+
+def say_all(lines: Iterable[str], kind: str = "") -> None:
+    """Print lines, those of a kind (``warning``) with its name."""
+    for line in lines:
+        say(f"{kind}: {line}" if kind else line)
+
+
+def show_table(table: Table) -> None:
+    """Print a table."""
+    from rich.table import Table as Drawn
+    from rich.text import Text
+
+    heads = (Text(head.replace("\n", " ")) for head in table.heads)
+    drawn = Drawn(title=Text(table.caption) if table.caption else None, title_justify="left")
+    for head in heads:
+        drawn.add_column(head)
+    for i, row in enumerate(table.cells):
+        drawn.add_row(*map(Text, row), style="bold red" if i in table.marked else None)
+    output.print(drawn)
 
 
 def numbers_of(

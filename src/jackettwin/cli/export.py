@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import messages, output, print_json
+from jackettwin.cli.console import Reply, answers, messages, say
 from jackettwin.cli.modes import support_option
 from jackettwin.decks import read_structure, write_subdyn
 from jackettwin.errors import InputError
@@ -27,9 +27,12 @@ from jackettwin.structure.cut import at_interface
     type=click.Path(dir_okay=False, path_type=Path),
     help="FILE.dat: a SubDyn input file; default out/NAME_SubDyn.dat.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def export_command(structure: str, support: str | None, out: Path | None, as_json: bool) -> None:
-    """Write what stands below the interface of STRUCTURE as a SubDyn input file."""
+@answers
+def export_command(structure: str, support: str | None, out: Path | None) -> Reply:
+    """Write the foundation of STRUCTURE as a SubDyn input file.
+
+    The foundation is what stands below the interface.
+    """
     if out is not None and out.suffix.lower() != ".dat":
         raise InputError("unknown format of a deck", field="--out", value=out.name, allowed=".dat")
     whole = read_structure(structure)
@@ -38,12 +41,12 @@ def export_command(structure: str, support: str | None, out: Path | None, as_jso
     path = out or Path("out") / f"{whole.name}_SubDyn.dat"
     files = [str(file) for file in write_subdyn(with_static_reactions(foundation, held), path)]
     warnings = _warnings(whole, held)
-    if as_json:
-        print_json({"structure": whole.name, "files": files, "warnings": warnings})
-    else:
-        output.print("wrote " + ", ".join(files))
     for warning in warnings:
         messages.print(f"warning: {warning}")
+    return Reply(
+        {"structure": whole.name, "files": files, "warnings": warnings},
+        lambda: say("wrote " + ", ".join(files)),
+    )
 
 
 def _warnings(whole: Structure, held: Support) -> list[str]:

@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 
 import click
-from rich.table import Table
 
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.console import Reply, answers, progress, say, say_all, show_table
 from jackettwin.files import atomic_folder, check_room, write_json
+from jackettwin.report import Table
 from jackettwin.report.pages.follow import build_follow_page
 from jackettwin.soil import family
 from jackettwin.study import follow
@@ -43,7 +43,7 @@ from jackettwin.twin import read_twin, twin_model
     help="Folder for followed.json (the next run's prior), report.html and modes_in_time.csv.",
 )
 @click.option("--fresh", is_flag=True, help="Identify again what an earlier run kept.")
-@click.option("--json", "as_json", is_flag=True, help="Print what followed.json holds.")
+@answers
 def follow_command(
     twin: str,
     law: str | None,
@@ -51,9 +51,8 @@ def follow_command(
     prior_file: Path | None,
     out: Path | None,
     fresh: bool,
-    as_json: bool,
-) -> None:
-    """Update the supports of TWIN day after day; say whether their stiffness drifts.
+) -> Reply:
+    """Update the supports of TWIN day after day, and find drift.
 
     What is known after one day is where the next one starts. Tomorrow, name the new records in TWIN and go on
     with --prior.
@@ -81,23 +80,22 @@ def follow_command(
             build_follow_page(followed, temporary / "report.html")
             rows = rows_of_days(twin_model(config), followed.state)
             write_modes_in_time(rows, temporary / MODES_IN_TIME)
-    if as_json:
-        print_json(document)
-        return
-    output.print(_table(followed))
-    output.print(followed.statement)
-    for warning in followed.warnings:
-        output.print(f"warning: {warning}")
-    if out is not None:
-        output.print(f"report: {out / 'report.html'}; next prior: {out / 'followed.json'}")
+
+    def show() -> None:
+        show_table(_table(followed))
+        say(followed.statement)
+        say_all(followed.warnings, "warning")
+        if out is not None:
+            say(f"report: {out / 'report.html'}; next prior: {out / 'followed.json'}")
+
+    return Reply(document, show)
 
 
 def _table(followed: Followed) -> Table:
-    names = followed.stiffness
-    table = Table("time (UTC)", "records", *(f"{name} [{followed.units[name]}]" for name in names))
+    heads = ("time (UTC)", "records", *(f"{n} [{followed.units[n]}]" for n in followed.stiffness))
+    rows = []
     for day in followed.days:
-        spans = [
-            f"{day.median[n]:.3g} ({day.interval_90[n][0]:.2g} … {day.interval_90[n][1]:.2g})" for n in names
-        ]
-        table.add_row(f"{day.time_utc:%Y-%m-%d %H:%M}", str(day.records), *spans)
-    return table
+        spans = ((day.median[n], *day.interval_90[n]) for n in followed.stiffness)
+        cells = (f"{median:.3g} ({low:.2g} … {high:.2g})" for median, low, high in spans)
+        rows.append((f"{day.time_utc:%Y-%m-%d %H:%M}", day.records, *cells))
+    return Table("", heads, rows)

@@ -10,11 +10,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from rich.table import Table
 
 from jackettwin.cli import cache
-from jackettwin.cli.console import FiniteFloat, PageFile, messages, number, output, print_json, progress
+from jackettwin.cli.console import (
+    FiniteFloat,
+    PageFile,
+    json_option,
+    messages,
+    print_json,
+    progress,
+    say,
+    say_all,
+    show_table,
+)
 from jackettwin.errors import InputError, located
+from jackettwin.report import Table, TableColumn
 
 if TYPE_CHECKING:
     from jackettwin.identification import IdentificationSettings
@@ -86,7 +96,7 @@ class _Method(click.types.StringParamType):
     "--whole", is_flag=True, help="Take records longer than an hour as one, not in ten-minute pieces."
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes for many records; default one a core.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@json_option
 def identify_command(
     records: tuple[str, ...],
     settings_file: str | None,
@@ -311,48 +321,35 @@ def _refuse_format(out: Path | None) -> None:
 
 
 def _print_one(document: Mapping[str, Any]) -> None:
-    table = Table(
-        "f [Hz]",
-        "± f [Hz]",
-        "ζ [%]",
-        "95 % interval of ζ [%]",
-        "MPC",
-        "status",
-        title=", ".join(document["records"]),
-    )
-    for m in document["modes"]:
-        table.add_row(*_numbers(m), f"{m['mpc']:.3f}", m["status"])
-    output.print(table)
+    columns = (*_NUMBERS, TableColumn("MPC", "mpc", ".3f"), TableColumn("status", "status"))
+    show_table(Table(", ".join(document["records"]), columns, document["modes"]))
     for m in document["modes"]:
         if m["status_reason"] is not None:
-            output.print(f"{m['frequency_hz']:.4f} Hz is {m['status']}: {m['status_reason']}", soft_wrap=True)
+            say(f"{m['frequency_hz']:.4f} Hz is {m['status']}: {m['status_reason']}")
     if "methods" in document:
         _print_methods(document)
     for pole in document["real_poles"]:
         low, high = pole["rate_interval_95"]
-        output.print(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
+        say(f"real pole: −{pole['rate_rad_s']:.3g} 1/s ({low:.3g} to {high:.3g} in 95 %)")
     _print_rejected(document["rejected"])
     for finding in document["quality"]["findings"]:
-        output.print(f"quality: {finding['subject'] or 'record'}: {finding['text']}")
-    for note in document["notes"]:
-        output.print(f"note: {note}")
-    for warning in document["warnings"]:
-        output.print(f"warning: {warning}")
+        say(f"quality: {finding['subject'] or 'record'}: {finding['text']}")
+    say_all(document["notes"], "note")
+    say_all(document["warnings"], "warning")
 
 
 def _print_methods(document: Mapping[str, Any]) -> None:
     methods = document["methods"]
-    table = Table("f [Hz] / ζ [%]", *methods["modes"], title="the same modes by every method, not refined")
-    for i, mode in enumerate(document["modes"]):
-        others = [found[i] for found in methods["modes"].values()]
-        table.add_row(*("–" if m is None else _both(m) for m in (mode, *others)))
-    output.print(table)
+    modes = zip(document["modes"], *methods["modes"].values(), strict=True)
+    rows = [[_both(m) for m in alike] for alike in modes]
+    heads = ("f [Hz] / ζ [%]", *methods["modes"])
+    show_table(Table("the same modes by every method, not refined", heads, rows))
     for method, why in methods["refused"].items():
-        output.print(f"{method} not applied: {why}", soft_wrap=True, markup=False)
+        say(f"{method} not applied: {why}")
 
 
-def _both(m: Mapping[str, Any]) -> str:
-    return f"{m['frequency_hz']:.4f} / {_percent(m['damping_ratio'])}"
+def _both(m: Mapping[str, Any] | None) -> str | None:
+    return None if m is None else f"{m['frequency_hz']:.4f} / {100 * m['damping_ratio']:.2f}"
 
 
 def _print_many(document: Mapping[str, Any]) -> None:
@@ -366,13 +363,12 @@ def _print_many(document: Mapping[str, Any]) -> None:
     failed = document["failed"]
     for one in failed[:_SHOWN]:
         where = "" if one["problem"].startswith(one["record"]) else f"{one['record']}: "
-        output.print(f"failed: {where}{one['problem']}", soft_wrap=True)
+        say(f"failed: {where}{one['problem']}")
     if len(failed) > _SHOWN:
-        output.print(f"failed: {len(failed) - _SHOWN} more (--json lists them)")
+        say(f"failed: {len(failed) - _SHOWN} more (--json lists them)")
     _print_rejected(document["rejected"])
     _print_findings(document["records"], n)
-    for warning in document["warnings"]:
-        output.print(f"warning: {warning}")
+    say_all(document["warnings"], "warning")
 
 
 def _print_findings(records: Iterable[Mapping[str, Any]], n: int) -> None:
@@ -386,44 +382,34 @@ def _print_findings(records: Iterable[Mapping[str, Any]], n: int) -> None:
     often = sorted(seen.items(), key=lambda item: -len(item[1]))
     for (name, _), texts in often[:_SHOWN]:
         where = f"{name or 'record'}, {len(texts)} of {n} records"
-        output.print(f"quality: {where}: {texts[0]}", soft_wrap=True, markup=False)
+        say(f"quality: {where}: {texts[0]}")
     if len(often) > _SHOWN:
-        output.print(f"quality: {len(often) - _SHOWN} more findings (--json lists them)")
+        say(f"quality: {len(often) - _SHOWN} more findings (--json lists them)")
 
 
 def _print_fused(title: str, modes: Sequence[Mapping[str, Any]], n_records: int) -> None:
-    table = Table(
-        "f [Hz]",
-        "± f [Hz]",
-        "ζ [%]",
-        "95 % interval of ζ [%]",
-        "scatter of ζ between records [%]",
-        "in records",
-        title=title,
+    columns = (
+        *_NUMBERS,
+        TableColumn("scatter of ζ between records [%]", "relative_scatter_damping_ratio", ".0f", 100.0),
+        TableColumn("in records", lambda m: f"{m['records_with_mode']} of {n_records}"),
     )
-    for m in modes:
-        scatter = f"{100 * m['relative_scatter_damping_ratio']:.0f}"
-        table.add_row(*_numbers(m), scatter, f"{m['records_with_mode']} of {n_records}")
-    output.print(table)
+    show_table(Table(title, columns, modes))
 
 
-def _numbers(m: Mapping[str, Any]) -> tuple[str, str, str, str]:
-    interval = m["damping_ratio_interval_95"]
-    return (
-        f"{m['frequency_hz']:.4f}",
-        number(m["frequency_std_hz"], 2),
-        _percent(m["damping_ratio"]),
-        _at_most(m) if interval is None else f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}",
-    )
+def _interval(m: Mapping[str, Any]) -> str:
+    """Return the 95 % interval of ζ, or what it is at most."""
+    interval, most = m["damping_ratio_interval_95"], m.get("damping_ratio_at_most")
+    if interval is None:
+        return "–" if most is None else f"at most {100 * most:.2f}"
+    return f"{100 * interval[0]:.2f} – {100 * interval[1]:.2f}"
 
 
-def _percent(ratio: float | None) -> str:
-    return "–" if ratio is None else f"{100 * ratio:.2f}"
-
-
-def _at_most(m: Mapping[str, Any]) -> str:
-    most = m.get("damping_ratio_at_most")
-    return "–" if most is None else f"at most {100 * most:.2f}"
+_NUMBERS = (
+    TableColumn("f [Hz]", "frequency_hz", ".4f"),
+    TableColumn("± f [Hz]", "frequency_std_hz", ".2g"),
+    TableColumn("ζ [%]", "damping_ratio", ".2f", 100.0),
+    TableColumn("95 % interval of ζ [%]", _interval),
+)
 
 
 def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
@@ -434,7 +420,7 @@ def _print_rejected(rejected: Iterable[Mapping[str, Any]]) -> None:
     for group in sorted(alike.values(), key=len, reverse=True):
         reasons, f = zip(*group, strict=True)
         where = f"{f[0]:.4g} Hz" if len(f) == 1 else f"{min(f):.3g} to {max(f):.3g} Hz"
-        output.print(f"rejected: {len(f)} × {_spanned(reasons)} ({where})")
+        say(f"rejected: {len(f)} × {_spanned(reasons)} ({where})")
 
 
 def _spanned(texts: Sequence[str]) -> str:

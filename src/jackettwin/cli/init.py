@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import FiniteFloat, messages, output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, progress, say, say_all
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_path, check_room
@@ -52,7 +52,7 @@ _QUESTIONS = {
 )
 @click.option("--timezone", "zone", help="Of clocks that do not say theirs, e.g. Europe/Berlin or +02:00.")
 @click.option("--force", is_flag=True, help="Write over an existing file.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 def init_command(
     structure: str,
     records: tuple[str, ...],
@@ -62,12 +62,11 @@ def init_command(
     sample_rate: float | None,
     zone: str | None,
     force: bool,
-    as_json: bool,
-) -> None:
-    """Write a commented twin file for STRUCTURE and RECORDS, check it, and say what is missing.
+) -> Reply:
+    """Write a commented twin file for STRUCTURE and RECORDS.
 
-    Sensors are placed by the names of the channels. What the files do not say of unit, clock and rate is
-    taken from the options, else asked once.
+    It is checked, and what is missing is said.     Sensors are placed by the names of the channels. What
+    the files do not say of unit, clock and rate is taken from the options, else asked once.
     """
     if out.exists() and not force:
         raise InputError("is there already", file=out, remedy="choose another --out, or --force")
@@ -100,10 +99,7 @@ def init_command(
             temporary.write_text(draft.text, encoding="utf-8")
         if draft.complete:
             read_twin(out)
-    if as_json:
-        print_json(_document(draft, out, [str(file) for file in files]))
-    else:
-        _print(draft, out)
+    return Reply(_document(draft, out, [str(file) for file in files]), lambda: _print(draft, out))
 
 
 def _read(file: Path, unsaid: Unsaid) -> tuple[Record, Unsaid]:
@@ -144,13 +140,12 @@ def _print(draft: Draft, out: Path) -> None:
         where = s.node if s.node is not None else "?" if s.height_m is None else f"{s.height_m:g} m"
         direction = ", ".join(f"{v:g}" for v in s.direction)
         note = f"lacks {place.lacks}" if place.lacks else place.why or "as the record says"
-        output.print(f"{s.channel}: {where}, [{direction}]: {note}", markup=False)
-    for sentence in draft.missing[sum(bool(place.lacks) for place in draft.places) :]:
-        output.print(f"missing: {sentence}", markup=False)
-    messages.print(f"wrote {out}")
+        say(f"{s.channel}: {where}, [{direction}]: {note}")
     without = sum(bool(place.lacks) for place in draft.places)
+    say_all(draft.missing[without:], "missing")
+    messages.print(f"wrote {out}")
     first = f"complete the {without} sensors commented out in {out}, then " if without else ""
-    output.print(f"next: {first}jackettwin run {out}", markup=False)
+    say(f"next: {first}jackettwin run {out}")
 
 
 def _document(draft: Draft, out: Path, records: Sequence[str]) -> dict[str, object]:

@@ -6,32 +6,32 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import messages, output, print_json
-from jackettwin.cli.store_options import opened, store_options
+from jackettwin.cli.console import BAD_INPUT, json_option, messages, print_json, say
+from jackettwin.cli.store_options import StorePlace, store_options
 
 
 @click.command("intake")
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path, exists=True))
 @click.option("--asset", required=True, help="Whose records these are.")
 @click.option("--watch", is_flag=True, help="Go on taking what appears, until Ctrl-C.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@json_option
 @store_options
-def intake_command(
-    paths: tuple[Path, ...], asset: str, watch: bool, as_json: bool, store: Path, database: str | None
-) -> None:
-    """Take records from PATHS, files or folders, into a store; a server observes them."""
-    engine = opened(store, database)
+def intake_command(paths: tuple[Path, ...], asset: str, watch: bool, as_json: bool, at: StorePlace) -> None:
+    """Take records from PATHS, files or folders, into a store.
+
+    A server that serves the store observes them.
+    """
+    engine = at.open()
     from jackettwin.service import Accepted, record_files, take_here, watch_folders
 
     def take(path: Path) -> Accepted:
-        took = take_here(engine, store, asset, path)
+        took = take_here(engine, at.folder, asset, path)
         if took.problem is not None:
-            messages.print(
-                f"{path.name}: refused: {took.problem['detail']}; {took.problem.get('remedy') or ''}"
-            )
+            remedy = took.problem.get("remedy") or ""
+            messages.print(f"{path.name}: refused: {took.problem['detail']}; {remedy}")
         elif not as_json:
             several = f" and {took.records - 1} before it" if took.records > 1 else ""
-            output.print(f"{path.name}: {took.record_id}{several} {'taken' if took.new else 'known already'}")
+            say(f"{path.name}: {took.record_id}{several} {'taken' if took.new else 'known already'}")
         return took
 
     if watch:
@@ -43,7 +43,7 @@ def intake_command(
         print_json({"asset": asset, "files": [{"file": file.name, **vars(one)} for file, one in took]})
     if not took:
         messages.print("there is no file to take")
-    refused = sum(t.problem is not None for _, t in took)
+    refused = sum(one.problem is not None for _, one in took)
     if refused:
         messages.print(f"{refused} of {len(took)} files were refused")
-        raise SystemExit(2)
+        raise SystemExit(BAD_INPUT)

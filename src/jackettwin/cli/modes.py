@@ -8,12 +8,11 @@ from typing import Any
 
 import click
 import numpy as np
-from rich.markup import escape
-from rich.table import Table
 
-from jackettwin.cli.console import fixed, numbers_of, output, print_json
+from jackettwin.cli.console import Reply, answers, numbers_of, say, say_all, show_table
 from jackettwin.decks import read_flexible_rotor, read_structure
 from jackettwin.errors import located
+from jackettwin.report import Table, TableColumn
 from jackettwin.response import (
     DampedModes,
     System,
@@ -57,7 +56,7 @@ _OVERDAMPED = 0.3
     metavar="ROTOR[,PITCH]",
     help="Let the blades bend: iea15, a windIO or an ElastoDyn file; pitch in degrees, default 90.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 def modes_command(
     structure: str,
     support: str | None,
@@ -68,9 +67,11 @@ def modes_command(
     subdivide: int | None,
     rayleigh: str | None,
     blades: str | None,
-    as_json: bool,
-) -> None:
-    """Undamped and damped modes of STRUCTURE: a shipped name, a YAML file, or a SubDyn .dat file."""
+) -> Reply:
+    """Compute undamped and damped modes of STRUCTURE.
+
+    STRUCTURE is a shipped name, a YAML file, or a SubDyn .dat file.
+    """
     chosen = blades_option(blades, read_structure(structure))
     assembly = assemble(
         chosen, beam_theory=beam, rotary_inertia=rotary_inertia, subdivide=subdivide, gravity=gravity
@@ -81,10 +82,7 @@ def modes_command(
     own = f"the structure's own: {described(held)}"
     document = {**_document(assembly, system, number), "support": own if support is None else support}
     document["warnings"] = [*document["warnings"], *held.notes]
-    if as_json:
-        print_json(document)
-    else:
-        _print(document)
+    return Reply(document, lambda: _show(document))
 
 
 def blades_option(text: str | None, structure: Structure) -> Structure:
@@ -193,41 +191,44 @@ def _numbers(assembly: Assembly, damped: DampedModes, number: int) -> dict[int, 
     return {int(column): mode + 1 for mode, column in enumerate(successor) if column >= 0}
 
 
-def _print(document: dict[str, Any]) -> None:
+def _show(document: dict[str, Any]) -> None:
     x, y, z = document["center_of_mass_m"]
-    output.print(
+    say(
         f"{document['structure']}: {document['mass_kg'] / 1e3:,.1f} t, "
         f"centre of mass ({x:.2f}, {y:.2f}, {z:.2f}) m in the structure's frame, "
         f"{document['n_dof']} degrees of freedom"
     )
     carried = document["support_mass_kg"]
     beside = f", which brings {carried / 1e3:,.1f} t along" if carried else ""
-    output.print(f"support: {escape(document['support'])}{beside}")
-    for warning in document["warnings"]:
-        output.print(f"warning: {escape(warning)}")
-    table = Table("mode", "label", "f [Hz]", "ζ [%]", "undamped f [Hz]", "difference [%]")
-    for row in document["modes"]:
-        f, f0 = row["frequency_hz"], row["undamped_frequency_hz"]
-        apart = None if f0 is None else 100.0 * (f0 / f - 1.0)
-        table.add_row(
-            str(row["mode"] or "–"),
-            row["label"],
-            f"{f:.4f}",
-            fixed(100 * row["damping_ratio"], 3),
-            "–" if f0 is None else f"{f0:.4f}",
-            "–" if apart is None else fixed(apart, 3),
-        )
-    output.print(table)
+    say(f"support: {document['support']}{beside}")
+    say_all(document["warnings"], "warning")
+    show_table(Table("", _COLUMNS, document["modes"]))
     if document["free_motions"]:
-        output.print(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
+        say(f"{document['free_motions']} free motions: the structure floats, or part of it swings")
     if document["overdamped_poles"]:
-        output.print(
+        say(
             f"{len(document['overdamped_poles'])} overdamped motions of the supports, e.g. "
             f"{document['overdamped_poles'][0]['frequency_hz']:.4f} Hz"
         )
     if len(document["real_poles_rad_s"]):
         slow = np.abs(document["real_poles_rad_s"])
-        output.print(
+        say(
             f"{slow.size} real poles (relaxation) from {slow.min():.3g} to {slow.max():.3g} rad/s; "
             f"slowest time constant {1.0 / slow.min():.3g} s ({slow.min() / (2 * pi):.3g} Hz)"
         )
+
+
+def _difference(row: dict[str, Any]) -> float | None:
+    """Return by how many per cent a mode without damping is faster."""
+    undamped = row["undamped_frequency_hz"]
+    return None if undamped is None else float(100.0 * (undamped / row["frequency_hz"] - 1.0))
+
+
+_COLUMNS = (
+    TableColumn("mode", "mode"),
+    TableColumn("label", "label"),
+    TableColumn("f [Hz]", "frequency_hz", ".4f"),
+    TableColumn("ζ [%]", "damping_ratio", ".3f", 100.0),
+    TableColumn("undamped f [Hz]", "undamped_frequency_hz", ".4f"),
+    TableColumn("difference [%]", _difference, ".3f"),
+)

@@ -1,4 +1,4 @@
-"""Progress in plain lines, where there is no terminal to draw a bar on."""
+"""Progress in plain lines, where there is no terminal for a bar of Rich, which prints nothing there."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+from jackettwin.progress import Told
 
 EVERY_S = 1.4
 """Time between two lines: a thousand records are not a thousand lines, and a line that a busy machine delays
@@ -26,39 +28,33 @@ class PlainProgress:
     def __init__(self, total: int, say: Callable[[str], None]) -> None:
         self._total, self._say = total, say
         self._lock = threading.Lock()
-        self._step, self._what, self._within = 0, "", ""
-        self._begun = self._said = -float("inf")
+        self._step, self._what = 0, ""
+        self._started = self._said = -float("inf")
 
     def announce(self, what: str) -> None:
         """Begin the next step."""
         with self._lock:
-            self._step, self._what, self._within = self._step + 1, what, ""
-            self._begun = time.monotonic()
-            self._line()
+            self._step, self._started = self._step + 1, time.monotonic()
+        self.within(what)
 
     def within(self, what: str) -> None:
         """Say how far the present step is."""
-        with self._lock:
-            self._within = what
-            self._line()
+        self._what = what
+        self.remind()
 
     def remind(self) -> None:
         """Say that the present step goes on, if nothing was said for a while."""
         with self._lock:
-            if self._what:
-                self._line()
-
-    def _line(self) -> None:
-        now = time.monotonic()
-        if now - self._said < EVERY_S:
-            return
-        self._said, lasts = now, now - self._begun
-        going = f", {lasts:.0f} s" if lasts >= 1.0 else ""
-        self._say(f"{min(self._step, self._total)}/{self._total} {self._within or self._what}{going}")
+            now = time.monotonic()
+            if not self._what or now - self._said < EVERY_S:
+                return
+            self._said, lasts = now, now - self._started
+            going = f", {lasts:.0f} s" if lasts >= 1.0 else ""
+            self._say(f"{min(self._step, self._total)}/{self._total} {self._what}{going}")
 
 
 @contextmanager
-def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[PlainProgress]:
+def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[Told]:
     """Yield what tells progress in lines, with a thread that breaks long silences."""
     progress, done = PlainProgress(total, say), threading.Event()
 
@@ -69,7 +65,7 @@ def plain_progress(total: int, say: Callable[[str], None]) -> Iterator[PlainProg
     thread = threading.Thread(target=remind, daemon=True)
     thread.start()
     try:
-        yield progress
+        yield Told(progress.announce, progress.within)
     finally:
         done.set()
         thread.join()

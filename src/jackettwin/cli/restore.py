@@ -7,20 +7,22 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import messages, output, print_json
-from jackettwin.cli.store_options import database_option, needs_service, opened
+from jackettwin.cli.console import Reply, answers, messages, say
+from jackettwin.cli.store_options import StorePlace, database_option
 
 
 @click.command("restore")
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @click.argument("store", type=click.Path(path_type=Path, file_okay=False))
 @database_option
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def restore_command(file: Path, store: Path, database: str | None, as_json: bool) -> None:
-    """Fill the empty STORE from a backup FILE; whole or not at all."""
-    needs_service()
+@answers
+def restore_command(file: Path, store: Path, database: str | None) -> Reply:
+    """Fill the empty STORE from a backup FILE.
+
+    It is filled whole or not at all.
+    """
     made = not store.exists()
-    engine = opened(store, database, make=True)
+    engine = StorePlace(store, database).open(make=True)
     from jackettwin.store.backup import restore
 
     messages.print("reading tables and samples …")
@@ -31,7 +33,7 @@ def restore_command(file: Path, store: Path, database: str | None, as_json: bool
         if made:
             shutil.rmtree(store)
         raise
-    if as_json:
-        print_json({"store": str(store), "tables": counts})
-    else:
-        output.print(f"{store}: {counts['records']} records, {counts['observations']} observations")
+    return Reply(
+        {"store": str(store), "tables": counts},
+        lambda: say(f"{store}: {counts['records']} records, {counts['observations']} observations"),
+    )

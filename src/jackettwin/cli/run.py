@@ -8,10 +8,10 @@ from pathlib import Path
 
 import click
 
-from jackettwin.answers import answer
+from jackettwin.answers import answer as answer_run
 from jackettwin.cli.answers import answers_document, print_answers
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.console import Reply, answers, progress, say
 from jackettwin.cli.provenance import provenance
 from jackettwin.cli.update import DEFAULT_TWIN, print_updates
 from jackettwin.files import atomic_folder, check_room, write_json
@@ -37,7 +37,7 @@ SIMULATED_TWIN = "simulated"
 )
 @click.option("--compare", is_flag=True, help="Identify the first record by every method, side by side.")
 @click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@answers
 def run_command(
     twin: str | None,
     out: Path | None,
@@ -46,15 +46,14 @@ def run_command(
     all_laws: bool,
     compare: bool,
     fresh: bool,
-    as_json: bool,
-) -> None:
-    """Go from records to modes to updated supports: report.html, result.json, figures.
+) -> Reply:
+    """Go from records to modes to updated supports, and report it.
 
-    TWIN is a twin file or the name of a shipped twin: openfast_pile (the default: the reference jacket with
-    records that OpenFAST produced) or thesis_table_6_1. With --simulate the records come from
-    `jackettwin simulate-set`, by default those of a known asset; the report compares with its truth.
-    The law to recommend gets a posterior (the twin's first, unless another is ten times as probable), the
-    others are fitted; --all-laws gives each one.
+    The folder gets report.html, result.json and figures.     TWIN is a twin file or the name of a shipped
+    twin: openfast_pile (the default: the reference jacket with records that OpenFAST produced) or
+    thesis_table_6_1. With --simulate the records come from `jackettwin simulate-set`, by default those of
+    a known asset; the report compares with its truth. The law to recommend gets a posterior (the twin's
+    first, unless another is ten times as probable), the others are fitted; --all-laws gives each one.
     """
     config = read_twin(twin or (SIMULATED_TWIN if simulate else DEFAULT_TWIN), records_follow=simulate)
     folder = out or Path("out") / config.name
@@ -71,24 +70,27 @@ def run_command(
             keep=keeping(fresh=fresh),
         )
         step("write the report")
-        answers = answer(result)
+        found = answer_run(result)
         made = provenance(config)
-        document = run_document(result, report=str(folder / "report.html")) | answers_document(answers)
+        document = run_document(result, report=str(folder / "report.html")) | answers_document(found)
         document["provenance"] = dict(made)
         with atomic_folder(folder) as temporary:
-            build_report(result, temporary, answers=answers, provenance=made)
+            build_report(result, temporary, answers=found, provenance=made)
             write_json(document, temporary / "result.json")
             rows = rows_of_records(result.observations)
             write_modes_in_time(rows, temporary / MODES_IN_TIME)
-    if as_json:
-        print_json(document)
-        return
-    print_answers(answers)
-    print_updates(result, only=answers.law)
-    for p in true_parameters(result):
-        verdict = {None: "no interval", True: "inside its 90 % interval", False: "outside its 90 % interval"}
-        output.print(f"  true {p.name} = {p.true:.4g}, updated {p.value:.4g}: {verdict[p.covered]}")
-    output.print(f"report: {folder / 'report.html'}")
+
+    def show() -> None:
+        print_answers(found)
+        print_updates(result, only=found.law)
+        for p in true_parameters(result):
+            say(f"  true {p.name} = {p.true:.4g}, updated {p.value:.4g}: {_COVERED[p.covered]}")
+        say(f"report: {folder / 'report.html'}")
+
+    return Reply(document, show)
+
+
+_COVERED = {None: "no interval", True: "inside its 90 % interval", False: "outside its 90 % interval"}
 
 
 def _simulated(set_file: str, folder: Path) -> tuple[Path, ...]:

@@ -33,9 +33,9 @@ from jackettwin.cli.store_options import needs_service
 @click.option("--demo", is_flag=True, help="Let a demonstration asset's records arrive in fast motion.")
 @click.option("--json", "as_json", is_flag=True, help="Print the address as JSON when it can be asked.")
 def serve_command(store: Path, demo: bool, as_json: bool, **options: Any) -> None:
-    """Serve the living twin in STORE: records in, answers out; STORE is made if it is not there.
+    """Serve the living twin in STORE: records in, answers out.
 
-    Open the address that is printed. Nothing else has to be set up.
+    STORE is made if it is not there. Open the address that is printed. Nothing else has to be set up.
     """
     needs_service()
     scheduler = options["scheduler"]

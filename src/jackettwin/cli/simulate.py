@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.table import Table
 
-from jackettwin.cli.console import output, print_json, working
+from jackettwin.arrays import FloatArray
+from jackettwin.cli.console import Reply, answers, say, say_all, show_table, working
 from jackettwin.errors import InputError
 from jackettwin.records import write_record
+from jackettwin.report import Table, TableColumn, cell
 from jackettwin.simulate import Simulation, read_scenario, rotor_notes, simulate
 from jackettwin.structure import assemble, check
 from jackettwin.updating import beyond_literature
@@ -25,9 +26,12 @@ _SHOWN = 12
 @click.command("simulate")
 @click.argument("scenario", default=DEFAULT_SCENARIO)
 @click.option("--out", help="The record, NAME.json beside it; default out/NAME.parquet.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
-    """Simulate SCENARIO, a shipped name or a YAML file, and write its record."""
+@answers
+def simulate_command(scenario: str, out: str | None) -> Reply:
+    """Simulate SCENARIO and write its record.
+
+    SCENARIO is a shipped name or a YAML file.
+    """
     chosen = read_scenario(scenario)
     path = _record_path(out or f"out/{chosen.name}")
     with working(f"simulate {chosen.name}"):
@@ -41,12 +45,12 @@ def simulate_command(scenario: str, out: str | None, as_json: bool) -> None:
         *odd,
         *_unusual_shares(done, loops=asset.foundation is not None),
     ]
-    if as_json:
-        print_json({**done.document(), "record": str(path), "notes": notes})
-    else:
-        _print(done, path)
-        for note in notes:
-            output.print(f"note: {note}")
+
+    def show() -> None:
+        _show(done, path)
+        say_all(notes, "note")
+
+    return Reply({**done.document(), "record": str(path), "notes": notes}, show)
 
 
 def _unusual_shares(done: Simulation, *, loops: bool) -> list[str]:
@@ -75,42 +79,45 @@ def _record_path(out: str) -> Path:
     return path if path.suffix else path.with_suffix(".parquet")
 
 
-def _print(done: Simulation, path: Path) -> None:
+def _show(done: Simulation, path: Path) -> None:
     speed = done.seconds_simulated / done.wall_s
-    output.print(
+    say(
         f"{path}: {done.seconds_simulated:g} s simulated in {done.wall_s:.2f} s ({speed:.0f} times real time)"
     )
-    table = Table("channel", "unit", "rms", "largest")
-    for channel, row in zip(done.record.channels, done.record.data, strict=True):
-        known = row[row == row]
-        rms = float((known**2).mean() ** 0.5)
-        table.add_row(channel.name, channel.unit, f"{rms:.4g}", f"{abs(known).max():.4g}")
-    output.print(table)
-    truth = Table("true mode", "f [Hz]", "ζ [%]")
+    channels = zip(done.record.channels, done.record.data, strict=True)
+    rows = [(c.name, c.unit, *(cell(v, ".4g") for v in _sizes(y))) for c, y in channels]
+    show_table(Table("", ("channel", "unit", "rms", "largest"), rows))
     modes = done.record.metadata["true_modes"]
-    for mode in modes[:_SHOWN]:
-        truth.add_row(mode["label"], f"{mode['frequency_hz']:.4f}", f"{100.0 * mode['damping_ratio']:.2f}")
-    output.print(truth)
+    show_table(Table("", _MODES, modes[:_SHOWN]))
     if len(modes) > _SHOWN:
-        last = modes[-1]["frequency_hz"]
-        output.print(f"and {len(modes) - _SHOWN} more up to {last:.2f} Hz, in the record's JSON")
-    _print_levels(done)
-
-
-def _print_levels(done: Simulation) -> None:
-    found = done.record.metadata["levels"]
-    if not found:
-        return
-    table = Table(
-        "band", "direction", r"rms here \[cm/s²]", "OpenFAST, nine records of ten", title_justify="left"
-    )
-    table.title = "acceleration at the tower top, in wind of the same class"
-    for level in found:
-        low, high = level["limits_hz"]
-        there = " to ".join(f"{100.0 * value:.2f}" for value in level["openfast_m_s2"])
-        band = f"{level['band']}, {low:.2f} to {high:.2f} Hz"
-        table.add_row(band, level["direction"], f"{100.0 * level['rms_m_s2']:.2f}", there)
-    output.print(table)
-    beyond = done.record.metadata["levels_beyond_comparison"]
+        say(f"and {len(modes) - _SHOWN} more up to {modes[-1]['frequency_hz']:.2f} Hz, in the record's JSON")
+    levels = done.record.metadata["levels"]
+    beyond = done.record.metadata["levels_beyond_comparison"] if levels else ()
+    if levels:
+        show_table(Table("acceleration at the tower top, in wind of the same class", _LEVELS, levels))
     if beyond:
-        output.print(f"OpenFAST's levels were not compared in such a case: {'; '.join(beyond)}")
+        say(f"OpenFAST's levels were not compared in such a case: {'; '.join(beyond)}")
+
+
+def _sizes(y: FloatArray) -> tuple[float, float]:
+    """Return root mean square and largest magnitude of what is known of a channel."""
+    known = y[y == y]
+    return float((known**2).mean() ** 0.5), float(abs(known).max())
+
+
+_MODES = (
+    TableColumn("true mode", "label"),
+    TableColumn("f [Hz]", "frequency_hz", ".4f"),
+    TableColumn("ζ [%]", "damping_ratio", ".2f", 100.0),
+)
+_LEVELS = (
+    TableColumn(
+        "band", lambda level: f"{level['band']}, {' to '.join(f'{f:.2f}' for f in level['limits_hz'])} Hz"
+    ),
+    TableColumn("direction", "direction"),
+    TableColumn("rms here [cm/s²]", "rms_m_s2", ".2f", 100.0),
+    TableColumn(
+        "OpenFAST, nine records of ten",
+        lambda level: " to ".join(f"{100.0 * value:.2f}" for value in level["openfast_m_s2"]),
+    ),
+)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.console import Reply, answers, progress, say
 from jackettwin.simulate import pending_cases, read_set, run_set
 
 
@@ -16,17 +16,16 @@ from jackettwin.simulate import pending_cases, read_set, run_set
     "--out", required=True, type=click.Path(file_okay=False, path_type=Path), help="Folder to write."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes; default one a core.")
-@click.option("--json", "as_json", is_flag=True, help="Print the manifest as JSON.")
-def simulate_set_command(set_file: str, out: Path, workers: int | None, as_json: bool) -> None:
-    """Simulate every case of SET, a shipped name (dlc64) or a YAML file; finished cases are kept.
+@answers
+def simulate_set_command(set_file: str, out: Path, workers: int | None) -> Reply:
+    """Simulate every case of SET on all cores.
 
-    Writes a record a case, and manifest.json with conditions and true modes.
+    SET is a shipped name (dlc64) or a YAML file; cases that are finished already are kept. Writes a
+    record a case, and manifest.json with conditions and true modes.
     """
     chosen = read_set(set_file)
     pending = pending_cases(chosen, out)
     with progress(len(pending), f"{len(pending)} of {len(chosen.cases)} cases") as step:
         manifest = run_set(chosen, out, workers=workers, step=step)
-    if as_json:
-        print_json(manifest)
-    else:
-        output.print(f"{out}: {len(manifest['cases'])} records, {len(pending)} of them new; manifest.json")
+    said = f"{out}: {len(manifest['cases'])} records, {len(pending)} of them new; manifest.json"
+    return Reply(manifest, lambda: say(said))

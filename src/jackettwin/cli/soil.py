@@ -8,9 +8,19 @@ from typing import Any
 
 import click
 import numpy as np
-from rich.table import Table
 
-from jackettwin.cli.console import FiniteFloat, PageFile, messages, output, plain, print_json, working
+from jackettwin.cli.console import (
+    FiniteFloat,
+    PageFile,
+    Reply,
+    answers,
+    messages,
+    plain,
+    say,
+    show_table,
+    working,
+)
+from jackettwin.report import Table
 from jackettwin.soil import Curve, Foundation, read_foundation
 from jackettwin.soil.piles.capacity import FAILED_AT, Pushover, axial_capacity, pushover
 from jackettwin.soil.piles.impedance import head_impedance
@@ -42,11 +52,12 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
 )
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
 @click.option("--out", type=PageFile(), help="The page; default out/NAME_soil.html.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def soil_command(
-    foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None, as_json: bool
-) -> None:
-    """Reaction curves, head stiffness, capacity and pushover of a pile of FOUNDATION, and a page of them."""
+@answers
+def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None) -> Reply:
+    """Compute curves, stiffness, capacity of a pile of FOUNDATION.
+
+    They are the reaction curves, the head's stiffness, capacity and a pushover; a page shows them.
+    """
     ground = read_foundation(foundation)
     pushed = None
     with working(f"piles of {Path(foundation).stem}"):
@@ -58,12 +69,9 @@ def soil_command(
 
         path = write_soil_page(document, out or Path("out") / f"{document['foundation']}_soil.html")
     document["page"] = str(path)
-    if as_json:
-        print_json(document)
-    else:
-        _print(document)
     for note in document["warnings"]:
         messages.print(f"warning: {plain(note)}")
+    return Reply(document, lambda: _show(document))
 
 
 def _document(
@@ -137,31 +145,29 @@ def _pushover(pushed: Pushover, arm_m: float) -> dict[str, Any]:
     }
 
 
-def _print(document: dict[str, Any]) -> None:
+def _show(document: dict[str, Any]) -> None:
     pile = document["pile"]
-    output.print(
+    say(
         f"{document['foundation']}: one pile {pile['length_m']:g} m long, {pile['outer_diameter_m']:g} m × "
         f"{1e3 * pile['thickness_m']:g} mm"
     )
     names = ("x", "y", "z", "rx", "ry", "rz")
+    rows = [
+        (f"{part} {name}", *(f"{v:.3g}" for v in row))
+        for part, key in (("K", "head_stiffness"), ("loss", "head_loss"))
+        for name, row in zip(names, np.asarray(document[key]), strict=True)
+    ]
     title = f"head at {document['frequency_hz']:g} Hz [N/m, N, N·m/rad]"
-    table = Table("", *names, title=title, title_justify="left")
-    for part, key in (("K", "head_stiffness"), ("loss", "head_loss")):
-        for name, row in zip(names, np.asarray(document[key]), strict=True):
-            table.add_row(f"{part} {name}", *(f"{v:.3g}" for v in row))
-    output.print(table)
+    show_table(Table(title, ("", *names), rows))
     capacity, pushed = document["capacity"], document["pushover"]
     if capacity is not None:
-        output.print(
+        say(
             f"capacity [MN]: compression {1e-6 * capacity['axial_compression_n']:.1f} (shaft "
             f"{1e-6 * capacity['shaft_n']:.1f}, tip {1e-6 * capacity['tip_n']:.1f}), tension "
             f"{1e-6 * capacity['axial_tension_n']:.1f}, lateral {1e-6 * capacity['lateral_n']:.2f} at "
             f"{capacity['lateral_displacement_limit_m']:.2f} m"
         )
-        from jackettwin.report.pages.soil import PUSHED, pushed_rows
+        from jackettwin.report.pages.soil import pushover_table
 
-        table = Table(*map(plain, PUSHED), title="pushover", title_justify="left")
-        for row in pushed_rows(pushed):
-            table.add_row(*row)
-        output.print(table)
-    output.print(f"wrote {document['page']}")
+        show_table(pushover_table(pushed, "pushover"))
+    say(f"wrote {document['page']}")

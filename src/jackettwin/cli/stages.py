@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import click
-from rich.table import Table
 
-from jackettwin.cli.console import number as show, output, print_json
+from jackettwin.cli.console import Reply, answers, say, show_table
 from jackettwin.decks import read_structure
+from jackettwin.report import Table, TableColumn
 from jackettwin.updating import Stage, stages
 from jackettwin.verify import published
 
@@ -26,9 +26,12 @@ _PUBLISHED = {
 @click.option("--against", help="thesis, rosap (tables 5.2 and 5.4), or another structure.")
 @click.option("--number", default=5, show_default=True, type=click.IntRange(1, 100), help="How many modes.")
 @click.option("--gravity", is_flag=True, help="Add the geometric (P-Δ) stiffness of the self-weight.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def stages_command(structure: str, against: str | None, number: int, gravity: bool, as_json: bool) -> None:
-    """Frequencies of STRUCTURE on pinned feet as its parts are added: jacket, transition piece, tower."""
+@answers
+def stages_command(structure: str, against: str | None, number: int, gravity: bool) -> Reply:
+    """Compute frequencies of STRUCTURE as its parts are added.
+
+    It stands on pinned feet; the jacket comes first, then the transition piece, then the tower.
+    """
     own = stages(read_structure(structure), number, gravity=gravity)
     reference: Reference = {}
     if against is not None:
@@ -45,10 +48,7 @@ def stages_command(structure: str, against: str | None, number: int, gravity: bo
         "stages": [_row(s, reference) for s in own],
         "not_compared": alone,
     }
-    if as_json:
-        print_json(document)
-    else:
-        _print(document)
+    return Reply(document, lambda: _show(document))
 
 
 def _paired(own: tuple[Stage, ...], other: tuple[Stage, ...]) -> Reference:
@@ -79,26 +79,18 @@ def _row(stage: Stage, reference: Reference) -> dict[str, Any]:
     return {"name": stage.name, "parts": stage.parts, "mass_kg": stage.mass_kg, "modes": modes}
 
 
-def _print(document: dict[str, Any]) -> None:
+def _show(document: dict[str, Any]) -> None:
+    columns = (TableColumn("mode", "mode"), TableColumn("f [Hz]", "frequency_hz", ".4f"))
+    compared = (
+        TableColumn(f"{document['against']} f [Hz]", "reference_frequency_hz", ".4g"),
+        TableColumn("difference [%]", "relative_error", ".3g", 100.0),
+    )
     for stage in document["stages"]:
         title = f"{stage['name'].replace('_', ' ')}: {stage['mass_kg'] / 1e3:,.0f} t"
-        table = Table("mode", "f [Hz]", title=title, title_justify="left")
-        compared = any(row["reference_frequency_hz"] is not None for row in stage["modes"])
-        if compared:
-            table.add_column(f"{document['against']} f [Hz]")
-            table.add_column("difference [%]")
-        for row in stage["modes"]:
-            cells = [str(row["mode"]), f"{row['frequency_hz']:.4f}"]
-            if compared:
-                error = row["relative_error"]
-                cells += [
-                    show(row["reference_frequency_hz"]),
-                    show(None if error is None else 100 * error, 3),
-                ]
-            table.add_row(*cells)
-        output.print(table)
+        known = any(row["reference_frequency_hz"] is not None for row in stage["modes"])
+        show_table(Table(title, (*columns, *(compared if known else ())), stage["modes"]))
     if document["not_compared"]:
-        output.print(
+        say(
             f"not compared with {document['against']}: {', '.join(document['not_compared'])}; "
-            "it has no stage of the same parts (SubDyn decks name none: the whole is all there is)"
+            "it has no stage of the same parts (SubDyn decks name none: only the whole can be compared)"
         )

@@ -7,13 +7,13 @@ from typing import Any
 
 import click
 import numpy as np
-from rich.table import Table
 
 from jackettwin.arrays import FloatArray
-from jackettwin.cli.console import FiniteFloat, messages, numbers_of, output, print_json
+from jackettwin.cli.console import FiniteFloat, Reply, answers, messages, numbers_of, say, show_table
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.decks import DeckDamping, read_deck_damping, read_structure
 from jackettwin.errors import InputError
+from jackettwin.report import Table, TableColumn
 from jackettwin.response import (
     DEFAULT,
     INTERFACE,
@@ -96,7 +96,7 @@ from jackettwin.structure.model import Vector
     show_default=True,
     help="Version of OpenFAST that is to read FILE.dat.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 def superelement_command(
     structure: str,
     support: str | None,
@@ -111,17 +111,16 @@ def superelement_command(
     subdivide: int | None,
     out: Path | None,
     layout: Layout,
-    as_json: bool,
-) -> None:
-    """Reduce what stands below the interface of STRUCTURE to 6 + N coordinates; say how right that is.
+) -> Reply:
+    """Reduce the foundation of STRUCTURE to 6 + N coordinates.
 
-    STRUCTURE may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
+    The foundation is what stands below the interface; the error of the reduction is printed. STRUCTURE
+    may be a superelement already (.npz, ExtPtfm's .dat): it is read, shown and written again.
     """
     out = out or Path("out") / f"{Path(structure).stem}.npz"
     require_format(out)
     if is_superelement(Path(structure)):
-        _report(_rewritten(Path(structure), out, layout), as_json)
-        return
+        return _answer(_rewritten(Path(structure), out, layout))
     whole = read_structure(structure)
     foundation, rest = at_interface(whole)
     point = _point(reference)
@@ -151,7 +150,7 @@ def superelement_command(
         band,
     )
     document |= {"structure": whole.name, "files": [str(path) for path in files]}
-    _report(document, as_json)
+    return _answer(document)
 
 
 def _deck_damping(structure: str) -> DeckDamping:
@@ -176,13 +175,10 @@ def _rewritten(source: Path, out: Path, layout: Layout) -> dict[str, Any]:
     }
 
 
-def _report(document: dict[str, Any], as_json: bool) -> None:
-    if as_json:
-        print_json(document)
-    else:
-        _print(document)
+def _answer(document: dict[str, Any]) -> Reply:
     for warning in document["warnings"]:
         messages.print(f"warning: {warning}")
+    return Reply(document, lambda: _show(document))
 
 
 def _point(text: str | None) -> Vector | None:
@@ -253,9 +249,9 @@ def _warnings(error: ReducedModes, step_s: float | None) -> list[str]:
     return found
 
 
-def _print(document: dict[str, Any]) -> None:
+def _show(document: dict[str, Any]) -> None:
     x, y, z = document["reference_m"]
-    output.print(
+    say(
         f"{document['structure']}: {document['n']} coordinates ({document['damped_shapes']} damped shapes), "
         f"reference point ({x:.3f}, {y:.3f}, {z:.3f}) m"
     )
@@ -263,32 +259,16 @@ def _print(document: dict[str, Any]) -> None:
         ("guyan_frequency_hz", "interface alone"),
         ("fixed_interface_frequency_hz", "interface held"),
     ):
-        output.print(f"{name} [Hz]: " + " ".join(f"{f:.4f}" for f in document[key][:6]))
+        say(f"{name} [Hz]: " + " ".join(f"{f:.4f}" for f in document[key][:6]))
     if document["modes"]:
-        output.print(_table(document))
-    output.print("wrote " + ", ".join(document["files"]))
+        show_table(Table(f"whole structure up to {document['band_hz']:.3g} Hz", _COLUMNS, document["modes"]))
+    say("wrote " + ", ".join(document["files"]))
 
 
-def _table(document: dict[str, Any]) -> Table:
-    table = Table(
-        "f [Hz]",
-        "ζ [%]",
-        "reduced f [Hz]",
-        "reduced ζ [%]",
-        "plain Craig–Bampton ζ [%]",
-        title=f"whole structure up to {document['band_hz']:.3g} Hz",
-        title_justify="left",
-    )
-    for row in document["modes"]:
-        table.add_row(
-            f"{row['frequency_hz']:.5f}",
-            _percent(row["damping_ratio"]),
-            f"{row['reduced_frequency_hz']:.5f}",
-            _percent(row["reduced_damping_ratio"]),
-            _percent(row["plain_craig_bampton_damping_ratio"]),
-        )
-    return table
-
-
-def _percent(ratio: float) -> str:
-    return f"{round(100 * ratio, 4) + 0.0:.4f}"  # no minus before a rounded zero
+_COLUMNS = (
+    TableColumn("f [Hz]", "frequency_hz", ".5f"),
+    TableColumn("ζ [%]", "damping_ratio", ".4f", 100.0),
+    TableColumn("reduced f [Hz]", "reduced_frequency_hz", ".5f"),
+    TableColumn("reduced ζ [%]", "reduced_damping_ratio", ".4f", 100.0),
+    TableColumn("plain Craig–Bampton ζ [%]", "plain_craig_bampton_damping_ratio", ".4f", 100.0),
+)

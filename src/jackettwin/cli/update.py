@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import click
 import numpy as np
-from rich.table import Table
 
 from jackettwin.cli.cache import keeping
-from jackettwin.cli.console import output, print_json, progress
+from jackettwin.cli.console import Reply, answers, output, progress, say, say_all, show_table
+from jackettwin.report import Table, cell
 from jackettwin.soil import family
 from jackettwin.study import DampingExcess, TwinResult, count_steps, run_twin, update_document
 from jackettwin.study.result import MeasuredMode
@@ -21,8 +21,8 @@ DEFAULT_TWIN = "openfast_pile"
 @click.argument("twin", default=DEFAULT_TWIN)
 @click.option("--law", help="Only this law; default: the first of the twin file.")
 @click.option("--fresh", is_flag=True, help="Identify and fit again what an earlier run kept.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> None:
+@answers
+def update_command(twin: str, law: str | None, fresh: bool) -> Reply:
     """Update the supports of TWIN under one law; writes nothing."""
     config = read_twin(twin)
     if law is not None:
@@ -30,10 +30,7 @@ def update_command(twin: str, law: str | None, fresh: bool, as_json: bool) -> No
     laws = (law or config.update.laws[0],)
     with progress(count_steps(config, laws), config.name) as step:
         result = run_twin(config, laws=laws, progress=step, keep=keeping(fresh=fresh))
-    if as_json:
-        print_json(update_document(result, 0))
-    else:
-        print_updates(result)
+    return Reply(update_document(result, 0), lambda: print_updates(result))
 
 
 def print_updates(result: TwinResult, *, only: str = "") -> None:
@@ -43,41 +40,41 @@ def print_updates(result: TwinResult, *, only: str = "") -> None:
         if only and u.law != only:
             continue
         output.print(f"\n[bold]{u.law}[/bold]")
-        output.print(_parameters(u))
-        output.print(_modes(result.measured, u))
+        show_table(_parameters(u))
+        show_table(_modes(result.measured, u))
         if len(u.solutions) > 1 or u.best.locked_damper or u.best.locks_within:
-            output.print(_solutions(u))
+            show_table(_solutions(u))
         for line in (u.search.statement, *_status(u), *_relaxations(result, u), *_leg_scatter(u)):
-            output.print(f"  {line}")
+            say(f"  {line}")
         for e in excess:
             if e.label in fitted and not e.explained:
-                output.print(f"  {e.label}: {_unexplained(e)}")
+                say(f"  {e.label}: {_unexplained(e)}")
     output.print()
-    for warning in result.warnings:
-        output.print(f"warning: {warning}")
+    say_all(result.warnings, "warning")
 
 
 def _parameters(u: Update) -> Table:
-    table = Table("parameter", "best fit" if u.uncertainty is None else "median", "90 % interval", "verdict")
+    rows = []
     for i, (p, value) in enumerate(zip(u.problem.parameters, u.best.theta, strict=True)):
-        span, verdict = "–", "–"
+        span, verdict = None, "–"
         if u.uncertainty is not None:
-            value = u.uncertainty.median[i]
-            low, high = u.uncertainty.interval_90[i]
-            span, verdict = f"{low:.2e} … {high:.2e}", u.uncertainty.verdicts[i].verdict
+            value, verdict = u.uncertainty.median[i], u.uncertainty.verdicts[i].verdict
+            span = " … ".join(f"{end:.2e}" for end in u.uncertainty.interval_90[i])
         unit = "" if p.unit == "-" else f" {p.unit}"
         bound = ", on its bound" if p.name in u.best.at_bound else ""
-        table.add_row(p.name, f"{value:.3g}{unit}", span, verdict + bound)
-    return table
+        rows.append((p.name, f"{value:.3g}{unit}", span, verdict + bound))
+    known = "best fit" if u.uncertainty is None else "median"
+    return Table("", ("parameter", known, "90 % interval", "verdict"), rows)
 
 
 def _solutions(u: Update) -> Table:
     """Return every solution, best first."""
-    table = Table("solution", *(p.name for p in u.problem.parameters), "cost", "starts", "damper")
+    rows = []
     for i, s in enumerate(u.solutions, start=1):
         locked = "locked" if s.locked_damper else "locks within its extent" if s.locks_within else ""
-        table.add_row(str(i), *(f"{x:.3g}" for x in s.theta), f"{s.cost:.3g}", str(s.found), locked)
-    return table
+        rows.append((i, *(f"{x:.3g}" for x in s.theta), f"{s.cost:.3g}", s.found, locked))
+    names = (p.name for p in u.problem.parameters)
+    return Table("", ("solution", *names, "cost", "starts", "damper"), rows)
 
 
 def _status(u: Update) -> list[str]:
@@ -116,30 +113,28 @@ def _leg_scatter(u: Update) -> list[str]:
 
 
 def _modes(measured: tuple[MeasuredMode, ...], u: Update) -> Table:
-    table = Table("mode", "", "measured f [Hz]", "best fit f [Hz]", "undamped", "measured ζ [%]", "best fit")
     columns = (measured, u.modes.frequency_hz, u.modes.undamped_hz, u.modes.damping_ratio)
-    for m, f, f0, zeta in zip(*columns, strict=True):
-        table.add_row(
-            str(m.mode),
+    rows = [
+        (
+            m.mode,
             m.label,
-            _measured(m.frequency_hz, m.frequency_std_hz, 4, m.fits_frequency),
-            f"{f:.4f}",
-            f"{f0:.4f}",
-            _measured(_percent(m.damping_ratio), _percent(m.damping_ratio_std), 2, m.fits_damping),
-            f"{100 * zeta:.2f}",
+            _measured(m.frequency_hz, m.frequency_std_hz, 1.0, 4, m.fits_frequency),
+            cell(f, ".4f"),
+            cell(f0, ".4f"),
+            _measured(m.damping_ratio, m.damping_ratio_std, 100.0, 2, m.fits_damping),
+            cell(100 * zeta, ".2f"),
         )
-    return table
+        for m, f, f0, zeta in zip(*columns, strict=True)
+    ]
+    heads = ("mode", "", "measured f [Hz]", "best fit f [Hz]", "undamped", "measured ζ [%]", "best fit")
+    return Table("", heads, rows)
 
 
-def _percent(ratio: float | None) -> float | None:
-    return None if ratio is None else 100.0 * ratio
-
-
-def _measured(value: float | None, std: float | None, decimals: int, fitted: bool) -> str:
+def _measured(value: float | None, std: float | None, scale: float, decimals: int, fitted: bool) -> str:
     """Return value ± standard deviation, in brackets if it took no part in the fit."""
     if value is None:
         return "–"
-    text = f"{value:.{decimals}f}" + ("" if std is None else f" ± {std:.{decimals}f}")
+    text = " ± ".join(f"{scale * v:.{decimals}f}" for v in (value, std) if v is not None)
     return text if fitted else f"({text})"
 
 

@@ -4,37 +4,37 @@ from __future__ import annotations
 
 import sys
 from datetime import UTC, datetime
-from pathlib import Path
 
 import click
 
-from jackettwin.cli.console import output, print_json
-from jackettwin.cli.store_options import opened, store_options
-from jackettwin.errors import InputError
+from jackettwin.cli.console import CommandGroup, Reply, answers, say
+from jackettwin.cli.store_options import StorePlace, store_options
+from jackettwin.errors import require
 
 
-@click.group("user")
+@click.group("user", cls=CommandGroup)
 def user_command() -> None:
-    """Users of a server; with the first one, everybody must log in."""
+    """Manage the users of a server.
+
+    With the first one, everybody must log in.
+    """
 
 
 @user_command.command("add")
 @click.argument("name")
 @click.option("--role", required=True, type=click.Choice(["viewer", "engineer", "admin"]))
 @click.option("--password-stdin", is_flag=True, help="Read the password from standard input.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 @store_options
-def add_user(
-    name: str, role: str, password_stdin: bool, as_json: bool, store: Path, database: str | None
-) -> None:
+def add_user(name: str, role: str, password_stdin: bool, at: StorePlace) -> Reply:
     """Add the user NAME, or give one another role and password."""
-    if not password_stdin and not sys.stdin.isatty():
-        raise InputError(
-            "there is no terminal to ask for it on",
-            field="password",
-            remedy="give it on standard input, with --password-stdin",
-        )
-    engine = opened(store, database, make=True)
+    require(
+        password_stdin or sys.stdin.isatty(),
+        "there is no terminal to ask for it on",
+        field="password",
+        remedy="give it on standard input, with --password-stdin",
+    )
+    engine = at.open(make=True)
     from jackettwin.service.web.auth import hashed
     from jackettwin.store import writing
     from jackettwin.store.people import User, add_user as keep, note_down
@@ -48,19 +48,18 @@ def add_user(
     with writing(engine) as connection:
         keep(connection, user)
         note_down(connection, "command line", "user add", name, role, user.created_utc)
-    if as_json:
-        print_json({"user": name, "role": role})
-    else:
-        output.print(f"{name} is {role}; from now on everybody logs in")
+    return Reply(
+        {"user": name, "role": role}, lambda: say(f"{name} is {role}; from now on everybody logs in")
+    )
 
 
 @user_command.command("remove")
 @click.argument("name")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 @store_options
-def remove_user(name: str, as_json: bool, store: Path, database: str | None) -> None:
+def remove_user(name: str, at: StorePlace) -> Reply:
     """Remove the user NAME; sessions and tokens end at once."""
-    engine = opened(store, database)
+    engine = at.open()
     from jackettwin.store import people, writing
 
     with writing(engine) as connection:
@@ -68,8 +67,5 @@ def remove_user(name: str, as_json: bool, store: Path, database: str | None) -> 
         people.remove_user(connection, name)
         people.note_down(connection, "command line", "user remove", name, "ok", datetime.now(UTC))
         left = people.any_user(connection)
-    if as_json:
-        print_json({"user": name, "removed": True})
-    else:
-        nobody = "; nobody is left: who is on this machine may do everything"
-        output.print(f"{name} is removed{'' if left else nobody}")
+    nobody = "" if left else "; nobody is left: who is on this machine may do everything"
+    return Reply({"user": name, "removed": True}, lambda: say(f"{name} is removed{nobody}"))

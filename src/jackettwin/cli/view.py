@@ -12,7 +12,7 @@ import numpy.typing as npt
 from jackettwin.axes import DOFS_PER_NODE
 from jackettwin.checks import frame_use
 from jackettwin.cli.check import nodal_force
-from jackettwin.cli.console import PageFile, numbers_of, output, print_json
+from jackettwin.cli.console import PageFile, Reply, answers, numbers_of, say_all
 from jackettwin.cli.modes import rayleigh_option, support_option
 from jackettwin.decks import is_sacs, read_structure, sacs_remarks
 from jackettwin.errors import InputError, located
@@ -86,7 +86,7 @@ _MOST_PARTS = 8
     metavar="NODE=FX,FY,FZ",
     help="Beside the self-weight, for utilisation.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@answers
 def view_command(
     structure: str,
     out: Path | None,
@@ -99,9 +99,11 @@ def view_command(
     wave: str | None,
     record: Path | None,
     forces: tuple[str, ...],
-    as_json: bool,
-) -> None:
-    """Draw STRUCTURE in space, in one self-contained page: members, modes, waves, a record."""
+) -> Reply:
+    """Draw STRUCTURE on a page to turn, colour and animate.
+
+    The page is one self-contained file that shows members, modes, waves and a record.
+    """
     chosen = read_structure(structure)
     assembly = assemble(chosen, subdivide=subdivide)
     held = support_option(support, assembly)
@@ -140,19 +142,14 @@ def view_command(
     )
     remarks = _remarks(structure)
     path = write_view(view, out or Path("out") / f"{chosen.name}.html")
-    if as_json:
-        print_json(
-            {
-                "page": str(path),
-                "motions": [motion.name for motion in motions],
-                "dimensions": list(_dimensions(assembly)),
-                "not_read": list(remarks),
-            }
-        )
-    else:
-        for line in _dimensions(assembly):
-            output.print(f"  {line}")
-        output.print(f"wrote {path}")
+    dimensions = _dimensions(assembly)
+    document = {
+        "page": str(path),
+        "motions": [motion.name for motion in motions],
+        "dimensions": list(dimensions),
+        "not_read": list(remarks),
+    }
+    return Reply(document, lambda: say_all([*(f"  {line}" for line in dimensions), f"wrote {path}"]))
 
 
 def _remarks(structure: str) -> tuple[str, ...]:

@@ -6,16 +6,16 @@ from datetime import UTC
 from pathlib import Path
 
 import click
-from rich.table import Table
 
 from jackettwin.change.modal_table import ModalTable, read_modal_table
 from jackettwin.change.table_watch import watch_table
 from jackettwin.change.watch_document import next_sentence, statement, watched_document
-from jackettwin.cli.console import FiniteFloat, output, print_json, progress
+from jackettwin.cli.console import FiniteFloat, Reply, answers, progress, say, say_all, show_table
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError, located
 from jackettwin.files import atomic_folder, write_json
 from jackettwin.records.readers.stamps import parse_time
+from jackettwin.report import Table, TableColumn
 from jackettwin.report.pages.watch import build_watch_page
 
 _SHOWN = 4
@@ -46,7 +46,7 @@ _SHOWN = 4
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for watched.json and report.html."
 )
-@click.option("--json", "as_json", is_flag=True, help="Print what watched.json holds.")
+@answers
 def watch_command(
     table: Path,
     columns: str | None,
@@ -56,13 +56,13 @@ def watch_command(
     structure_name: str | None,
     relearn: str | None,
     out: Path | None,
-    as_json: bool,
-) -> None:
-    """Say whether the modes in TABLE have changed, since when, by how much, and why.
+) -> Reply:
+    """Say whether the modes in TABLE have changed, and why.
 
-    TABLE is CSV or Parquet, sorted by time: one row a mode and time (time_utc, label, frequency_hz, and,
-    if they are known, frequency_std_hz, damping_ratio, damping_ratio_std), or one column a mode with
-    --columns. Further columns are conditions. The first days are taken as healthy.
+    It says since when and by how much as well. TABLE is CSV or Parquet, sorted by time: one row a mode
+    and time (time_utc, label, frequency_hz, and, if they are known, frequency_std_hz, damping_ratio,
+    damping_ratio_std), or one column a mode with --columns. Further columns are conditions. The first
+    days are taken as healthy.
     """
     read = read_modal_table(table, columns=_names(columns) or (), conditions=_chosen(conditions))
     from_day = _day(read, relearn)
@@ -81,20 +81,23 @@ def watch_command(
         with atomic_folder(out) as temporary:
             write_json(document, temporary / "watched.json")
             build_watch_page(watched, temporary / "report.html")
-    if as_json:
-        print_json(document)
-        return
-    output.print(statement(watched))
-    for alarm in document["alarms"]:
-        output.print(_causes(alarm))
-        for group in alarm["inseparable"]:
-            output.print(f"not told apart by these data: {', '.join(group)}")
-        if alarm["next_measurements"]:
-            output.print(next_sentence(alarm))
-    for limit in watched.limits:
-        output.print(f"limit: {limit}")
-    if out is not None:
-        output.print(f"report: {out / 'report.html'}")
+
+    def show() -> None:
+        say(statement(watched))
+        for alarm in document["alarms"]:
+            show_table(Table(f"alarm of {alarm['time_utc']}", _CAUSES, alarm["causes"][:_SHOWN]))
+            for group in alarm["inseparable"]:
+                say(f"not told apart by these data: {', '.join(group)}")
+            if alarm["next_measurements"]:
+                say(next_sentence(alarm))
+        say_all(watched.limits, "limit")
+        if out is not None:
+            say(f"report: {out / 'report.html'}")
+
+    return Reply(document, show)
+
+
+_CAUSES = (TableColumn("cause", "cause"), TableColumn("probability [%]", "probability", ".1f", 100.0))
 
 
 def _names(text: str | None) -> tuple[str, ...] | None:
@@ -115,10 +118,3 @@ def _day(table: ModalTable, relearn: str | None) -> float:
         except InputError as error:
             raise InputError(error.problem, value=relearn, allowed="2025-01-01T13:00:00Z") from None
     return (time.astimezone(UTC) - table.origin).total_seconds() / 86400.0
-
-
-def _causes(alarm: dict[str, object]) -> Table:
-    table = Table("cause", "probability [%]", title=f"alarm of {alarm['time_utc']}", title_justify="left")
-    for cause in alarm["causes"][:_SHOWN]:  # type: ignore[index]
-        table.add_row(cause["cause"], f"{100.0 * cause['probability']:.1f}")
-    return table

@@ -1,2 +1,3 @@
 from .build import build_report as build_report
-from .pages.page import PageSection as PageSection, PageTable as PageTable, Plot as Plot, Text as Text
+from .pages.page import PageSection as PageSection, Plot as Plot, Text as Text
+from .table import UNKNOWN as UNKNOWN, Table as Table, TableColumn as TableColumn, cell as cell

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from jackettwin.answers import Answers, answer
 from jackettwin.identification import Identification
-from jackettwin.report.pages.page import Block, PageSection, PageTable, Text, write_figures, write_page
+from jackettwin.report.pages.page import Block, PageSection, Text, write_figures, write_page
 from jackettwin.report.sections import appendix as appendix, first as first
 from jackettwin.report.sections.records import further_records, the_records
 from jackettwin.report.sections.structure import the_structure
+from jackettwin.report.table import Table
 from jackettwin.report.tables import answers as tables
 from jackettwin.report.tables.numbers import fixed
 from jackettwin.report.tables.sentences import Said, sentences
@@ -130,7 +131,7 @@ def _provenance(result: TwinResult, *, given: Rows) -> list[Block]:
         settings.setdefault(_settings(found), []).extend(found.records)
     for chosen, records in settings.items():
         rows += [("identified with, in", ", ".join(records)), *chosen]
-    return [PageTable("Where do the numbers come from?", ("what", "value"), tuple(rows), 2)]
+    return [Table("Where do the numbers come from?", ("what", "value"), tuple(rows), 2)]
 
 
 def _conditions(record: Observation) -> str:

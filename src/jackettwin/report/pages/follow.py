@@ -7,7 +7,8 @@ from pathlib import Path
 
 from jackettwin.answers import Span
 from jackettwin.report.figures.follow import parameters_through_time
-from jackettwin.report.pages.page import PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.pages.page import PageSection, Plot, Text, write_page
+from jackettwin.report.table import Table
 from jackettwin.report.tables.answers import ranged
 from jackettwin.report.tables.numbers import count
 from jackettwin.soil import parameter_words
@@ -54,7 +55,7 @@ def _plot(followed: Followed, name: str, caption: str, names: Sequence[str]) -> 
     return Plot(name, caption, parameters_through_time(followed, names), fits=True)
 
 
-def _table(followed: Followed, names: Sequence[str]) -> PageTable:
+def _table(followed: Followed, names: Sequence[str]) -> Table:
     by_day, failed = followed.moments == "day", any(day.status != "ok" for day in followed.days)
     rows = []
     for day in followed.days:
@@ -64,7 +65,7 @@ def _table(followed: Followed, names: Sequence[str]) -> PageTable:
             (when, *([str(day.records)] if by_day else []), *([day.status] if failed else []), *cells)
         )
     columns = ("time (UTC)", *(["records"] if by_day else []), *(["posterior"] if failed else []))
-    return PageTable(
+    return Table(
         f"What was known after each {followed.moments}? Median and, in brackets, 90 % interval.",
         (*columns, *map(parameter_words, names)),
         tuple(rows),

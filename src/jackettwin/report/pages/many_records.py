@@ -8,7 +8,8 @@ from jackettwin.identification import FusedIdentification, FusedMode
 from jackettwin.identification.many_records.convergence import convergence
 from jackettwin.report.figures.subspace_mac import interval_history
 from jackettwin.report.figures.tracks import MOST_POINTS, tracks
-from jackettwin.report.pages.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, count, fixed, frequency, interval, percent, words
 from jackettwin.study.many_records.groups import RecordGroup
 from jackettwin.study.many_records.summary import Together
@@ -61,7 +62,7 @@ def _modes(fused: FusedIdentification) -> list[Block]:
     ]
 
 
-def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> PageTable:
+def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> Table:
     rows = [
         (words(label), *_numbers(mode), fixed(100.0 * len(mode.sightings) / n_records, 0), *_scatter(mode))
         for label, mode in named
@@ -80,10 +81,10 @@ def _mode_table(named: list[tuple[str, FusedMode]], n_records: int) -> PageTable
         "Modes fused over all records. ± is one standard deviation of the mean; scatter is that between "
         "records beyond their own uncertainty."
     )
-    return PageTable(caption, columns, tuple(rows))
+    return Table(caption, columns, tuple(rows))
 
 
-def _groups(groups: tuple[RecordGroup, ...]) -> PageTable:
+def _groups(groups: tuple[RecordGroup, ...]) -> Table:
     rows = []
     for group in groups:
         where = (_range(group.wind_speed_m_s), _range(group.yaw_deg), group.state or UNKNOWN)
@@ -98,16 +99,16 @@ def _groups(groups: tuple[RecordGroup, ...]) -> PageTable:
         "ζ [%]",
         "95 % of ζ [%]",
     )
-    return PageTable("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
+    return Table("The same by wind speed, yaw and state, where records say.", columns, tuple(rows), 3)
 
 
-def _failures(failed: tuple[Failed, ...]) -> PageTable:
+def _failures(failed: tuple[Failed, ...]) -> Table:
     rows = [(one.record, one.problem) for one in failed[:_SHOWN_FAILURES]]
     more = len(failed) - len(rows)
     caption = f"{count(len(failed), 'record')} could not be identified" + (
         f"; {more} more are in the JSON." if more else "."
     )
-    return PageTable(caption, ("record", "problem"), tuple(rows), 2)
+    return Table(caption, ("record", "problem"), tuple(rows), 2)
 
 
 def _numbers(mode: FusedMode) -> tuple[str, ...]:

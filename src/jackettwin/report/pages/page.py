@@ -15,6 +15,7 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from jackettwin.files import atomic_path
+from jackettwin.report.table import Table
 
 
 @dataclass(frozen=True)
@@ -24,22 +25,6 @@ class Text:
     paragraphs: tuple[str, ...]
     style: Literal["paragraphs", "list", "warnings"] = "paragraphs"
     kind: Literal["text"] = "text"
-
-
-@dataclass(frozen=True)
-class PageTable:
-    """Cells as they are printed; columns whose name ends in a unit are set as numbers."""
-
-    caption: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    text_columns: int = 1
-    """How many columns on the left hold words."""
-    marked: frozenset[int] = frozenset()
-    """Rows that deserve attention."""
-    folded: bool = False
-    """Shown only on request: long lists that few will read."""
-    kind: Literal["table"] = "table"
 
 
 @dataclass(frozen=True)
@@ -108,7 +93,7 @@ class Embedded:
         return packed(self.html)
 
 
-Block = Text | PageTable | Plot | Drawing | FirstPage | Embedded
+Block = Text | Table | Plot | Drawing | FirstPage | Embedded
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,19 @@ import numpy as np
 import plotly.graph_objects as go
 
 from jackettwin.report.figures import style
-from jackettwin.report.pages.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
+from jackettwin.report.table import Table, TableColumn
 from jackettwin.version import __version__
 
 _SHOWN = 6
 """Depths whose curves are drawn."""
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
-PUSHED = ("load [MN]", "head [mm]", "rotation [mrad]", "largest moment [MN·m]")
-"""Columns of the pushover."""
+_PUSHED = (
+    TableColumn("load [MN]", "load_n", ".3f", 1e-6),
+    TableColumn("head [mm]", "head_m", ".1f", 1e3),
+    TableColumn("rotation [mrad]", "rotation_rad", ".2f", 1e3),
+    TableColumn("largest moment [MN·m]", "largest_moment_nm", ".2f", 1e-6),
+)
 _ZERO = 1e-9
 """An entry below this share of the root of its diagonal's is rounding."""
 
@@ -65,7 +70,7 @@ def _head(document: Mapping[str, Any]) -> tuple[Block, ...]:
         "entry; the matrix is symmetric, and what is not listed is zero."
     )
     columns = ("entry", "unit", "stiffness (real part)", "loss (imaginary part)")
-    return (PageTable(caption, columns, rows, text_columns=2),)
+    return (Table(caption, columns, rows, text_columns=2),)
 
 
 def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
@@ -79,23 +84,21 @@ def _capacity(document: Mapping[str, Any]) -> tuple[Block, ...]:
     )
     caption = f"How far does the head go? A lateral load {pushed['arm_m']:g} m above it, step by step."
     return (
-        PageTable(
+        Table(
             "What does the pile bear? Ultimate loads.",
             ("", "[MN]"),
             tuple((name, f"{1e-6 * v:.2f}") for name, v in rows),
         ),
         Plot("pushover", caption, _pushover(pushed), fits=True),
-        PageTable("The same in numbers.", PUSHED, pushed_rows(pushed), text_columns=0, folded=True),
+        pushover_table(pushed, "The same in numbers."),
     )
 
 
-def pushed_rows(pushed: Mapping[str, Any]) -> tuple[tuple[str, ...], ...]:
-    """Return the pushover as text, a row a step under ``PUSHED``."""
-    columns = (pushed["load_n"], pushed["head_m"], pushed["rotation_rad"], pushed["largest_moment_nm"])
-    return tuple(
-        (f"{1e-6 * load:.3f}", f"{1e3 * head:.1f}", f"{1e3 * turn:.2f}", f"{1e-6 * moment:.2f}")
-        for load, head, turn, moment in zip(*columns, strict=True)
-    )
+def pushover_table(pushed: Mapping[str, Any], caption: str) -> Table:
+    """Return the pushover, a row a step."""
+    steps = zip(*(pushed[str(column.value)] for column in _PUSHED), strict=True)
+    rows = [dict(zip((str(column.value) for column in _PUSHED), step, strict=True)) for step in steps]
+    return Table(caption, _PUSHED, rows, text_columns=0, folded=True)
 
 
 def _pushover(pushed: Mapping[str, Any]) -> go.Figure:
@@ -130,14 +133,14 @@ def _curves(curves: Mapping[str, Any]) -> tuple[Block, ...]:
             fits=True,
         ),
         Plot("tz", "And along the shaft? t-z curves.", _drawn(stations, "tz"), fits=True),
-        PageTable(
+        Table(
             "Every station.",
             ("depth [m]", "p_u [kN/m]", "t_max [kN/m]", "p-y stiffness [MN/m²]", "t-z stiffness [MN/m²]"),
             rows,
             text_columns=0,
             folded=True,
         ),
-        PageTable(
+        Table(
             "Tip: reaction against displacement.",
             ("z [mm]", "q [MN]"),
             tuple(

@@ -15,7 +15,8 @@ from jackettwin.report.figures.watch import (
     leading,
     unexplained_through_time,
 )
-from jackettwin.report.pages.page import Block, PageSection, PageTable, Plot, Text, write_page
+from jackettwin.report.pages.page import Block, PageSection, Plot, Text, write_page
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import count
 from jackettwin.version import __version__
 
@@ -92,7 +93,7 @@ def _alarm(watched: Watched, alarm: Alarm, number: int) -> list[Block]:
         rows.append((count(others, "other cause"), f"{100.0 * rest:.0f}", "–", "–"))
     caption = "Causes, after the data of the change."
     blocks: list[Block] = [
-        PageTable(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
+        Table(caption, ("cause", "probability [%]", "size", "90 %"), tuple(rows)),
         Plot(f"change_pattern_{number}", _PATTERN, change_pattern(watched, alarm), fits=True),
     ]
     if document["inseparable"]:

@@ -7,7 +7,8 @@ import numpy.typing as npt
 
 from jackettwin.intervals import interval_90
 from jackettwin.report.figures import posterior as draw
-from jackettwin.report.pages.page import Block, PageTable, Plot, Text
+from jackettwin.report.pages.page import Block, Plot, Text
+from jackettwin.report.table import Table
 from jackettwin.report.tables import updating as tables
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.study import TwinResult
@@ -76,7 +77,7 @@ def _status(k: Uncertainty) -> str:
     )
 
 
-def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> PageTable:
+def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> Table:
     q, labels = k.predictive, {m.mode: m.label for m in result.measured}
     rows = [
         (
@@ -88,9 +89,7 @@ def _predictions(u: Update, k: Uncertainty, result: TwinResult) -> PageTable:
         for i, mode in enumerate(q.modes)
     ]
     columns = ("mode", "f [Hz]", "undamped f [Hz]", "ζ [%]")
-    return PageTable(
-        f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1
-    )
+    return Table(f"{u.law}: what does it predict, measured or not? 90 % intervals.", columns, tuple(rows), 1)
 
 
 def _span(draws: npt.NDArray[np.float64], factor: float, decimals: int) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from jackettwin.report.pages.page import Block, Embedded, PageTable
+from jackettwin.report.pages.page import Block, Embedded
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, fixed, words
 from jackettwin.report.view.motions import damped_motion
 from jackettwin.report.view.page import View, render_view, thickness_quantities
@@ -38,7 +39,7 @@ def _view(result: TwinResult) -> View:
     return View(result.assembly, thickness_quantities(result.assembly), tuple(motions), result.sensors)
 
 
-def structure_table(result: TwinResult) -> PageTable:
+def structure_table(result: TwinResult) -> Table:
     """Return what the structure is made of, part by part."""
     mesh, structure = result.assembly.mesh, result.assembly.structure
     p = mesh.properties
@@ -67,7 +68,7 @@ def structure_table(result: TwinResult) -> PageTable:
     caption = "What is the structure made of?"
     if (np.abs(p.E / _STEEL[0] - 1.0) > 0.1).any() or (np.abs(p.rho / _STEEL[1] - 1.0) > 0.05).any():
         caption += " Values far from steel's (210 GPa, 7850 kg/m³) stand for what is not drawn."
-    return PageTable(caption, columns, tuple(rows))
+    return Table(caption, columns, tuple(rows))
 
 
 def _range(values: list[float], decimals: int) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from jackettwin.answers import Answers, Span
-from jackettwin.report.pages.page import PageTable
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, between, factor, fixed, words
 from jackettwin.report.tables.sentences import span_words, step_words, verdict_words
 from jackettwin.report.tables.sentences_fit import value_words
@@ -12,7 +12,7 @@ from jackettwin.study import TwinResult
 from jackettwin.updating import SOURCES
 
 
-def modes_table(a: Answers, result: TwinResult) -> PageTable:
+def modes_table(a: Answers, result: TwinResult) -> Table:
     """Return every measured mode beside the design and the updated model."""
     rows = []
     for mode, m in zip(a.modes, result.measured, strict=True):
@@ -45,7 +45,7 @@ def modes_table(a: Answers, result: TwinResult) -> PageTable:
         f"Does the model meet what was measured? Beneath each value its 90 % interval; updated: "
         f"{a.law or 'no law'}. MAC: how alike measured and modelled shapes are."
     )
-    return PageTable(caption, columns, tuple(rows), 2)
+    return Table(caption, columns, tuple(rows), 2)
 
 
 def _cell(span: Span | None, factor: float, decimals: int) -> str:
@@ -57,7 +57,7 @@ def _cell(span: Span | None, factor: float, decimals: int) -> str:
     return f"{text}\n{fixed(factor * span.low, decimals)} – {fixed(factor * span.high, decimals)}"
 
 
-def ground_table(a: Answers) -> PageTable:
+def ground_table(a: Answers) -> Table:
     """Return what is known of every parameter of the ground, and why."""
     rows = tuple(
         (parameter_words(g.name), (verdict_words(g) if a.fits else "does not fit") or UNKNOWN,
@@ -71,7 +71,7 @@ def ground_table(a: Answers) -> PageTable:
         f"What is known of the ground ({a.law})? Of a foot. In brackets 90 %; factor: its upper over its "
         f"lower end. Known: {a.usable:g} or less, by the data alone."
     )
-    return PageTable(caption, columns, rows, 3)
+    return Table(caption, columns, rows, 3)
 
 
 def ranged(span: Span | None, unit: str) -> str:
@@ -83,7 +83,7 @@ def ranged(span: Span | None, unit: str) -> str:
     return f"{value_words(span, unit)}\n({between(span.low, span.high, unit)})"
 
 
-def laws_table(a: Answers) -> PageTable:
+def laws_table(a: Answers) -> Table:
     """Return every law that was fitted, its probability and its misfit."""
     rows = tuple(
         (
@@ -101,10 +101,10 @@ def laws_table(a: Answers) -> PageTable:
     }[a.probability_from]
     caption = f"Which law? Probability of each, all equally likely before: {source}."
     marked = frozenset(i for i, law in enumerate(a.laws) if law.locked)
-    return PageTable(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
+    return Table(caption, ("law", "", "probability [%]", "misfit, χ² or relative [-]"), rows, 2, marked)
 
 
-def budget_table(a: Answers) -> PageTable:
+def budget_table(a: Answers) -> Table:
     """Return each mode's damping by source."""
     sources = [s for s in SOURCES if any(s in m.sources for m in a.modes)]
     names = {"structure": "steel", "soil": "ground"}
@@ -121,10 +121,10 @@ def budget_table(a: Answers) -> PageTable:
     caption = (
         "Who damps which mode by how much? Beneath each value its 90 % interval; sources at the best fit."
     )
-    return PageTable(caption, columns, rows, 1)
+    return Table(caption, columns, rows, 1)
 
 
-def next_table(a: Answers) -> PageTable:
+def next_table(a: Answers) -> Table:
     """Return what each further measurement would make of what is not known."""
     names = [g.name for g in a.ground if g.verdict in ("weak", "unidentified")]
     now = {g.name: g.factor for g in a.ground}
@@ -134,7 +134,7 @@ def next_table(a: Answers) -> PageTable:
         "What would make the ground known? Factor between the ends of each 90 % interval, as expected; "
         f"{a.usable:g} or less counts as known."
     )
-    return PageTable(
+    return Table(
         caption, ("measurement", *(f"{parameter_words(name)} [-]" for name in names)), tuple(rows), 1
     )
 

@@ -10,7 +10,7 @@ from jackettwin.identification import Identification, ModalEstimate
 from jackettwin.identification.comparison import Comparison
 from jackettwin.report.figures.identification import damping_interval, frequency_interval
 from jackettwin.report.figures.record import plain
-from jackettwin.report.pages.page import PageTable
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import (
     UNKNOWN,
     count,
@@ -26,7 +26,7 @@ from jackettwin.study.mode_matches import unpaired_finding
 from jackettwin.twin import Examination
 
 
-def quality_table(seen: Examination) -> PageTable:
+def quality_table(seen: Examination) -> Table:
     """Return how good each channel of a record is."""
     channels = {channel.name: channel for channel in seen.record.channels}
     rows = []
@@ -50,10 +50,10 @@ def quality_table(seen: Examination) -> PageTable:
         "clipped [%]",
     )
     whole = "".join(f" {f.text[0].upper()}{f.text[1:]}." for f in seen.quality.findings if f.subject is None)
-    return PageTable(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
+    return Table(f"{seen.record.name}: quality of every channel.{whole}", columns, tuple(rows), 3)
 
 
-def method_table(compared: Comparison, names: Sequence[str]) -> PageTable:
+def method_table(compared: Comparison, names: Sequence[str]) -> Table:
     """Return f and ζ of each mode by every method side by side."""
 
     def said(mode: ModalEstimate | None) -> str:
@@ -80,7 +80,7 @@ def method_table(compared: Comparison, names: Sequence[str]) -> PageTable:
         f" {_method_title(method)} not applied: {why}." for method, why in compared.refused.items()
     )
     columns = ("mode", "reported", *(_method_title(method) for method in compared.modes))
-    return PageTable(caption, columns, tuple(rows))
+    return Table(caption, columns, tuple(rows))
 
 
 def _method_title(method: str) -> str:
@@ -88,7 +88,7 @@ def _method_title(method: str) -> str:
     return {"ssi-cov": "SSI-cov", "ssi-dat": "SSI-dat", "plscf": "pLSCF", "efdd": "EFDD"}.get(method, method)
 
 
-def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> PageTable:
+def identified_table(found: Identification, names: Sequence[str], *, folded: bool = False) -> Table:
     """Return the identified modes of a record with their 95 % intervals."""
     rows = [
         (
@@ -121,7 +121,7 @@ def identified_table(found: Identification, names: Sequence[str], *, folded: boo
             " Least ±: what a record of this length allows at best, by the long-data law √(1/2πζfT) and by "
             "the Cramér-Rao bound of the fitted spectrum."
         )
-    return PageTable(caption, columns, tuple(rows), 2, folded=folded)
+    return Table(caption, columns, tuple(rows), 2, folded=folded)
 
 
 def _limits(m: ModalEstimate) -> str:
@@ -132,7 +132,7 @@ def _limits(m: ModalEstimate) -> str:
     return " / ".join(UNKNOWN if bound is None else fixed(100.0 * bound, 0) for bound in bounds)
 
 
-def records_table(result: TwinResult) -> PageTable:
+def records_table(result: TwinResult) -> Table:
     """Return every named mode in every record: which is which, and how far the records agree."""
     found = [
         dict(zip(names, seen.modes, strict=True))
@@ -150,17 +150,17 @@ def records_table(result: TwinResult) -> PageTable:
     ]
     records = [name for seen in result.identifications for name in seen.records]
     caption = "Which mode is which in every record: f [Hz] / ζ [%]; a dash where it was not found."
-    return PageTable(caption, ("mode", *records), tuple(rows))
+    return Table(caption, ("mode", *records), tuple(rows))
 
 
-def rejected_table(found: Identification) -> PageTable:
+def rejected_table(found: Identification) -> Table:
     """Return the candidates that were not accepted, each with its reason."""
     rows = [(r.reason, frequency(r.frequency_hz), percent(r.damping_ratio)) for r in found.rejected]
     caption = f"{count(len(rows), 'candidate').capitalize()} not accepted as a mode, with the reasons"
-    return PageTable(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
+    return Table(caption, ("reason", "f [Hz]", "ζ [%]"), tuple(rows), folded=True)
 
 
-def pairing_table(result: TwinResult) -> PageTable:
+def pairing_table(result: TwinResult) -> Table:
     """Return which identified mode is which of the model, and why the others are none of them."""
     rows = [
         (
@@ -189,7 +189,7 @@ def pairing_table(result: TwinResult) -> PageTable:
         "ζ fitted",
         "held against",
     )
-    return PageTable(
+    return Table(
         "Which identified mode is which: the modal assurance criterion at the sensors, on the feet that make "
         "the model most like the records; for modes closer than 6 % in frequency, whose measured shapes mix, "
         "the share of the shape in the plane of the pair.",

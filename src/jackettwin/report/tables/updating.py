@@ -9,7 +9,7 @@ import numpy as np
 
 from jackettwin.answers import Answers
 from jackettwin.arrays import FloatArray
-from jackettwin.report.pages.page import PageTable
+from jackettwin.report.table import Table
 from jackettwin.report.tables.numbers import UNKNOWN, count, frequency, percent, scientific, words
 from jackettwin.soil import Parameter
 from jackettwin.study import TwinResult
@@ -17,7 +17,7 @@ from jackettwin.study.truth import StatedMode, TrueParameter
 from jackettwin.updating import Update
 
 
-def key_table(result: TwinResult) -> PageTable:
+def key_table(result: TwinResult) -> Table:
     """Return measured against updated, one row a mode."""
     columns = ["mode", "no.", "measured\nf [Hz]", *(f"{u.law}\nf [Hz]" for u in result.updates)]
     columns += ["measured\nζ [%]", *(f"{u.law}\nζ [%]" for u in result.updates)]
@@ -30,14 +30,14 @@ def key_table(result: TwinResult) -> PageTable:
         row += [percent(float(u.modes.damping_ratio[i])) for u in result.updates]
         rows.append(tuple(row))
     caption = "Does each law meet the modes (best fit)? In brackets: not fitted; ± one standard deviation."
-    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
+    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
 def _mark(text: str, fitted: bool) -> str:
     return text if fitted or text == UNKNOWN else f"({text})"
 
 
-def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) -> PageTable:
+def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) -> Table:
     """Return the true modes that the records state beside the measured and the updated ones."""
     columns = ["mode", "true\nf [Hz]", "measured\nf [Hz]", "updated\nf [Hz]"]
     columns += ["true\nζ [%]", "measured\nζ [%]", "updated\nζ [%]"]
@@ -54,10 +54,10 @@ def truth_table(result: TwinResult, a: Answers, stated: tuple[StatedMode, ...]) 
     caption = (
         "Is it true? What these records state of their asset, the mean over them, beside what was found."
     )
-    return PageTable(caption, tuple(columns), tuple(rows), text_columns=1)
+    return Table(caption, tuple(columns), tuple(rows), text_columns=1)
 
 
-def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> PageTable:
+def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> Table:
     """Return the true parameters of the support beside the updated ones."""
     rows = [
         (
@@ -71,7 +71,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> PageTable:
         for p in parameters
     ]
     columns = ("law", "parameter", "true", "updated", "90 % interval", "inside")
-    return PageTable(
+    return Table(
         "Are the parameters true? Those the records state beside those found, SI units.",
         columns,
         tuple(rows),
@@ -79,7 +79,7 @@ def true_parameters_table(parameters: tuple[TrueParameter, ...]) -> PageTable:
     )
 
 
-def damped_undamped_table(result: TwinResult) -> PageTable:
+def damped_undamped_table(result: TwinResult) -> Table:
     """Return damped and undamped frequencies side by side, law by law."""
     columns = ["mode"]
     for u in result.updates:
@@ -90,10 +90,10 @@ def damped_undamped_table(result: TwinResult) -> PageTable:
         pairs = ((u.modes.frequency_hz[i], u.modes.undamped_hz[i]) for u in result.updates)
         rows.append((words(m.label), *(frequency(float(f)) for pair in pairs for f in pair)))
     caption = "Is a damper locked? Damped and undamped frequencies of the full updated model."
-    return PageTable(caption, tuple(columns), tuple(rows))
+    return Table(caption, tuple(columns), tuple(rows))
 
 
-def relaxation_table(result: TwinResult) -> PageTable:
+def relaxation_table(result: TwinResult) -> Table:
     """Return measured real poles beside the updated model's nearest."""
     rows = []
     for i, r in enumerate(result.relaxations):
@@ -116,7 +116,7 @@ def relaxation_table(result: TwinResult) -> PageTable:
     caption = (
         "Real poles exp(−at): measured rates beside those of the updated model, nearest by rate and shape."
     )
-    return PageTable(caption, columns, tuple(rows), text_columns=2)
+    return Table(caption, columns, tuple(rows), text_columns=2)
 
 
 def _interval(draws: FloatArray) -> tuple[float, float]:
@@ -124,7 +124,7 @@ def _interval(draws: FloatArray) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def parameter_table(updates: Sequence[Update]) -> PageTable:
+def parameter_table(updates: Sequence[Update]) -> Table:
     """Return the updated support parameters."""
     rows = []
     for u in updates:
@@ -147,7 +147,7 @@ def parameter_table(updates: Sequence[Update]) -> PageTable:
                 )
             )
     columns = ("law", "parameter", "unit", "verdict", "before the data", "best fit", "90 % interval")
-    return PageTable(
+    return Table(
         "What are each law's parameters at its best fit? Intervals are the posterior's, whose median is the "
         "value stated everywhere else. c_fore_aft, c_side_side: the rotor's dashpot.",
         columns,
@@ -162,7 +162,7 @@ def _prior(p: Parameter) -> str:
     return f"{scientific(p.median)} ×÷ {exp(p.log_std):.2g}"
 
 
-def solutions_table(result: TwinResult, u: Update) -> PageTable:
+def solutions_table(result: TwinResult, u: Update) -> Table:
     """Return every distinct solution of a law, with the modes that took part in the fit."""
     of_solution = u.problem.states[0].residuals.modes
     fitted = [m for m in result.measured if m.mode in of_solution]
@@ -185,7 +185,7 @@ def solutions_table(result: TwinResult, u: Update) -> PageTable:
         f"{u.law}: are there other solutions? All found, cheapest first, and how many starts ended there; "
         "* on a bound."
     )
-    return PageTable(caption, columns, tuple(rows), 2, frozenset(marked))
+    return Table(caption, columns, tuple(rows), 2, frozenset(marked))
 
 
 def _unit(unit: str) -> str:
