@@ -32,6 +32,7 @@ def test_everything_at_once(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (["--out", "view.pdf"], "ends in .html"),
+        (["--out", "not/there/view.html"], "there is no folder 'not/there'"),
         (["--out", "v.html", "--growth", "2,-40"], "not TOP,BOTTOM,THICKNESS"),
         (["--out", "v.html", "--flooded", "jackett"], "no such member or part"),
         (["--out", "v.html", "--wave", "80,9"], "height"),

@@ -11,6 +11,7 @@ import pytest
 
 from jackettwin.errors import InputError
 from jackettwin.records import Record
+from jackettwin.study import run_twin
 from jackettwin.study.measure import Measured, measure
 from jackettwin.study.narrative import cautions
 from jackettwin.twin import TwinModel, read_twin
@@ -62,6 +63,12 @@ def test_without_any_record_the_first_reason_is_raised(config: TwinConfig, tmp_p
     # a name that is wrong is no record
     with pytest.raises(InputError, match="no such file"):
         measured(replace(config, records=(config.records[0], tmp_path / "missing.parquet")))
+
+
+def test_a_missing_record_is_named_by_twin_and_key_before_any_is_read(config: TwinConfig) -> None:
+    gone = replace(config, records=(config.records[0], Path("missing.parquet")))
+    with pytest.raises(InputError, match=r"\.yaml: records\[1\]: missing\.parquet: no such file"):
+        run_twin(gone)
 
 
 def test_a_renamed_copy_counts_once_and_is_named(config: TwinConfig, tmp_path: Path) -> None:

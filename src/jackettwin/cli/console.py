@@ -139,7 +139,7 @@ def _failed(kind: str, what: str) -> None:
 
 
 class PageFile(click.Path):
-    """The file of an option that a page is written to."""
+    """The page that an option writes, in a folder that is there: a slip of the pen makes no folders."""
 
     name = "file.html"
 
@@ -147,10 +147,12 @@ class PageFile(click.Path):
         super().__init__(dir_okay=False, path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path; refuse one that no browser takes for a page."""
+        """Return the path; refuse one that no browser takes for a page, or without a folder."""
         path = Path(value)
         if path.suffix.lower() not in (".html", ".htm"):
             self.fail(f"{path.name!r} is no name of a page: it ends in .html.", param, ctx)
+        if not path.absolute().parent.is_dir():
+            self.fail(f"there is no folder {str(path.parent)!r}: make it first.", param, ctx)
         return super().convert(value, param, ctx)
 
 

@@ -81,6 +81,7 @@ def follow(
     """
     if not config.records:
         raise InputError("no new records to follow", file=config.path, field="records", value=[])
+    config.require_records()
     model = twin_model(config)
     observations, warnings = _observed(config, model, prior, workers, progress, keep)
     followed = follow_observations(

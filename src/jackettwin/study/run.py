@@ -62,6 +62,7 @@ def run_twin(
         If records, sensors or targets do not fit the structure.
         Or are out of the supports' reach.
     """
+    config.require_records()
     progress("assemble the structure")
     model = twin_model(config)
     found = (

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from jackettwin.errors import require
 from jackettwin.files import Schema
 from jackettwin.identification import IdentificationSettings
 from jackettwin.identification.picks import Pick
@@ -181,6 +182,23 @@ class TwinConfig:
     """Lowest and highest speed of the rotor in operation; None leaves it to ``update.rotor``."""
     assigned: tuple[int, ...] = ()
     """Modes that were found for targets that give a frequency and no mode."""
+
+    def require_records(self) -> None:
+        """Refuse a record that is not there, before any other is read.
+
+        Raises
+        ------
+        InputError
+            Names the twin file and the record's place in it.
+        """
+        for i, path in enumerate(self.records):
+            require(
+                path.exists(),
+                f"{path}: no such file",
+                file=self.path,
+                field=f"records[{i}]",
+                remedy="check the path; it is relative to the twin file",
+            )
 
     def __repr__(self) -> str:
         data = f"{len(self.targets)} targets" if self.targets else f"{len(self.records)} records"
