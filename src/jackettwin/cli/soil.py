@@ -51,9 +51,7 @@ _LINEAR = "linear ground has no curves and no capacity: describe it by layers"
     help="Height of the lateral load [m].",
 )
 @click.option("--steps", default=20, show_default=True, type=click.IntRange(2, 500), help="Of the pushover.")
-@click.option(
-    "--out", type=PageFile(), help="The page, in a folder that is there; default out/NAME_soil.html."
-)
+@click.option("--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME_soil.html.")
 @answers
 def soil_command(foundation: str, frequency_hz: float, arm_m: float, steps: int, out: Path | None) -> Reply:
     """Compute curves, stiffness, capacity of a pile of FOUNDATION.

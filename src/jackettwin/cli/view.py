@@ -57,7 +57,7 @@ _MOST_PARTS = 8
 
 @click.command("view")
 @click.argument("structure")
-@click.option("--out", type=PageFile(), help="The page, in a folder that is there; default out/NAME.html.")
+@click.option("--out", type=PageFile(), help="The page, in a folder that exists; default out/NAME.html.")
 @click.option("--support", help="As for `jackettwin modes`.")
 @click.option(
     "--modes", "number", default=8, show_default=True, type=click.IntRange(0, 40), help="How many modes."
