@@ -72,7 +72,7 @@ class _Frame:
         others += [(link.leader, link.follower) for link in structure.rigid_links]
         tied = structure.interface_nodes
         for start, end in (*others, *zip(tied, tied[1:], strict=False)):
-            self._join("", start, end)  # nothing but members and beams is ever taken away
+            self._join("", start, end)  # nameless: only members and beams are ever left out
 
     def _join(self, name: str, start: str, end: str) -> None:
         self.neighbours[start].append((name, end))

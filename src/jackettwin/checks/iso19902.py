@@ -22,7 +22,7 @@ MOST_SLENDER_WALL = 120.0
 """Largest D/t of clause 13.1."""
 EDITIONS = ("2007", "2020")
 STEEPEST = 0.99
-"""σ_c/f_e from which the amplification of bending stays; such a column has failed by 13.2.3 already."""
+"""σ_c/f_e beyond which bending is amplified no further; such a column has failed by 13.2.3 already."""
 
 
 class Tube(NamedTuple):

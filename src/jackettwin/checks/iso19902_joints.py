@@ -64,7 +64,7 @@ class Joint:
 
     @property
     def beyond_validity(self) -> tuple[str, ...]:
-        """In what the joint leaves the ranges of 14.3.1."""
+        """The ranges of 14.3.1 that the joint is outside of, in words."""
         ranges = (
             (0.2 <= self.beta <= 1.0, f"β = {self.beta:.2f} is not 0.2 to 1"),
             (10.0 <= self.gamma <= 50.0, f"γ = {self.gamma:.1f} is not 10 to 50"),

@@ -25,11 +25,11 @@ from jackettwin.structure.model import Member
 _STRAIGHT = float(np.cos(np.radians(10.0)))
 """Tubes within 10° of one line carry on as a chord: a leg may break its batter at a node."""
 _SHARPEST = float(np.radians(5.0))
-"""Tubes that leave a chord at less run beside it: no joint of clause 14."""
+"""Tubes at a smaller angle to a chord run beside it and make no joint of clause 14."""
 
 
 class MemberEnd(NamedTuple):
-    """A member's end at a node: its section there, its direction away from the node, its mesh element."""
+    """A member's end at a node: its section there, its direction away from the node, and its mesh element."""
 
     member: Member
     section: Section

@@ -33,11 +33,11 @@ _SILENT = {"END", "LDOPT", "LOADLB", "LCSEL", "LCOMB", "UCPART", "LIVE", "HYDRO"
 """Cards that hold no structure: combinations, code checks, titles."""
 _PINNED = (True, True, True, False, False, False)
 _HELD = {"FIXED": (True, True, True, True, True, True), "PINNED": _PINNED, "PILEHD": _PINNED}
-"""Words for what holds a joint; a pile head is held by the supports that are updated."""
+"""How a word holds a joint; a pile head is held by the supports that are updated."""
 _ENVIRONMENT = {"CDM", "MGROV", "GRPOV", "GRPOVA", "WAVE", "WAVE1", "WIND", "CURR", "DEAD", "TIDE", "CENTER"}
 """Cards of the sea, of growth on members and of the self-weight's direction."""
 _WEIGHTS = ("WGT", "SURFWT")
-"""Beginnings of the cards of weight groups, whose columns nothing public says."""
+"""How the names of cards of weight groups begin; their columns are not documented publicly."""
 _GLOBAL = "1"
 """In column 7 of a MEMBER card: the offsets on the card behind it are in global axes."""
 _EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
@@ -111,10 +111,8 @@ def read_sacs(path: Path) -> Structure:
     InputError
         If a card cannot be read, or no member is a tube; names line and columns.
     """
-    deck = _cards(path)
-    with located(file=path):
-        structure = _structure(deck, path.stem)
-    for remark in _remarks(deck):
+    structure, remarks = _read(path)
+    for remark in remarks:
         log.warning("%s: %s", path.name, remark)
     return structure
 
@@ -127,14 +125,15 @@ def is_sacs(path: Path) -> bool:
 
 def sacs_remarks(path: Path) -> tuple[str, ...]:
     """Return what of a deck was not understood, each with how often."""
+    return _read(path)[1]
+
+
+def _read(path: Path) -> tuple[Structure, tuple[str, ...]]:
     deck = _cards(path)
     with located(file=path):
-        _structure(deck, path.stem)
-    return _remarks(deck)
-
-
-def _remarks(deck: _Deck) -> tuple[str, ...]:
-    return tuple(f"{text} ({n} times)" if n > 1 else text for text, n in deck.remarks.items())
+        structure = _structure(deck, path.stem)
+    remarks = deck.remarks.items()
+    return structure, tuple(f"{text} ({n} times)" if n > 1 else text for text, n in remarks)
 
 
 def _cards(path: Path) -> _Deck:
@@ -254,7 +253,7 @@ def _section(deck: _Deck, line: str) -> None:
 
 
 def _load(deck: _Deck, line: str) -> None:
-    """Keep what a joint load pulls down, condition by condition; loads on members are listed."""
+    """Add a joint's downward load in the current load condition; loads on members are only listed."""
     if "JOIN" not in line[60:72]:
         deck.remarks["loads on members are not read as mass"] += 1
         return

@@ -41,7 +41,7 @@ _SPRING_KEYS = tuple(f"k{i}{j}" for i in range(1, 7) for j in range(i, 7))
 
 @dataclass
 class Parts:
-    """What a deck's joints and members come to, while they are read."""
+    """Nodes, members, other elements and links of a deck, while they are read."""
 
     nodes: dict[str, Vector]
     members: list[Member] = field(default_factory=list)

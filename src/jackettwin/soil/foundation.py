@@ -44,7 +44,7 @@ class Foundation:
     curves: PileCurves | None = None
     """The ground's own curves; None for linear ground."""
     notes: tuple[str, ...] = ()
-    """What was assumed of the ground."""
+    """Assumptions about the ground, one sentence each."""
 
     def head(self) -> PileHead:
         """Return a pile lumped at its head."""
@@ -137,7 +137,7 @@ class FoundationSchema(Schema):
         return Foundation(self.pile, springs, law, self.radiation, curves, self._notes())
 
     def _notes(self) -> tuple[str, ...]:
-        """Return what to beware of in layered ground: a pile that is longer than the layers, or stout."""
+        """Return a sentence on a pile that is longer than its layers, and on one that is not slender."""
         if self.soil.layers is None:
             return ()
         notes, length = [], self.pile.length_m

@@ -41,7 +41,7 @@ class Support:
     masses: tuple[tuple[str, FloatArray], ...] = ()
     """(node, 6×6 mass that moves with it) pairs: piles."""
     notes: tuple[str, ...] = ()
-    """What was assumed to get it."""
+    """Assumptions behind it, one sentence each."""
 
     def __repr__(self) -> str:
         held = ", ".join(node for node, _ in self.fixed) or "nothing"

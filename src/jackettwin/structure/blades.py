@@ -19,7 +19,7 @@ from jackettwin.structure.two_node import BeamSection, beam_matrices
 
 _AXIAL_N = 1e11
 _TORSION_N_M2 = 1e12
-"""Stiff against what bends: ElastoDyn's blades neither stretch nor twist, ours beyond the modes kept."""
+"""Far stiffer than bending: ElastoDyn's blades neither stretch nor twist, ours only in higher modes."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Does the model make sense: its mass, its rigid-body modes, absurd sections."""
+"""Checks of a model before it is trusted: its mass, its rigid-body modes, improbable sections."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from jackettwin.structure.masses import rigid_transfer
 from jackettwin.structure.model import Member, Structure, Vector
 
 SLENDER_WALLS = (10.0, 300.0)
-"""Diameter over wall of offshore tubes: thick-walled piles to thin towers."""
+"""Diameter over wall of offshore tubes, from thick-walled piles to thin towers."""
 _WIDEST_BODY_M = 100.0
 """Radius of gyration; a rotor of 240 m has 20 m to 30 m about the tower top."""
 _LIGHTEST_TOP = 0.002
-"""Share of the whole mass; a rotor and nacelle have some hundredths at least."""
+"""Share of the whole mass; a rotor and nacelle have a few hundredths at least."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def check(assembly: Assembly) -> ModelCheck:
 
 
 def _supports(structure: Structure) -> FloatArray:
-    """Return the rigid-body mass (6, 6) about the origin of what the reactions bring along."""
+    """Return the rigid-body mass (6, 6) about the origin of the masses that come with the reactions."""
     total = np.zeros((6, 6))
     for reaction in structure.reactions:
         if reaction.mass is not None:
@@ -125,7 +125,7 @@ def _warnings(structure: Structure) -> Iterator[str]:
 
 
 def _bodies(structure: Structure, mass_kg: float) -> Iterator[str]:
-    """Yield what is odd of rigid bodies: mostly masses in tonnes."""
+    """Yield what is odd about rigid bodies; mostly their masses are in tonnes."""
     for body in structure.masses:
         gyration = float(np.sqrt(np.linalg.eigvalsh(body.inertia_tensor).max() / max(body.mass_kg, 1e-9)))
         if body.mass_kg > 0.0 and gyration > _WIDEST_BODY_M:

@@ -16,9 +16,9 @@ Matrix = Any
 """A NumPy array or a SciPy sparse array."""
 
 AT_REST = 1e-4
-"""Motions slower than this share of the elastic ones are rounding of a floating structure's free ones."""
+"""Frequencies below this share of the elastic ones are rigid-body motions, not zero only by rounding."""
 _SMALL = 150
-"""Matrices up to this size are solved densely: Lanczos needs room."""
+"""Matrices up to this size are solved densely: Lanczos iteration needs larger ones."""
 
 
 def lowest_modes(

@@ -44,8 +44,8 @@ def section_forces(
     Parameters
     ----------
     along : (..., n_elements, 12), optional
-        Loads spread along the elements (weight, water) as loads on their ends in local axes, f: the end
-        forces of the held element. Without them such loads act at the nodes alone.
+        Loads spread along the elements (weight, water) as loads f on their ends in local axes: minus the
+        end forces of an element whose ends are fixed. Without them such loads act at the nodes alone.
 
     Geometric stiffness is not included.
     """

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float, float]
 _LONGEST_M = 5e3
-"""No member of a structure is longer; one given in millimetres is."""
+"""Longer than any member of a structure; a length in millimetres exceeds it."""
 Inertia = tuple[float, float, float, float, float, float]
 
 

@@ -32,10 +32,10 @@ from jackettwin.structure.two_node import TwoNodeElement, two_node_element
 KIND = "blades"
 """Kind of the elements that hold a rotor's coordinates."""
 MODES_PER_BLADE = 4
-"""First and second flap and edge; ElastoDyn has the second edge not. Two of each blade make one node."""
+"""First and second flap and edge (ElastoDyn has no second edge). Two of each blade make one node."""
 _PER_NODE = 2
 _WORST_CONDITION = 1e8
-"""Beyond, a mode moves the rotor too little as a whole to be shown as its rigid motion."""
+"""Beyond this condition number the modes move the rotor too little as a whole to show as rigid motion."""
 
 
 @dataclass(frozen=True)

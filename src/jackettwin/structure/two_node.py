@@ -1,7 +1,7 @@
 r"""Elements that are no tubes, as matrices between two nodes: cables, springs, beams of any section.
 
-They stand in a structure as finished 12×12 matrices: they carry load and weigh, but no wave loads them, no
-code checks them. Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).
+A structure holds them as 12×12 matrices. They carry load and have weight, but waves do not load them and no
+code check covers them. Gravity adds the stiffness of their axial force to beams and cables (``weight.py``).
 """
 
 from __future__ import annotations

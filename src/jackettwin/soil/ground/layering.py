@@ -23,7 +23,7 @@ Resistance = Callable[[Point], float]
 _STEPS = 200
 """Trapezoids over a layer: some 1e-4 of its force where p_u has a kink."""
 _DEEPEST = 2.0**12
-"""A surface that would lie more than this many metres above a layer is none."""
+"""Highest equivalent surface above a layer [m]; one that would lie higher does not exist."""
 
 
 def equivalent_points(

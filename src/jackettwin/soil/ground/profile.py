@@ -12,7 +12,7 @@ from jackettwin.files import Placed
 from jackettwin.files.plausible import refuse_tiny
 
 _SAND_AT_MOST = {"beta": 10.0, "limit_friction_pa": 1e7, "bearing_factor": 1e4, "limit_bearing_pa": 1e9}
-"""Far beyond any sand: a slip, not a soil."""
+"""Far beyond any sand: a larger value is a slip of the pen."""
 _DEEPEST_SCOUR = 300.0
 """Metres, or pile diameters."""
 _UNITS = {"_deg": "degrees", "_pa": "Pa", "_n_m3": "N/m³", "_m": "m"}

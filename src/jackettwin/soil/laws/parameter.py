@@ -1,4 +1,4 @@
-"""A number that is not known, and what is known of it beforehand."""
+"""An unknown positive number: its bounds and its prior."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ from jackettwin.soil.laws.coefficients import (
 )
 
 _LARGEST = 1e25
-"""Of stiffness, damping and relaxation time; rigid in any structure, and clear of overflow."""
+"""Largest stiffness, damping and relaxation time: rigid in any structure, and clear of overflow."""
 
 
 class Law(ABC):
@@ -196,25 +196,16 @@ def require_positive(field: str, value: float) -> None:
         Names the field.
     """
     if not 0.0 < value <= _LARGEST:
-        raise InputError(
-            "must be positive",
-            field=field,
-            value=value,
-            allowed=f"> 0, at most {_LARGEST:g}",
-            remedy="check the number and its unit",
-        )
+        allowed, remedy = f"> 0, at most {_LARGEST:g}", "check the number and its unit"
+        raise InputError("must be positive", field=field, value=value, allowed=allowed, remedy=remedy)
 
 
 def require_passive(field: str, value: float) -> None:
     """Refuse a number that would make a support feed energy in, or that is no support's."""
     if not 0.0 <= value <= _LARGEST:
-        raise InputError(
-            "must not be negative: the support would feed energy in" if value < 0.0 else "out of range",
-            field=field,
-            value=value,
-            allowed=f"0 to {_LARGEST:g}",
-            remedy="check the number; SI units",
-        )
+        problem = "must not be negative: the support would feed energy in" if value < 0.0 else "out of range"
+        allowed, remedy = f"0 to {_LARGEST:g}", "check the number; SI units"
+        raise InputError(problem, field=field, value=value, allowed=allowed, remedy=remedy)
 
 
 def kelvin_voigt(k: float, c: float) -> Prony:
@@ -248,7 +239,7 @@ MAXWELL_3_BRANCHES = 1j / (np.array(MAXWELL_3_CORNERS) + 1j)
 MAXWELL_3_TILT = 1.5
 """ln of what the ratio of neighbouring weights grows by as the loss factor grows by one."""
 MAXWELL_3_LARGEST = 0.8
-"""Loss factors from here on, the three branches do not hold."""
+"""Three branches cannot give this loss factor or a larger one."""
 
 
 def maxwell_3(k: float, loss_factor: float, f0: float) -> Prony:
