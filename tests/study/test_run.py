@@ -269,8 +269,8 @@ def test_records_in_wind_without_a_rotor_are_a_caution(pile: TwinResult) -> None
     found = Measured((windy,), TwinState("model"))
     fitted = tuple(m for m in pile.measured if m.label == "fore_aft_1")
     bare = replace(config, update=config.update.model_copy(update={"dashpots": (), "rotor": None}))
-    assert any("upper value" in line for line in cautions(bare, found, fitted, ()))
-    assert not any("upper value" in line for line in cautions(config, found, fitted, ()))
+    assert any("upper limit" in line for line in cautions(bare, found, fitted, ()))
+    assert not any("upper limit" in line for line in cautions(config, found, fitted, ()))
 
 
 def test_cautions_say_a_thing_once_and_speak_of_modes_that_are_sure(pile: TwinResult) -> None:

@@ -134,7 +134,7 @@ def test_a_search_that_does_not_settle_stops_and_says_so(
     assert stopped.starts == 1 and stopped.spent is not None and stopped.spent > 1
     assert stopped.statement.startswith(f"Not settled after {stopped.spent} evaluations: 1 starts")
     assert told[0] == "1 of 1 starts, 0 distinct solutions before them"
-    assert all(text.startswith("descent") for text in told[1:])
+    assert all(text.startswith("search") for text in told[1:])
     told.clear()
     settled = search(problem, starts=1, progress=Told(inside=told.append))
     assert settled.spent is None and settled.starts > 1

@@ -135,8 +135,8 @@ def _wind_without_rotor(config: TwinConfig, found: Measured, measured: tuple[Mea
     if config.update.dashpots or not winds or not fitted:
         return []
     return [
-        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: what it "
-        f"damps in {', '.join(fitted)} is booked on the supports, whose damping is then an upper value. "
+        f"The records were taken in wind, up to {max(winds):.3g} m/s, and the twin has no rotor: its "
+        f"damping of {', '.join(fitted)} is attributed to the supports, whose own is then an upper limit. "
         "Give update.rotor or update.dashpots."
     ]
 

@@ -11,8 +11,8 @@ from jackettwin.updating.posterior.laplace import log_covariance
 from jackettwin.updating.update import Update
 
 PREFERRED = 0.1
-"""Share of the most probable law's probability down to which the first one is kept: data that prefer another
-by less than ten to one are no reason to overrule who knows the ground (Kass & Raftery 1995, section 3.2)."""
+"""The first law of the file is kept unless another is ten times as probable: weaker evidence is no reason to
+overrule the engineer who knows the ground (Kass & Raftery 1995, section 3.2)."""
 
 
 def recommended(updates: Sequence[Update]) -> Update | None:

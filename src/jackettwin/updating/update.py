@@ -1,4 +1,4 @@
-"""Fit one law, sample its posterior, and say what came of it."""
+"""Fit one law, sample its posterior and collect the results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Sampler = Literal["smc", "nested"]
 _PREDICTED = (1, 2, 3, 4, 5)
 """Modes that are predicted whether they were measured or not."""
 _DRAWS = 400
-"""Draws that predictions and budgets are made of."""
+"""Number of draws that predictions and damping budgets are computed from."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Uncertainty:
     status : str
         ``"ok"``, or why there is no posterior.
     laplace_log_std : (d,) standard deviation of ln θ by Gauss–Newton
-    log_theta : (n, d) the draws that everything below is made of
+    log_theta : (n, d) draws from which everything below is computed
     """
 
     posterior: Posterior | None
@@ -73,7 +73,7 @@ class Uncertainty:
 
 @dataclass(frozen=True)
 class Fit:
-    """What is found of a law at some cost: an update without its problem and model.
+    """What an update found: the part of it that takes long to compute.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Fit:
     modes : ExactModes
         Of the full model at the best solution, in the order of the modes shown.
     budget : Budget
-        Whose damping each of these modes has.
+        Sources of the damping of each of these modes.
     uncertainty : Uncertainty or None
         None if the targets carry no standard deviations, or nothing was sampled.
     """
@@ -141,7 +141,7 @@ class Update:
 
     @property
     def budget(self) -> Budget:
-        """Whose damping each of these modes has."""
+        """Sources of the damping of each of these modes."""
         return self.fit.budget
 
     @property

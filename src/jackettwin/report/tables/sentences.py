@@ -369,7 +369,7 @@ def _owners(a: Answers) -> tuple[tuple[str, ...], tuple[str, ...]]:
         _SOURCES[s] for s in ("rotor", "water") if a.modes and all(s not in m.sources for m in a.modes)
     ]
     if missing and any(m.sources for m in a.modes):
-        short.append(f"Not modelled: {listed(missing)}; what it damps is booked on the others.")
+        short.append(f"Not modelled: {listed(missing)}; its damping is attributed to the other sources.")
     return tuple(short), tuple(_disagreement(m) for m in a.modes if _disagrees(m))
 
 

@@ -13,11 +13,12 @@ from jackettwin.response.condensation.pole_count import REAL, SAME
 from jackettwin.response.modes.tracking import near_degenerate
 
 _KIN = 0.8
-"""Share of a mode, by mass, in the space of its family at the neighbour, by which a warm start is known."""
+"""Least share of a mode, weighted by mass, in the subspace of its family at the neighbouring set for a warm
+start to be accepted."""
 _TOGETHER = 0.03
 """Poles of a family nearer than this (relative) are refined together: apart, two might end in one."""
 _HALVINGS = 2
-"""Halves of a quarter of a way that was too long are hardly shorter than a cold start."""
+"""How often a way between two sets that is too long is halved; after that a cold start is as fast."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Families:
         ----------
         rows, rayleigh : (n_sets, …) of the sets
         halvings : int
-            A way that is too long is gone in halves, so many times over.
+            How often a way that is too long may be halved.
         """
         good = self._step(model, start, rows, rayleigh, poles, shapes)
         far: IntArray = np.flatnonzero(~good & ~np.isnan(start.poles[:, self.wanted]).any(axis=1))
@@ -134,7 +135,7 @@ class Families:
 
 def families_of(model: Condensed, modes: tuple[int, ...]) -> Families:
     """Return the families of mode numbers, counted from 1 on pinned supports."""
-    known: dict[tuple[int, ...], Families] = model.remembered
+    known: dict[tuple[int, ...], Families] = model.cache
     if modes not in known:
         known[modes] = _families(model, modes)
     return known[modes]

@@ -95,8 +95,8 @@ class Condensed:
     basis_rest: FloatArray
 
     @cached_property
-    def remembered(self) -> dict[Any, Any]:
-        """What was found of the structure once and is asked for again: families by mode numbers."""
+    def cache(self) -> dict[Any, Any]:
+        """Results that depend on the structure alone: families by mode numbers."""
         return {}
 
     @property

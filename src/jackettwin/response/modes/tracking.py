@@ -12,7 +12,7 @@ from jackettwin.arrays import FloatArray, IntArray
 NEAR_DEGENERATE = 0.03
 """Reference modes closer than this (relative) are followed as one subspace."""
 RECOGNISED = 0.3
-"""Less mass-weighted MAC than this is no kinship."""
+"""Modes with a smaller mass-weighted MAC than this are not taken for the same mode."""
 
 
 def mass_mac(M: Any, phi: FloatArray, x: npt.NDArray[Any]) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What drives the model of a scenario: forces known beforehand, and what answers its motion."""
+"""What drives the model of a scenario: forces known beforehand, and forces that depend on its motion."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from jackettwin.simulate.scenario.sea import Sea
 
 @dataclass(frozen=True)
 class Loads:
-    """What drives the model: forces known beforehand, and the rotor's answer to motion."""
+    """What drives the model: forces known beforehand, and the rotor's forces that depend on the motion."""
 
     model: Model
     repeating: FloatArray
@@ -44,10 +44,10 @@ class Loads:
     """Regular waves, which repeat after their own period."""
     rotor: RotorLoads | None
     damping: FloatArray
-    """(6, 6) of the rotor at the tower top that the model knows already."""
+    """(6, 6) damping of the rotor at the tower top that the model contains already."""
     signals: dict[str, FloatArray]
     relative: RelativeDrag | None = None
-    """Drag on the members' own motion beyond what the model knows."""
+    """Drag on the members' own motion beyond the damping that the model contains."""
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ from jackettwin.soil import Foundation
 from jackettwin.soil.piles.cyclic import advance
 
 EVALUATIONS = 4
-"""Rounds of a step: each brings the force nearer by the share of the stiffness that is lost."""
+"""Iterations of a step: each reduces the error by the share of the initial stiffness that is lost."""
 
 
 class CyclicFeet:
-    """All feet on their way through time: remembers where the sliders stood at the last step.
+    """All feet in time, with the state of the sliders at the last step.
 
-    Steps must be asked for in order; a step may be asked for again and again until it is settled.
+    Steps must be asked for in order; one step may be asked for repeatedly, while it is iterated.
     """
 
     def __init__(self, model: Model, foundation: Foundation) -> None:
@@ -33,7 +33,7 @@ class CyclicFeet:
         self._step = 0
 
     def force(self, step: int, heads: FloatArray) -> FloatArray:
-        """Return K q − F(q) (6·n_feet,): what the ground takes less than its initial stiffness would."""
+        """Return K q − F(q) (6·n_feet,): by how much the ground carries less than if it were linear."""
         if step != self._step:
             self._settled, self._step = list(self._asked), step
         out = np.empty_like(heads)

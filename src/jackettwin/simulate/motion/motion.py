@@ -110,7 +110,7 @@ def _motion(scenario: Scenario) -> Motion:
 def _answered(
     scenario: Scenario, loads: Loads, space: StateSpace, hold: Hold, x0: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return states and forces, those that answer the motion included."""
+    """Return states and forces, those that depend on the motion included."""
     parts = _feedbacks(scenario, loads)
     if not parts:
         return march(hold, x0, force), force

@@ -55,7 +55,7 @@ class RotorLoads:
     turn: FloatArray
 
     def change(self, damping: FloatArray) -> Callable[[int, FloatArray], FloatArray]:
-        """Return F(v) − F(0) + C v at step k for a velocity v (6,) of the top: what C does not know."""
+        """Return F(v) − F(0) + C v at step k for a velocity v (6,) of the top: what C leaves out."""
         turns = self.turn.shape[0]
 
         def at(k: int, velocity: FloatArray) -> FloatArray:

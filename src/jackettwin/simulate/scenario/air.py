@@ -29,7 +29,7 @@ from jackettwin.loads import (
 GRID_M = 19.1
 """Between the nodes of the wind field that the OpenFAST records were made in [m]."""
 _HEADINGS = 9
-"""Over which the rotor's mean stiffness is averaged."""
+"""Number of headings over which the rotor's mean stiffness is averaged."""
 _REMEDY = "give your windIO file as rotor: {data: FILE}, or rotor: {data: none} for the tower alone"
 WindSpeed = Annotated[float, Field(gt=0.0, le=100.0)]
 """Mean at the hub [m/s]."""

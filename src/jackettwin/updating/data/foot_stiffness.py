@@ -1,10 +1,10 @@
-"""The numbered modes on softer and softer feet: what a measured mode may be, besides that of pinned feet.
+"""The numbered modes on feet of decreasing stiffness: the candidates that measured modes are compared with.
 
-Modes are numbered on pinned feet. Springs there lower some of them far more than others (the second bending
-pair of a jacket by a third) and change their shapes, so that a measured mode may be near its counterpart
-only once the feet give way. On each stiffness a mode is recognised as a fit recognises it, by its shape on
-pinned feet: followed from one stiffness to the next, two modes that mix as they cross (second bending and
-torsion, where the nacelle's mass sits beside the axis) would swap their names.
+Modes are numbered on pinned feet. Springs under the feet lower some of them far more than others (the second
+bending pair of a jacket by a third) and change their shapes, so that a measured mode may resemble its
+counterpart only on softer feet. At each stiffness a mode is recognised by its shape on pinned feet, as in a
+fit. Followed from one stiffness to the next instead, two modes that mix as they cross (second bending and
+torsion, where the nacelle's mass sits beside the axis) would swap their numbers.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PER_DECADE = 4
 """Steps of the stiffness: from one to the next no frequency of the first pairs moves by more than a
 fourteenth, half of what pairing allows."""
 LOWEST_SHARE = 0.5
-"""The path ends where the first mode has lost half of its frequency: no foundation is so soft."""
+"""The stiffness is lowered until the first mode has lost half of its frequency: no foundation is softer."""
 EXTRA = 6
 """Further modes computed at every step, among which the numbered ones are looked for."""
 
@@ -41,7 +41,7 @@ class Feet:
     stiffness_n_m : float
         Of each translation of each foot; inf for the feet that modes are numbered on.
     frequency_hz : (n_modes,)
-        In the order of the numbers, not of frequency; NaN where a mode was lost sight of.
+        In the order of the numbers, not of frequency; NaN where a mode was not recognised.
     shapes : (n_dof, n_modes)
     """
 
@@ -51,9 +51,10 @@ class Feet:
 
 
 def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tuple[Feet, ...]:
-    """Return the numbered modes on pinned feet, then on springs, softer and softer.
+    """Return the numbered modes on pinned feet, then on springs of decreasing stiffness.
 
-    A structure numbered on clamped feet (a monopile) has only these: translations alone do not hold it.
+    A structure whose modes are numbered on a clamped foot (a monopile) has these alone: springs on the
+    translations do not hold it.
     """
     path = [Feet(np.inf, numbered.frequency_hz, numbered.shapes)]
     on_pins = all(len(dofs) == len("xyz") for _, dofs in standing(assembly.structure).fixed)
@@ -63,7 +64,7 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
     ):
         try:
             found = _on_springs(assembly, float(stiffness), numbered)
-        except InputError:  # falls over under its own weight: so soft are no feet
+        except InputError:  # it falls over under its own weight
             break
         if not found.frequency_hz[0] >= LOWEST_SHARE * numbered.frequency_hz[0]:
             break
@@ -72,7 +73,7 @@ def modes_by_foot_stiffness(assembly: Assembly, numbered: UndampedModes) -> tupl
 
 
 def _on_springs(assembly: Assembly, stiffness: float, numbered: UndampedModes) -> Feet:
-    """Return the numbered modes on springs; one that is lost has its pinned shape and no frequency."""
+    """Return the numbered modes on springs; one not recognised has its pinned shape and no frequency."""
     system = build_system(assembly, on_translations(assembly.structure, Prony(k0=stiffness)))
     modes = undamped_modes(system, len(numbered.frequency_hz) + EXTRA)
     successor = track_modes(assembly.mass, numbered.frequency_hz, numbered.shapes, modes.shapes)

@@ -1,4 +1,4 @@
-"""Whether a best fit meets its data at all: χ² beside its degrees of freedom."""
+"""Whether a best fit agrees with its data: χ² and its degrees of freedom."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from jackettwin.arrays import FloatArray
 from jackettwin.updating.problem import Problem
 
 UNLIKELY = 0.01
-"""Probability of so large a χ² below which the model is wrong or the data surer of themselves than they may
-be: one run in a hundred of a true model is called wrong."""
+"""Probability of so large a χ² below which the model is called wrong, or the stated standard deviations too
+small. One run in a hundred of a true model is called wrong."""
 _SEEN = 0.5
-"""Standard deviations of the data that a parameter's prior standard deviation must move to be fitted."""
+"""A parameter counts as fitted if one standard deviation of its prior moves the data by so many of theirs."""
 
 
 @dataclass(frozen=True)
 class Misfit:
-    """How far the best fit stays from its data.
+    """Distance of the best fit from its data.
 
     Attributes
     ----------
@@ -37,15 +37,15 @@ class Misfit:
 
     @property
     def fits(self) -> bool:
-        """Whether chance explains what is missed."""
+        """Whether chance explains the distance."""
         return self.probability >= UNLIKELY
 
 
 def misfit(problem: Problem, theta: FloatArray) -> Misfit | None:
-    """Return how far a best fit (d,) stays from its data; None without standard deviations or freedom.
+    """Return the distance of a best fit (d,) from its data; None without standard deviations or freedom.
 
-    A parameter that no datum sees takes no freedom: counted are the singular values of the Jacobian on
-    parameters in units of their priors.
+    A parameter that no datum depends on takes no degree of freedom: those taken are the large singular values
+    of the Jacobian by the parameters in units of their prior standard deviations.
     """
     if not problem.weighted:
         return None

@@ -18,7 +18,7 @@ Verdict = Literal["paired", "shape", "frequency", "taken"]
 FREQUENCY_WIDTH = 0.15
 """How far (standard deviation of ln f) a measured mode may lie from the model's."""
 MIXING = 0.06
-"""Modes closer than this (relative) mix in a measured shape: half-power bands, 2ζf, of 1 to 3 % overlap."""
+"""Modes closer than this (relative) mix in a measured shape, for their half-power bands, 2ζf, overlap."""
 LEAST_MAC = 0.8
 """A shape less like the model's is no match: true pairs of OpenFAST records reach 0.87 and more,
 false ones (another direction, a blade mode) 0.73 and less."""

@@ -52,8 +52,7 @@ class Residuals:
 
     .. math:: r = L^{-1} \ln(y_\mathrm{model}/y), \quad L L^T = Σ,
 
-    Σ from the standard deviations and from the correlation of a mode's frequency and damping ratio: a ratio
-    that is known to 30 % is treated as such.
+    with Σ from the standard deviations and from the correlation of a mode's frequency and damping ratio.
     """
 
     targets: tuple[Target, ...]

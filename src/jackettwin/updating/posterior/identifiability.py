@@ -1,4 +1,4 @@
-"""What the data tell of each parameter, and why."""
+"""What the data say about each parameter, and why."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ BY_DATA, WEAK = 0.5, 0.8
 """Posterior over prior standard deviation of ln θ up to which the data outweigh a prior three to one in
 precision, and from which they tell nothing."""
 _NEAR_BOUND = 0.5
-"""An end of the interval nearer to a bound than this times its distance to the median is the bound's."""
+"""An end of the interval that is nearer to a bound than this times its distance to the median is set by the
+bound."""
 _TRADES = 0.7
-"""Correlation from which two parameters trade places."""
+"""Correlation from which two parameters are said to compensate for each other."""
 _UNSEEN = 0.5
 """Standard deviations of the data that a prior standard deviation of a parameter moves, at the median."""
 _LARGEST_LOG = 700.0
-"""Exponents beyond it overflow."""
+"""Larger exponents overflow."""
 _DESIGN_POINTS = 48
 """Points of the prior at which the precision to expect is computed."""
 
@@ -47,8 +48,8 @@ class Verdict:
     verdict_before : str
     reason : str
     decided_by : {"data", "bounds", "prior", "misfit", "no posterior"}
-        What made the interval: without convergence nobody knows, and of a model that cannot meet the data it
-        is too short.
+        What the interval comes from. Without convergence it is not known, and if the model cannot meet the
+        data the interval is too short.
     interval_factor : float
         Upper over lower end of the 90 % interval.
     """
@@ -64,7 +65,7 @@ class Verdict:
 
 
 def verdict_of(ratio: float, factor: float, decided_by: Decider = "data") -> str:
-    """Return the word for what the data tell of a parameter.
+    """Return the word for what the data say about a parameter.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def identifiability(
 
 
 def _deciders(problem: Problem, z: FloatArray, ratio: FloatArray, converged: bool) -> list[Decider]:
-    """Return what made the interval of each parameter."""
+    """Return what the interval of each parameter comes from."""
     low, middle, high = np.quantile(z, [0.05, 0.5, 0.95], axis=0)
     at_bound = (low - problem.prior.low < _NEAR_BOUND * (middle - low)) | (
         problem.prior.high - high < _NEAR_BOUND * (high - middle)

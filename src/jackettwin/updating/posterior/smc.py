@@ -36,20 +36,20 @@ from jackettwin.updating.search.descent import bottom
 _ESS = 0.5
 """Each rung of the ladder keeps this share of the particles effective."""
 _REDRAWN = 0.65
-"""Particles drawn anew on a rung are kept if so many times their first number are effective there, or
-``_ESS`` times at the last rung; else the old ones are moved. More than ``_ESS``: the next step is long."""
+"""Particles drawn anew on a rung are used if at least this share of all is effective, or ``_ESS`` on the last
+rung; otherwise Markov chains move the old ones. It exceeds ``_ESS`` so that the next step is long."""
 _MOVES = 12
 """Moves of every particle on the last rung, and wherever they are not drawn anew."""
 _KEPT = 3
-"""On the last rung, the swarm after every so many moves is kept (waste-free, Dau & Chopin 2022)."""
+"""On the last rung the swarm is kept after every so many moves (waste-free, Dau & Chopin 2022)."""
 _FRESH = 4
 """So many times as many points are drawn anew as there are particles."""
 _CLIMBS = 12
-"""Descents at most, from draws of the prior that are likelier than their neighbours."""
+"""Most descents that start from draws of the prior that are likelier than their neighbours."""
 _WIDER = (1.0, 1.5, 2.5)
-"""Normals on a hilltop have so many times its standard deviation: tails are heavier."""
+"""Widths of the normals on a maximum, in standard deviations there: the posterior has heavier tails."""
 _SCOUTS = 40
-"""So many particles of an island are evaluated first, for the others to start near one of them."""
+"""So many particles of an island are evaluated first; the others start from the modes of the nearest."""
 _LARGEST_SPREAD = 0.5
 """Standard deviation of log Z between islands beyond which it is not known."""
 

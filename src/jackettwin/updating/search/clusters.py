@@ -13,9 +13,9 @@ _SAME = 0.02
 _STAGES = 10
 """Steps of the walk from one end point to another."""
 _MOST_STEPS = 10_000
-"""Of all walks of one gathering: a minute. Beyond, end points that may be one are listed apart."""
+"""Most steps of all walks between end points: about a minute. Those not compared by then are listed apart."""
 _JUMP = 4.0
-"""Followers that move by more than so many steps may have jumped a ridge."""
+"""If the other parameters move by more than so many steps at once, they may have jumped over a ridge."""
 _NARROW = 0.05
 """A solution whose ln θ the cost fixes better than this is a point, not a cluster."""
 
@@ -58,8 +58,8 @@ def gather(
 def linked(problem: Problem, low: End, high: End) -> tuple[bool, int]:
     """Return whether a walk from the higher end point to the lower one never has to climb, and its steps.
 
-    One coordinate is stepped, the others follow downhill: first the one in which they lie farthest apart. A
-    walk that descends on its way shows that the higher one was a shoulder, not a minimum.
+    One coordinate is stepped and the others are refitted, first the coordinate in which the two lie farthest
+    apart. If the cost falls on the way, the higher end point was a shoulder and no minimum.
     """
     span = np.abs(high.z - low.z) / (problem.prior.high - problem.prior.low)
     taken = 0
@@ -99,9 +99,9 @@ def _level(problem: Problem, start: FloatArray, end: FloatArray, ceiling: float)
 
 
 def extent(problem: Problem, end: End) -> tuple[FloatArray, list[FloatArray]]:
-    """Return how far each ln θ can go (d, 2), the others following, before the cost rises noticeably.
+    """Return the range of each ln θ (d, 2), the others refitted, in which the cost hardly rises.
 
-    With it the points that were reached, of parameters that can go far.
+    The second value holds the points reached, for parameters with a wide range.
     """
     points = []
     _, J, _ = problem.evaluate(end.z, None)

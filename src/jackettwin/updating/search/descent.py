@@ -1,4 +1,4 @@
-"""Local searches: from one start to the bottom it leads to."""
+"""Local searches: from a start down to the minimum that it leads to."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from jackettwin.updating.problem import Found, Problem
 
 _EVALUATIONS = 200
 _RIDGE = 1e-2
-"""Weight of the pull to the middle of the bounds, in units of the cost that does not matter."""
+"""Weight of the pull towards the middle of the bounds, as a share of a negligible cost."""
 _POINT = 0.02
-"""Without the pull, a solution moves by less than this; a point in a valley slides away and stays pulled."""
+"""A well-determined minimum moves by less than this in ln θ when the pull is taken away. In a flat valley of
+the cost the point moves further, and the one with the pull is kept."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class End:
     settled : bool
         Whether it is a minimum: nothing lower nearby, and the same cost from a cold start.
     evaluations : int
-        Of the model, that the search took.
+        Number of evaluations of the model that the search took.
     """
 
     z: FloatArray
@@ -49,7 +50,7 @@ class Path:
         self.answer: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
 
     def __call__(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return residuals and Jacobian; the last answer is remembered."""
+        """Return residuals and Jacobian; the last ones are kept."""
         if self.at is None or not np.array_equal(z, self.at):
             r, J, self.last = self.problem.evaluate(z, self.last)
             self.answer, self.at = (r, J), z.copy()
@@ -72,9 +73,9 @@ class Path:
 def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...] = ()) -> End:
     r"""Return the end of a least-squares descent.
 
-    A pull to the middle of the bounds, a hundredth of the cost that does not matter, leads off plateaus and
-    gives a valley one lowest point. Known solutions are deflated (Farrell et al. 2015): the residuals are
-    multiplied by :math:`\prod_i (1 + σ²/\|z - z_i\|²)`, and the end is polished without that.
+    A weak pull towards the middle of the bounds leads off plateaus and gives a flat valley of the cost one
+    lowest point. To keep away from known solutions, the residuals are first multiplied by
+    :math:`\prod_i (1 + σ²/\|z - z_i\|²)` (deflation, Farrell et al. 2015); the last steps go without.
     """
     taken, path = 0, Path(problem)
     if known:
@@ -88,7 +89,7 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
     taken += n
     back = z
     if np.abs(free - z).max() >= _POINT:
-        # in a valley it slides back; from a point that the pulled search was too slow to reach it does not
+        # in a flat valley the pull leads back; a minimum that the pulled search was too slow to reach stays
         pull = _pulled(problem, problem.allowance(path.total(free)))
         back, n = _least_squares(path, free, pull, tolerance=1e-8)
         taken += n
@@ -96,14 +97,14 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
 
 
 def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
-    """Return roughly where the nearest minimum lies, from a start whose modes are known."""
+    """Return the nearest minimum roughly, from a start whose modes are known."""
     path = Path(problem)
     path.last = near
     return _least_squares(path, start, _free, tolerance=1e-3, evaluations=30)[0]
 
 
 def settle(problem: Problem, end: End) -> End:
-    """Return a valley's point nearest the middle of the bounds; a point solution returns unchanged."""
+    """Return the point of a flat valley nearest the middle of the bounds, or the minimum as it is."""
     _, J, _ = problem.evaluate(end.z, None)
     width = problem.prior.high - problem.prior.low
     weakest = float(np.linalg.svd(J * width, compute_uv=False)[-1]) if len(J) >= end.z.size else 0.0
@@ -233,7 +234,7 @@ def _deflated(problem: Problem, known: tuple[FloatArray, ...]) -> Callable[[Path
 
 
 def _judged(problem: Problem, z: FloatArray) -> End:
-    """Return the end with whether it is a minimum: a Gauss–Newton step inside the bounds promises nothing."""
+    """Return the end: a minimum if no Gauss–Newton step inside the bounds lowers the cost noticeably."""
     r, J, found = problem.evaluate(z, None)
     cost = float(r @ r)
     if found is None:

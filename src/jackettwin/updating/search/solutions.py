@@ -1,4 +1,4 @@
-"""Search for every solution: scattered starts, deflation of what is known, one list of distinct clusters."""
+"""Search for every solution: from scattered starts, then away from the solutions already known."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ Method = Literal["least-squares", "nelder-mead"]
 METHODS = ("least-squares", "nelder-mead")
 
 LOCKED_DAMPER = 0.05
-"""Undamped frequencies further than this from the damped ones: the damper carries what the spring should."""
+"""Relative distance of an undamped frequency from the damped one, beyond which a damper is called locked: it
+carries the load that the spring should."""
 _MOST = 16
 """Starts are doubled up to this many times their number while a solution has been found only once."""
 MOST_EVALUATIONS = 40_000
-"""And while so many evaluations of the model have not been spent: half a minute."""
+"""Starts are no longer doubled after so many evaluations of the model: about half a minute."""
 _HOPELESS = 4
-"""So many times the starts without any minimum are enough."""
+"""The search gives up when so many times the starts have led to no minimum."""
 _DEFLATED = 6
-"""Most descents with the known solutions deflated; a quarter of the starts if these are few."""
+"""Most searches that are kept away from the known solutions; a quarter of the starts if these are few."""
 _CONFIDENCE = 0.95
 
 
@@ -44,15 +45,15 @@ class Solution:
     frequency_hz, undamped_hz, damping_ratio : (n_targets,) in the first operating state
     rates : (n_relaxations,) of the measured relaxations [rad/s]
     locked_damper : bool
-        An undamped frequency is more than 5 % from the damped one.
+        Whether an undamped frequency is more than 5 % from the damped one.
     locks_within : bool
-        A cluster's ends are looked at, too: at some of them a damper is locked.
+        Whether a damper is locked here or anywhere at the ends of the cluster.
     at_bound : tuple of str
         Parameters that ended on a bound.
     found : int
         How many starts ended here.
     extent : (n_parameters, 2)
-        How far each parameter can go, the others following, before the cost rises noticeably.
+        Range of each parameter, the others refitted, over which the cost does not rise noticeably.
     """
 
     theta: FloatArray
@@ -75,11 +76,12 @@ class Search:
     Attributes
     ----------
     starts : int
-        Descents from scattered points.
+        Searches from scattered points.
     deflated : int
-        Further descents, with the known solutions deflated.
+        Further searches, kept away from the known solutions by deflating them (Farrell et al. 2015).
     missed_share_95 : float
-        A solution that was missed draws less than this share of the starts, with 95 % confidence.
+        If there is a solution that was missed, fewer than this share of random starts lead to it, with 95 %
+        confidence.
     spent : int or None
         Evaluations after which the search stopped, although some solution had been found only once; None if
         it ended by itself.
@@ -102,10 +104,10 @@ class Search:
             often = ", more of which may be one"
         else:
             often = f", {once} of them found only once" if once else ", each found more than once"
+        many, share = f"{n} distinct solution{'s' if n > 1 else ''}{often}", 100 * self.missed_share_95
         return (
-            f"{unsettled}{self.starts} starts and {self.deflated} deflated descents ended in "
-            f"{n} distinct solution{'s' if n > 1 else ''}{often}; "
-            f"a solution that was missed draws less than {100 * self.missed_share_95:.2g} % of the starts "
+            f"{unsettled}{self.starts} starts and {self.deflated} searches away from known solutions ended "
+            f"in {many}. If one was missed, fewer than {share:.2g} % of random starts lead to it "
             "(95 % confidence)."
         )
 
@@ -122,7 +124,7 @@ def search(
     """Return the distinct solutions, best first.
 
     Starts are scrambled Sobol points in the logarithms between the bounds, doubled in number while a solution
-    has been found only once; then the known solutions are deflated until nothing new appears.
+    has been found only once. Further searches are then kept away from the known solutions.
 
     Parameters
     ----------
@@ -177,7 +179,7 @@ def search(
 
 
 def _out_of_reach(problem: Problem) -> InputError:
-    """Return what the data ask for beside what the supports can give: frequencies from bound to bound."""
+    """Return an error that compares the data with the frequencies that the supports can give."""
     first = problem.states[0]
     targets = first.residuals.used
     ends = problem.vectors(np.stack([problem.prior.low, problem.prior.high]), first)
@@ -205,9 +207,9 @@ def _scatter(problem: Problem, n: int, seed: int) -> FloatArray:
 def _deflate(
     problem: Problem, clusters: list[tuple[End, int]], points: FloatArray, progress: Progress
 ) -> list[tuple[End, int]]:
-    """Return the clusters and what further descents find with them deflated."""
+    """Return the clusters and what further searches find that are kept away from them."""
     for i, point in enumerate(points, start=1):
-        progress.within(f"descent {i} of {len(points)} beside {len(clusters)} known solutions")
+        progress.within(f"search {i} of {len(points)} away from {len(clusters)} known solutions")
         end = descend(problem, point, known=tuple(cluster.z for cluster, _ in clusters))
         if end.settled:
             clusters, _ = gather(problem, [(end, 1)], known=clusters)
