@@ -2,9 +2,18 @@
 
 import numpy as np
 import pytest
-from scipy import signal
+from scipy import fft, signal
 
-from jackettwin.signals import convolve, hann, local_peaks, lowpass_taps, resample, tukey
+from jackettwin.signals import (
+    convolve,
+    hann,
+    local_peaks,
+    lowpass_taps,
+    next_fast_len,
+    prev_fast_len,
+    resample,
+    tukey,
+)
 
 ROUNDING = 1e-13
 """A few hundred sums of numbers near 1."""
@@ -44,3 +53,10 @@ def test_peaks(rng: np.random.Generator, prominence: float) -> None:
     for values in (rng.standard_normal(500), np.round(rng.standard_normal(500)), np.zeros(5), np.arange(3.0)):
         expected, _ = signal.find_peaks(values, prominence=prominence or None)
         np.testing.assert_array_equal(local_peaks(values, prominence), expected)
+
+
+def test_fast_lengths() -> None:
+    for n in (1, 7, 13, 1001, 59_999):
+        assert next_fast_len(n) == fft.next_fast_len(n)
+        assert next_fast_len(n, real=True) == fft.next_fast_len(n, real=True)
+        assert prev_fast_len(n) == fft.prev_fast_len(n)

@@ -26,10 +26,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-import scipy  # scipy.optimize is loaded where it is used
-from scipy import fft, special
+import scipy  # scipy.optimize and scipy.special are loaded where they are used
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
+from jackettwin.signals import next_fast_len
 
 REWEIGHTED = 2
 """Times the noise of each channel is estimated anew."""
@@ -124,7 +125,7 @@ def damped_cosines(
         background = noise / sigma[:, None] - _sums(p, fit.amplitudes, later)
     variance, freedom = _score_variance(_jacobian(fit), background)
     # of few lines of noise the variance is itself hardly known: intervals are Student's
-    wider = special.stdtrit(freedom, 0.975) / special.ndtri(0.975)
+    wider = scipy.special.stdtrit(freedom, 0.975) / scipy.special.ndtri(0.975)
     covariance = bound @ variance @ bound * np.outer(wider, wider)
     about = white - white.mean(axis=1, keepdims=True)
     return DampedCosines(
@@ -255,7 +256,7 @@ def _score_variance(jacobian: FloatArray, noise: FloatArray) -> tuple[FloatArray
     """
     n_parameters, n_channels, n_samples = jacobian.shape
     length = noise.shape[1]
-    size = fft.next_fast_len(length + n_samples)
+    size = next_fast_len(length + n_samples)
     lines = fft.rfft(noise - noise.mean(axis=1, keepdims=True), size, axis=1) / np.sqrt(length)
     moved = fft.rfft(jacobian, size, axis=2)
     score = np.sum(moved.conj() * lines, axis=1)

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
-from scipy.fft import next_fast_len
 
 from jackettwin.arrays import FloatArray
-from jackettwin.signals import hann
+from jackettwin.signals import hann, next_fast_len
 
 CYCLES = 2.0
 """Over which the power is smoothed."""

@@ -16,7 +16,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # scipy.optimize is loaded where it is used
 
 from jackettwin.arrays import FloatArray, Int64Array
 from jackettwin.identification.maximum_likelihood import accuracy, likelihood
@@ -24,6 +23,8 @@ from jackettwin.identification.maximum_likelihood.mode_drift import long_data_li
 from jackettwin.identification.maximum_likelihood.spectral_model import expected, response_power
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from jackettwin.identification.maximum_likelihood.parameters import Parameters
     from jackettwin.identification.maximum_likelihood.periodogram import Periodogram
 
@@ -112,5 +113,26 @@ def gain_of(data: Periodogram, p: Parameters, f: float, zeta: float, phi: FloatA
         return float(-np.sum(data.count * (s * b / (1.0 + s * a) - np.log1p(s * a))))
 
     middle = -np.log(np.max(h * a))
-    found = scipy.optimize.minimize_scalar(loss, bounds=(middle - 15.0, middle + 15.0), method="bounded")
-    return max(-float(found.fun), 0.0), float(np.exp(found.x))
+    best = lowest(loss, middle - 15.0, middle + 15.0)
+    return max(-loss(best), 0.0), float(np.exp(best))
+
+
+def lowest(loss: Callable[[float], float], low: float, high: float, within: float = 1e-5) -> float:
+    """Return where a function with one valley is lowest, by golden sections.
+
+    >>> round(lowest(lambda x: (x - 0.3) ** 2, -1.0, 1.0), 4)
+    0.3
+    """
+    golden = 0.5 * (np.sqrt(5.0) - 1.0)
+    at = [high - golden * (high - low), low + golden * (high - low)]
+    values = [loss(x) for x in at]
+    while high - low > within:
+        if values[0] < values[1]:
+            high, at[1], values[1] = at[1], at[0], values[0]
+            at[0] = high - golden * (high - low)
+            values[0] = loss(at[0])
+        else:
+            low, at[0], values[0] = at[0], at[1], values[1]
+            at[1] = low + golden * (high - low)
+            values[1] = loss(at[1])
+    return float(0.5 * (low + high))

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.cluster import hierarchy
-from scipy.spatial.distance import squareform
 
 from jackettwin.arrays import FloatArray, Int64Array
+from jackettwin.identification.linkage import average_linkage
 from jackettwin.identification.mode_shapes import mac
 
 if TYPE_CHECKING:
@@ -56,9 +55,7 @@ def clusters(
     if n_poles < 2:
         return []
     apart = _distances(poles, scale)
-    tree = hierarchy.linkage(squareform(apart, checks=False), method="average")
-    label = hierarchy.fcluster(tree, distance, criterion="distance")
-    found = [_cluster(poles, np.flatnonzero(label == k), orders) for k in np.unique(label)]
+    found = [_cluster(poles, members, orders) for members in average_linkage(apart, distance)]
     return sorted(found, key=lambda c: float(poles.frequency_hz[c.representative]))
 
 
@@ -67,10 +64,7 @@ def _distances(poles: Stabilisation, scale: FloatArray) -> FloatArray:
     lam = poles.frequency_hz * (-zeta + 1j * np.sqrt(1.0 - zeta**2))
     size = np.maximum.outer(np.abs(lam), np.abs(lam))
     shapes = poles.mode_shape / scale
-    apart = np.abs(lam[:, None] - lam) / size + 1.0 - mac(shapes, shapes)
-    apart = np.maximum(0.5 * (apart + apart.T), 0.0)
-    np.fill_diagonal(apart, 0.0)
-    return apart
+    return np.asarray(np.abs(lam[:, None] - lam) / size + 1.0 - mac(shapes, shapes))
 
 
 def _cluster(poles: Stabilisation, members: Int64Array, orders: Sequence[int]) -> Cluster:

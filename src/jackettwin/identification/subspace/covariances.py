@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
+from jackettwin.signals import next_fast_len
 
 SEGMENT_WINDOWS = 8
 """Length of the transforms in lag windows."""
@@ -106,7 +107,7 @@ def _lag_products(late: FloatArray, early: FloatArray, n_lags: int) -> FloatArra
     The record is cut into segments of a few lag windows whose cross spectra are added up before the one
     inverse transform.
     """
-    size = fft.next_fast_len(min(max(SEGMENT_WINDOWS * n_lags, 1024), early.shape[1] + n_lags), real=True)
+    size = next_fast_len(min(max(SEGMENT_WINDOWS * n_lags, 1024), early.shape[1] + n_lags), real=True)
     hop = size - n_lags
     n_segments = -(-early.shape[1] // hop)
     spectrum_early = fft.rfft(_segments(early, n_segments, hop, hop), size, axis=2)

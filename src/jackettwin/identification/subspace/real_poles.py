@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.cluster import hierarchy
-from scipy.spatial.distance import squareform
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 from jackettwin.identification.estimate import RealPole
+from jackettwin.identification.linkage import average_linkage
 from jackettwin.identification.mode_shapes import aligned, mac, normalised
 from jackettwin.intervals import log_interval_95
 
@@ -95,11 +94,7 @@ def _groups(table: _Table, scale: FloatArray) -> list[Int64Array]:
         return []
     unit = table.shape / scale
     apart = np.abs(np.subtract.outer(table.log_rate, table.log_rate)) + 1.0 - mac(unit, unit)
-    apart = np.maximum(0.5 * (apart + apart.T), 0.0)
-    np.fill_diagonal(apart, 0.0)
-    tree = hierarchy.linkage(squareform(apart, checks=False), method="average")
-    label = hierarchy.fcluster(tree, JOINED, criterion="distance")
-    return [np.flatnonzero(label == k) for k in np.unique(label)]
+    return average_linkage(apart, JOINED)
 
 
 def _relaxation(

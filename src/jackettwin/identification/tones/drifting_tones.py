@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.bands import Band, bands_of, overlapping

@@ -12,7 +12,7 @@ in one record of two thousand (Gaussian modes of ζfT from 0.4 to 180, the small
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
 

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # scipy.interpolate is loaded where it is used
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.sinusoid import lines_around, regular, sinusoid

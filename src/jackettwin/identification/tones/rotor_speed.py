@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.identification.tones.bands import Band, bands_of, overlapping

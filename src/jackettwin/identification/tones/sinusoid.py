@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
+from numpy import fft
 
 from jackettwin.arrays import ComplexArray, FloatArray, Int64Array
 

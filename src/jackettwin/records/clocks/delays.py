@@ -21,10 +21,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import scipy  # scipy.fft is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray, IntArray
 from jackettwin.records.processing.spectra import hann_lines
+from jackettwin.signals import next_fast_len
 
 FEWEST_LINES = 4
 """Lines over which a cross spectrum is averaged at least: the coherence of independent lines is biased by a
@@ -321,7 +321,7 @@ def in_common(lines: BandLines, pairs: IntArray) -> tuple[FloatArray, Iterator[F
 
 def _sum(cross: ComplexArray, edges: IntArray, size: int) -> FloatArray:
     """Return the sum at ``size`` delays: its squares are series in the lags within sub-bands, which add."""
-    short = scipy.fft.next_fast_len(2 * int(np.diff(edges).max()))
+    short = next_fast_len(2 * int(np.diff(edges).max()))
     parts = (cross[first:last] for first, last in pairwise(edges))
     powers = sum(np.abs(np.fft.ifft(part, short)) ** 2 / len(part) for part in parts)
     return np.asarray(np.fft.irfft(np.fft.rfft(np.asarray(powers)) * short, size) * size)

@@ -15,10 +15,9 @@ their share of a line's power to all frequencies; a gap moves it to the neighbou
 from __future__ import annotations
 
 import numpy as np
-import scipy  # scipy.fft is loaded where it is used
 
 from jackettwin.arrays import ComplexArray, FloatArray
-from jackettwin.signals import hann
+from jackettwin.signals import hann, prev_fast_len
 
 
 def of_fast_length(y: FloatArray) -> FloatArray:
@@ -31,7 +30,7 @@ def of_fast_length(y: FloatArray) -> FloatArray:
     >>> of_fast_length(np.zeros((2, 60001))).shape
     (2, 60000)
     """
-    return y[..., : scipy.fft.prev_fast_len(max(y.shape[-1], 1))]
+    return y[..., : prev_fast_len(max(y.shape[-1], 1))]
 
 
 def hann_lines(y: FloatArray) -> tuple[ComplexArray, int]:
