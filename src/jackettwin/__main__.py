@@ -21,6 +21,7 @@ def run() -> None:
     """Run a command on one BLAS thread: our matrices are small, and two threads are slower than one."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # they are slow to look for
     try:
         from jackettwin.cli import main as command  # after the limits: NumPy reads them once
     except KeyboardInterrupt:

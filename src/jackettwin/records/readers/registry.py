@@ -197,6 +197,9 @@ def write_record(record: Record, path: Path | str) -> None:
 
 def _format_of(path: Path) -> Format:
     extension = path.suffix.lower()
+    for form in FORMATS:  # first, because looking for plugins takes a tenth of a second
+        if extension in form.extensions:
+            return form
     known = [e for form in formats() for e in form.extensions]
     if extension not in known:
         remedy = "give the data file, not its description" if extension == ".json" else "convert the file"
