@@ -16,10 +16,12 @@ from jackettwin.change.causes import (
     standings,
     turned,
 )
-from jackettwin.change.changed_structures import Standing, braces
+from jackettwin.change.changed_structures import Standing, braces, happenings, with_mass
+from jackettwin.change.ground import Ground, scour_loss
 from jackettwin.decks import read_structure
 from jackettwin.errors import InputError
 from jackettwin.response.modes.modal import UndampedModes
+from jackettwin.soil.foundation import read_foundation
 from jackettwin.structure import assemble
 
 LABELS = ("side_side_1", "fore_aft_1", "torsion_1")
@@ -159,3 +161,72 @@ def test_a_pair_turns_towards_the_softer_feet() -> None:
         turns.append(one)
     assert turns[0] < -0.1  # from y towards x is negative
     assert turns[1] == pytest.approx(-turns[0], rel=0.02)
+
+
+@pytest.fixture(scope="module")
+def stands() -> Standing:
+    structure = read_structure("jacket15")
+    return Standing(structure, *(np.full(len(structure.reaction_nodes), 2.5e9) for _ in "hv"))
+
+
+def test_lost_anodes_are_taken_from_the_bodies_on_the_node_then_from_the_steel(stands: Standing) -> None:
+    structure = stands.structure
+    member = next(m for m in structure.members if structure.nodes[m.end][2] < structure.sea_level_z_m)
+    length = np.linalg.norm(np.subtract(structure.nodes[member.end], structure.nodes[member.start]))
+    heavier = with_mass(stands, [member], lambda _: 20.0)
+    again = with_mass(heavier, [member], lambda _: -20.0)  # all that the bodies have
+    assert sum(m.mass_kg for m in again.structure.masses) == pytest.approx(
+        sum(m.mass_kg for m in structure.masses)
+    )
+    assert again.structure.members == structure.members
+    lighter = with_mass(stands, [member], lambda _: -20.0)
+    (found,) = [m for m in lighter.structure.members if m.name == member.name]
+    s = member.section_start
+    assert s == member.section_end
+    area = 0.25 * np.pi * (s.outer_diameter_m**2 - (s.outer_diameter_m - 2.0 * s.thickness_m) ** 2)
+    lost = (member.material.density_kg_m3 - found.material.density_kg_m3) * area * length
+    assert lost == pytest.approx(20.0 * length)
+    f = [Modes.of(s, assemble(s.structure)).modes.frequency_hz for s in (lighter, stands)]
+    assert np.all(f[0] >= f[1]) and f[0].sum() > f[1].sum()
+
+
+def test_no_more_mass_is_lost_than_there_is(stands: Standing) -> None:
+    structure = stands.structure
+    member = next(m for m in structure.members if structure.nodes[m.end][2] < structure.sea_level_z_m)
+    with pytest.raises(InputError, match=f"{member.name} loses more mass than there is"):
+        with_mass(stands, [member], lambda _: -1e6)
+
+
+def test_scour_takes_what_the_soils_own_curves_lose(stands: Standing) -> None:
+    """Of a metre: the pile's head stands that much freer; without piles the shipped ones stand for them."""
+    piles = read_foundation("jacket15")
+    before, after = (f.head() for f in (piles, piles.scoured(1.0)))
+    kept = np.diag(after.steel + after.soil) / np.diag(before.steel + before.soil)
+    (scour,) = [h for h in happenings(stands) if h.name == "scour at all feet"]
+    then = scour.apply(stands)
+    np.testing.assert_allclose(then.horizontal / stands.horizontal, kept[0])
+    np.testing.assert_allclose(then.vertical / stands.vertical, kept[2])
+    assert 0.05 < -np.log(kept[0]) < 0.4 and 0.0 < -np.log(kept[2]) < 0.05
+    assert Ground(piles).scour_loss == scour_loss(piles) == stands.scour_loss
+
+
+def test_linear_ground_knows_no_scour() -> None:
+    with pytest.raises(InputError, match="knows no scour"):
+        scour_loss(read_foundation("jacket15_records"))
+
+
+def test_causes_stand_on_the_feet_of_the_posterior() -> None:
+    """Soft feet, as an update found them: the ground has a larger share, and softening shows more."""
+    structure = read_structure("jacket15")
+    rng = np.random.default_rng(3)
+    found = {}
+    for stiffness in (0.8e9, 8e9):
+        feet = stiffness * np.exp(0.05 * rng.standard_normal((50, 2, len(structure.reaction_nodes))))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(causes, "_DRAWS", 1)
+            known = Ground(stiffness=feet)
+            f = np.array([0.1806, 0.1835, 0.571])
+            found[stiffness] = model_causes(structure, LABELS, f, np.full(3, 0.01), ground=known)
+    soft, stiff = found.values()
+    assert np.all(soft.frequency_hz[:2] < stiff.frequency_hz[:2])
+    assert np.all(direction(soft, "soil softening")[:2] < 3.0 * direction(stiff, "soil softening")[:2])

@@ -1,1 +1,2 @@
+from .ground import Ground as Ground
 from .judge import JUDGED as JUDGED, Days as Days, Judged as Judged, finding_of as finding_of, judge as judge

@@ -1,7 +1,8 @@
 """The causes of a change as directions, from a structure that stands on ground of uncertain stiffness.
 
-The feet's stiffness is fitted to the frequencies of the baseline; what the fit leaves open, and what the
-model misses, makes the draws of every direction.
+The feet's stiffness is drawn from the posterior of the twin's supports where a run knows one; else it is
+fitted to the frequencies of the baseline. What is left open, and what the model misses, makes the draws of
+every direction.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from scipy.optimize import least_squares
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.changed_structures import Happening, Standing, happenings
+from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.errors import InputError
 from jackettwin.loads import Coefficients, Water, mass_per_level
 from jackettwin.response import (
@@ -137,19 +139,22 @@ def model_causes(
     *,
     gravity: bool = True,
     seed: int = 0,
+    ground: Ground = UNDESCRIBED,
 ) -> ModelCauses:
     """Return what may have happened to a structure whose modes are known by label.
 
     Parameters
     ----------
     labels, frequency_hz, damping_ratio : (n,) of the baseline; NaN where ζ is not known
+    ground : what is known of it
 
     Raises
     ------
     InputError
         If no label is that of a mode of the model.
     """
-    typical = Standing(structure, *(np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS) for _ in "hv"))
+    stiff = np.full(len(structure.reaction_nodes), _TYPICAL_STIFFNESS)
+    typical = Standing(structure, stiff, stiff, ground.scour_loss)
     assembly = assemble(structure, gravity=gravity)
     named = Modes.of(typical, assembly)
     places = [named.labels.index(label) if label in named.labels else -1 for label in labels]
@@ -159,7 +164,11 @@ def model_causes(
             allowed=", ".join(named.labels), remedy="label modes as `jackettwin modes` does",
         )  # fmt: skip
     rng = np.random.default_rng((77, seed))
-    stands, best, error = standings(typical, named, places, frequency_hz, assembly, rng)
+    if ground.stiffness is None:
+        stands, best, error = standings(typical, named, places, frequency_hz, assembly, rng)
+    else:
+        stands, best = drawn_standings(typical, ground.stiffness)
+        error = _model_error(Modes.of(best, assembly, like=named), places, frequency_hz)
     fit = Modes.of(best, assembly, like=named).modes
     fitted = fit.frequency_hz
     water = mass_per_level(assembly, Coefficients(), Water())
@@ -325,6 +334,21 @@ def _bend(
         bends.append(effect(often, base, after, eta, zeta) - once)
     none = bends[1] / (1 - _SOLVED[0])
     return event.per * np.array([0, 1, *_SOLVED]), np.array([none, *bends])
+
+
+def drawn_standings(typical: Standing, stiffness: FloatArray) -> tuple[list[Standing], Standing]:
+    """Return draws of the feet's stiffness from those of a posterior, (n, 2, n_feet), and their median."""
+    chosen = stiffness[np.linspace(0, len(stiffness) - 1, _DRAWS).astype(int)]
+    stands = [replace(typical, horizontal=h, vertical=v) for h, v in chosen]
+    horizontal, vertical = np.median(stiffness, axis=0)
+    return stands, replace(typical, horizontal=horizontal, vertical=vertical)
+
+
+def _model_error(fit: Modes, places: Sequence[int], frequency_hz: FloatArray) -> float:
+    """Return by how much a model misses frequencies, with one mode's worth of what is usual."""
+    known = [(place, f) for place, f in zip(places, frequency_hz, strict=True) if place >= 0]
+    off = np.array([np.log(fit.modes.frequency_hz[place] / f) for place, f in known])
+    return float(np.sqrt((off @ off + _MODEL_ERROR**2) / (len(known) + 1)))
 
 
 def standings(

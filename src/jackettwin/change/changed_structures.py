@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import numpy as np
 
 from jackettwin.arrays import FloatArray
+from jackettwin.change.ground import UNDESCRIBED, Loss
+from jackettwin.errors import require
 from jackettwin.structure import Material, Section, Structure
 from jackettwin.structure.model import Member, PointMass
 
@@ -16,10 +18,6 @@ _LEG = 0.9
 """A member of the jacket that climbs by more of its length is a leg."""
 _SEA_WATER, _GROWTH = 1025.0, 1325.0
 """Densities [kg/m³]; of marine growth after DNV-RP-C205 (2021), section 6.7.4."""
-_SCOUR_HORIZONTAL, _SCOUR_VERTICAL = 0.12, 0.03
-"""ln of the stiffness that pile heads lose a metre of scour: Winkler piles of 2 to 3.5 m in sand and clay
-lose 8 to
-16 % of lateral and 2 to 4 % of axial stiffness."""
 _SPLASH = (-3.0, 6.0)
 """Splash zone about mean sea level [m]."""
 _WEAKENED = "× 30 % off"
@@ -36,11 +34,13 @@ class Standing:
     Attributes
     ----------
     horizontal, vertical : (n_feet,) [N/m]
+    scour_loss : ln of either that a metre of scour takes
     """
 
     structure: Structure
     horizontal: FloatArray
     vertical: FloatArray
+    scour_loss: Loss = field(default_factory=lambda: UNDESCRIBED.scour_loss)
 
 
 @dataclass(frozen=True)
@@ -96,11 +96,8 @@ def _scoured_at(foot: int) -> Callable[[Standing], Standing]:
 
 def _scoured(standing: Standing, foot: int | None) -> Standing:
     chosen = np.ones(standing.horizontal.size) if foot is None else np.eye(standing.horizontal.size)[foot]
-    return replace(
-        standing,
-        horizontal=standing.horizontal * np.exp(-_SCOUR_HORIZONTAL * chosen),
-        vertical=standing.vertical * np.exp(-_SCOUR_VERTICAL * chosen),
-    )
+    sideways, axially = (np.exp(-loss * chosen) for loss in standing.scour_loss)
+    return replace(standing, horizontal=standing.horizontal * sideways, vertical=standing.vertical * axially)
 
 
 def _softened(standing: Standing) -> Standing:
@@ -167,7 +164,7 @@ def _flooded(members: tuple[str, ...]) -> Callable[[Standing], Standing]:
             s = member.section_start
             return _SEA_WATER * 0.25 * pi * (s.outer_diameter_m - 2.0 * s.thickness_m) ** 2
 
-        return _heavier(standing, [m for m in standing.structure.members if m.name in members], inside)
+        return with_mass(standing, [m for m in standing.structure.members if m.name in members], inside)
 
     return apply
 
@@ -180,13 +177,28 @@ def _grown(standing: Standing) -> Standing:
         ring = 0.25 * pi * ((outer + 2.0 * thickness) ** 2 - outer**2)
         return ring * (_GROWTH + _SEA_WATER)  # the growth, and the water moved aside by it: C_a = 1
 
-    return _heavier(standing, list(standing.structure.members), more)
+    return with_mass(standing, standing.structure.members, more)
 
 
-def _heavier(standing: Standing, members: list[Member], per_metre: Callable[[Member], float]) -> Standing:
-    """Return the structure with mass on the submerged length of some members, half at either end."""
+def with_mass(
+    standing: Standing, members: Iterable[Member], per_metre: Callable[[Member], float]
+) -> Standing:
+    """Return the structure with mass on the submerged length of some members, half at either end.
+
+    A mass below zero is a loss, as of anodes: it is taken from the bodies on the node, and what they do not
+    have from the steel of the member.
+
+    Parameters
+    ----------
+    per_metre : mass of a metre of a member [kg/m]
+
+    Raises
+    ------
+    InputError
+        If a member loses more than there is.
+    """
     structure = standing.structure
-    masses = list(structure.masses)
+    masses, steel = list(structure.masses), {m.name: m for m in structure.members}
     for member in members:
         a, b = (np.array(structure.nodes[n]) for n in (member.start, member.end))
         low, high = sorted((a[2], b[2]))
@@ -195,7 +207,38 @@ def _heavier(standing: Standing, members: list[Member], per_metre: Callable[[Mem
         mass = 0.5 * wet * float(np.linalg.norm(b - a)) * per_metre(member)
         if mass > 0.0:
             masses += [PointMass(member.start, mass), PointMass(member.end, mass)]
-    return replace(standing, structure=structure.with_masses(tuple(masses)))
+        elif mass < 0.0:
+            left = sum(_taken(masses, node, -mass) for node in (member.start, member.end))
+            steel[member.name] = _lighter(steel[member.name], left, float(np.linalg.norm(b - a)))
+    return replace(
+        standing, structure=replace(structure, members=tuple(steel.values())).with_masses(tuple(masses))
+    )
+
+
+def _taken(masses: list[PointMass], node: str, loss: float) -> float:
+    """Take a mass [kg] from the bodies on a node, the first ones first, and return what they do not have."""
+    for i, body in enumerate(masses):
+        if body.node == node and loss > 0.0:
+            part = min(loss, body.mass_kg)
+            masses[i], loss = replace(body, mass_kg=body.mass_kg - part), loss - part
+    return loss
+
+
+def _lighter(member: Member, loss: float, length_m: float) -> Member:
+    """Return a member whose steel is so many kilograms lighter."""
+    ends = member.section_start, member.section_end
+    area = 0.5 * pi * sum((end.outer_diameter_m - end.thickness_m) * end.thickness_m for end in ends)
+    steel = area * length_m * member.material.density_kg_m3
+    require(
+        loss < steel or loss == 0.0,
+        f"{member.name} loses more mass than there is",
+        field="mass_kg",
+        value=round(loss, 1),
+        allowed=f"less than {steel:.1f} kg, beside what bodies on its nodes weigh",
+        remedy="check the loss a metre, and the members that it is of",
+    )
+    lighter = replace(member.material, density_kg_m3=member.material.density_kg_m3 - loss / (area * length_m))
+    return replace(member, material=lighter)
 
 
 def _tops(structure: Structure) -> Iterator[Happening]:

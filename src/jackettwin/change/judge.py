@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from jackettwin.change.causes import ModelCauses, seen_causes
+from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.table_watch import begun, explained_alarm, structure_causes
 from jackettwin.change.watch_document import alarm_document
 from jackettwin.errors import InputError
@@ -94,6 +95,7 @@ def judge(
     every: Days,
     kept: Judged | None = None,
     settings: WatchSettings = _USUAL,
+    ground: Ground = UNDESCRIBED,
 ) -> tuple[Judged, tuple[Finding, ...]]:
     """Return what the days of a state say of a change, and what is worth saying that was not said before.
 
@@ -103,6 +105,7 @@ def judge(
     ----------
     kept : what an earlier call returned; any of the same promise, it need not be of the same days
     settings : the promise; days before ``settings.relearn`` are left out
+    ground : what is known of it, for the causes of a change
     """
     first = settings.relearn.isoformat() if settings.relearn else UNDATED
     fresh = Judged(settings.baseline_days, settings.arl_years, relearn=first)
@@ -119,7 +122,7 @@ def judge(
     findings = []
     columns = known.columns or Columns.of(model, every, before)
     baseline = cache(lambda: history_of(columns, every, before))  # a year of days, needed rarely
-    causes = cache(lambda: _causes(model, baseline()))  # seconds, needed rarely
+    causes = cache(lambda: _causes(model, baseline(), ground))  # seconds, needed rarely
     if known.learnt is None:
         watch = begun(baseline(), settings.arl_years, causes())
         known = replace(
@@ -144,12 +147,12 @@ def _known(kept: Judged, fresh: Judged, every: Days, before: Sequence[str], afte
     return kept
 
 
-def _causes(model: TwinModel, baseline: History) -> ModelCauses | None:
+def _causes(model: TwinModel, baseline: History, ground: Ground) -> ModelCauses | None:
     """Return what may happen to the structure; None if there is none, or its modes were not seen."""
     if model.assembly is None:
         return None
     try:
-        return structure_causes(model.structure.structure, True, baseline)
+        return structure_causes(model.structure.structure, True, baseline, ground)
     except InputError:
         return None
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.change.causes import ModelCauses, SeenCauses, model_causes, seen_causes
+from jackettwin.change.ground import UNDESCRIBED, Ground
 from jackettwin.change.modal_table import ModalTable
 from jackettwin.change.next_measurements import Circumstances, Measurement, next_measurements
 from jackettwin.errors import InputError
@@ -86,6 +87,7 @@ def watch_table(
     from_day: float = 0.0,
     structure: Structure | None = None,
     gravity: bool = True,
+    ground: Ground = UNDESCRIBED,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Watched:
     """Return what a table says: nothing of it is looked at before its day.
@@ -96,6 +98,7 @@ def watch_table(
     from_day : earlier rows are left out: after a repair or a confirmed change the baseline is learnt anew
     structure, gravity : what stands there, and whether its weight softens it: causes are then its own. None
         for what patterns over modes tell by themselves
+    ground : what is known of it
     progress : told what is being done
 
     Raises
@@ -122,7 +125,7 @@ def watch_table(
     columns_to_watch(baseline)  # refused before a model is asked for causes, which takes a while
     if structure is not None:
         progress("causes")
-    causes = None if structure is None else structure_causes(structure, gravity, baseline)
+    causes = None if structure is None else structure_causes(structure, gravity, baseline, ground)
     progress("baseline")
     watch = begun(baseline, arl_years, causes)
     limits += _limits(watch, baseline, rest)
@@ -179,11 +182,10 @@ def _patterns(diagnosis: Diagnosis, causes: Sequence[Cause], known: BoolArray) -
     return found
 
 
-def structure_causes(structure: Structure, gravity: bool, baseline: History) -> ModelCauses:
+def structure_causes(structure: Structure, gravity: bool, baseline: History, ground: Ground) -> ModelCauses:
     """Return what may happen to a structure that had these modes."""
-    return model_causes(
-        structure, baseline.labels, typical(baseline.frequency), typical(baseline.damping), gravity=gravity
-    )
+    f, zeta = typical(baseline.frequency), typical(baseline.damping)
+    return model_causes(structure, baseline.labels, f, zeta, gravity=gravity, ground=ground)
 
 
 def begun(baseline: History, arl_years: float, causes: ModelCauses | None) -> Watch:

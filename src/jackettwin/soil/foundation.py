@@ -45,6 +45,27 @@ class Foundation:
     """The ground's own curves; None for linear ground."""
     notes: tuple[str, ...] = ()
     """Assumptions about the ground, one sentence each."""
+    profile: SoilProfile | None = None
+    """The layers that the curves are of; None for linear ground."""
+    options: CurveOptions = CurveOptions()
+    """Which curves they are."""
+
+    def scoured(self, depth_m: float) -> Foundation:
+        """Return the foundation with a hole around the pile that is so much deeper.
+
+        Raises
+        ------
+        InputError
+            If the ground is linear, or the hole reaches the tip of the pile.
+        """
+        if self.profile is None:
+            raise InputError(
+                "linear ground knows no scour", field="scour", remedy="describe the ground by layers"
+            )
+        scour = replace(self.profile.scour, local_m=self.profile.scour.local_m + depth_m)
+        profile = replace(self.profile, scour=scour)
+        curves = pile_curves(self.pile, profile, self.options)
+        return replace(self, springs=linearised(curves), curves=curves, profile=profile)
 
     def head(self) -> PileHead:
         """Return a pile lumped at its head."""
@@ -132,9 +153,12 @@ class FoundationSchema(Schema):
         elif self.law is not None:
             with located(field="law"):
                 law = self.law.build()
-        curves = self._curves()
+        profile, curves = self._profile(), None
+        if profile is not None:
+            curves = pile_curves(self.pile, profile, self.curves)
         springs = self._linear() if curves is None else linearised(curves)
-        return Foundation(self.pile, springs, law, self.radiation, curves, self._notes())
+        notes = self._notes()
+        return Foundation(self.pile, springs, law, self.radiation, curves, notes, profile, self.curves)
 
     def _notes(self) -> tuple[str, ...]:
         """Return a sentence on a pile that is longer than its layers, and on one that is not slender."""
@@ -155,13 +179,11 @@ class FoundationSchema(Schema):
             )
         return tuple(notes)
 
-    def _curves(self) -> PileCurves | None:
+    def _profile(self) -> SoilProfile | None:
         layers, linear = self.soil.layers, self.soil.linear
         one = (layers is None) != (linear is None)
         require(one, "the ground is either layers or linear", field="soil", remedy="give one of them")
-        if layers is None:
-            return None
-        return pile_curves(self.pile, SoilProfile(tuple(layers), self.scour or Scour()), self.curves)
+        return None if layers is None else SoilProfile(tuple(layers), self.scour or Scour())
 
     def _linear(self) -> PileSprings:
         linear = self.soil.linear

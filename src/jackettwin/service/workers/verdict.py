@@ -13,7 +13,7 @@ from typing import Any
 
 from jackettwin.answers import answer
 from jackettwin.answers.result import ModeAnswer
-from jackettwin.change import JUDGED, Days, finding_of, judge
+from jackettwin.change import JUDGED, Days, Ground, finding_of, judge
 from jackettwin.report import PageSection
 from jackettwin.report.build import report_sections
 from jackettwin.report.pages.page import page_text
@@ -115,7 +115,8 @@ def watched(
     """
     last = max(identities)
     every = Days(identities, lambda day: engine.DAY.load(json.loads(documents[day])))
-    judged, new = judge(twin.model, every, JUDGED.load(kept) if kept else None, twin.config.watch)
+    before, ground = JUDGED.load(kept) if kept else None, Ground.of(twin.config)
+    judged, new = judge(twin.model, every, before, twin.config.watch, ground)
     said = [(f"{last}T00:00:00+00:00", f) for f in new if f.severity == "info"]
     said += [(alarm["time_utc"], finding_of(alarm)) for alarm in judged.alarms]
     return JUDGED.dump(judged), tuple(

@@ -1,0 +1,100 @@
+"""What is known of the ground under a structure's feet: how stiff it is, and what scour takes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from math import log, pi
+
+import numpy as np
+
+from jackettwin.arrays import FloatArray
+from jackettwin.files import read_yaml
+from jackettwin.soil.foundation import Foundation, build_foundation, read_foundation, shipped_foundations
+from jackettwin.twin import TwinConfig
+from jackettwin.updating import Update
+
+REFERENCE = "jacket15"
+"""The shipped foundation whose piles stand for those that nobody describes: 60 m long, 3.5 m wide, in ten
+metres of stiff clay over dense sand. A metre of scour takes 21 % of their lateral stiffness, and 1 % of the
+axial one, which comes from deeper down."""
+
+Loss = tuple[float, float]
+"""ln of the horizontal and of the vertical stiffness that a pile head loses by a metre of scour."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What is known of the ground.
+
+    Attributes
+    ----------
+    piles : Foundation or None
+        Layered ground with a pile in it; without, scour takes what it takes of the piles of ``REFERENCE``.
+    stiffness : (n_draws, 2, n_feet) or None
+        Horizontal and vertical stiffness of the feet [N/m], drawn from the posterior of an update; without,
+        it is fitted to the frequencies of the baseline.
+    """
+
+    piles: Foundation | None = None
+    stiffness: FloatArray | None = None
+
+    @classmethod
+    def of(cls, config: TwinConfig, update: Update | None = None) -> Ground:
+        """Return what a twin file says of the ground, and what an update of its supports found."""
+        sampled = None if update is None or update.uncertainty is None else _feet_stiffness(update)
+        return cls(_piles(config), sampled)
+
+    @property
+    def scour_loss(self) -> Loss:
+        """What a metre of scour takes, by the soil's own curves."""
+        return _reference_loss() if self.piles is None else scour_loss(self.piles)
+
+
+UNDESCRIBED = Ground()
+"""Ground of which nothing is known but what stands on it."""
+
+
+def scour_loss(piles: Foundation) -> Loss:
+    """Return ln of the stiffness that a pile head loses by a metre of scour: sideways, upright; and axially.
+
+    Raises
+    ------
+    InputError
+        If the ground has no layers.
+    """
+    before, after = (one.head() for one in (piles, piles.scoured(1.0)))
+    K, L = before.steel + before.soil, after.steel + after.soil
+    return log(K[0, 0] / L[0, 0]), log(K[2, 2] / L[2, 2])
+
+
+@cache
+def _reference_loss() -> Loss:
+    return scour_loss(read_foundation(REFERENCE))
+
+
+def _piles(config: TwinConfig) -> Foundation | None:
+    """Return the pile foundation that a twin names under ``support.stiffness``, if its ground has layers."""
+    if config.heads is None or config.heads in ("own", "pinned", "clamped"):
+        return None
+    path = config.path.parent / config.heads
+    if config.heads in shipped_foundations():
+        piles = read_foundation(config.heads)
+    elif path.suffix.lower() in (".yaml", ".yml") and "pile" in (content := read_yaml(path)):
+        piles = build_foundation(content, path)
+    else:
+        return None
+    return None if piles.profile is None else piles
+
+
+def _feet_stiffness(update: Update) -> FloatArray:
+    """Return the storage stiffness of every foot at the first pinned frequency, draw by draw."""
+    model, known = update.model, update.uncertainty
+    assert known is not None
+    feet, s = model.assembly.structure.reaction_nodes, 2j * pi * model.reference_hz
+    out = np.zeros((len(known.log_theta), 2, len(feet)))
+    for draw, theta in zip(out, np.exp(known.log_theta), strict=True):
+        for spring in model.tie_groups.support(model.laws(theta)).springs:
+            k = np.asarray(spring.law.stiffness(s)).real * spring.matrix
+            draw[:, feet.index(spring.node)] += 0.5 * (k[0, 0] + k[1, 1]), k[2, 2]
+    return out
