@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jackettwin.records.clocks.jumps import lines, runs, scatter, steps
+from jackettwin.records.clocks.jumps import lines, runs, scatter, series_jumps
 
 
 def test_noise_and_drift_are_no_steps(rng: np.random.Generator) -> None:
@@ -21,7 +21,7 @@ def test_a_step_is_found_where_it_is(rng: np.random.Generator) -> None:
     series[7:, 1] += 0.5
     found = runs(series, 0.08)
     assert found == [(0, 7), (7, 12)]
-    (step,) = steps(series, found, 0.08)
+    (step,) = series_jumps(series, found, 0.08)
     assert (step.rows, step.before, step.after) == ((1,), 7, 7)
     # a mean of five of 0.01
     assert step.by[1] == pytest.approx(0.5, abs=0.02)
@@ -31,7 +31,7 @@ def test_the_window_a_step_lies_in_belongs_to_neither_side(rng: np.random.Genera
     series = 0.01 * rng.standard_normal((12, 1))
     series[6] += 0.25
     series[7:] += 0.5
-    (step,) = steps(series, runs(series, 0.08), 0.08)
+    (step,) = series_jumps(series, runs(series, 0.08), 0.08)
     assert (step.before, step.after) == (6, 7)
 
 
@@ -44,10 +44,10 @@ def test_slope_and_scatter(rng: np.random.Generator) -> None:
 
 def test_a_series_that_jumps_back_for_a_window_tells_nothing():
     series = np.repeat([[0.0], [1.0]], [4, 8], axis=0)
-    (step,) = steps(series, runs(series, 0.1), 0.1)
+    (step,) = series_jumps(series, runs(series, 0.1), 0.1)
     assert step.rows == (0,)
     series[8] = 0.0
-    assert steps(series, runs(series, 0.1), 0.1) == []
+    assert series_jumps(series, runs(series, 0.1), 0.1) == []
     # elsewhere is a window that was misread
     series[8] = 3.0
-    assert [step.rows for step in steps(series, runs(series, 0.1), 0.1)] == [(0,)]
+    assert [step.rows for step in series_jumps(series, runs(series, 0.1), 0.1)] == [(0,)]

@@ -9,7 +9,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.records.clocks.channel_delays import Network, by_channel, without_gaps
 from jackettwin.records.clocks.delays import Phases, gain_trajectories
-from jackettwin.records.clocks.jumps import SIGMAS, lines, runs, steps
+from jackettwin.records.clocks.jumps import SIGMAS, lines, runs, series_jumps
 from jackettwin.records.clocks.results import GainJump, GrowingGain
 
 LEAST_FACTOR = 1.15
@@ -65,24 +65,24 @@ def _jumps(
     told : (n_channels, n_windows)
         Which windows tell of a channel; others are filled from those beside them.
     """
-    found = steps(series, runs(series, network.reach_s), network.reach_s)
+    found = series_jumps(series, runs(series, network.reach_s), network.reach_s)
     if len(found) != 1:
         return ()
-    step = found[0]
-    sides = told[:, : step.before].sum(axis=1), told[:, step.after :].sum(axis=1)
-    jumping = [i for i in step.rows if min(side[i] for side in sides) >= FEWEST_TOLD]
+    jump = found[0]
+    sides = told[:, : jump.before].sum(axis=1), told[:, jump.after :].sum(axis=1)
+    jumping = [i for i in jump.rows if min(side[i] for side in sides) >= FEWEST_TOLD]
     if not jumping:
         return ()
-    step = replace(step, rows=tuple(jumping))
-    level = np.median(series[: step.before, jumping], axis=0)
-    passed = np.median((series[:, jumping] - level) / step.by[jumping], axis=1)
+    jump = replace(jump, rows=tuple(jumping))
+    level = np.median(series[: jump.before, jumping], axis=0)
+    passed = np.median((series[:, jumping] - level) / jump.by[jumping], axis=1)
     before = int(np.argmax(passed > PASSED))
     after = len(series) - int(np.argmax(passed[::-1] < 1.0 - PASSED))
     out = []
-    for group in without_gaps(step.by[jumping], 0.5 * network.reach_s):
-        rows = [step.rows[i] for i in group]
-        by = float(np.exp(np.mean(step.by[rows])))
-        others = [i for i in range(len(step.by)) if i not in step.rows]
+    for group in without_gaps(jump.by[jumping], 0.5 * network.reach_s):
+        rows = [jump.rows[i] for i in group]
+        by = float(np.exp(np.mean(jump.by[rows])))
+        others = [i for i in range(len(jump.by)) if i not in jump.rows]
         if _is_others(seen.log_amplitude, rows, others, before, after):
             rows, by = others, 1.0 / by
         start, stop = int((before - MARGIN) * length), int((after + MARGIN) * length)

@@ -14,13 +14,13 @@ SIGMAS = 6.0
 
 
 @dataclass(frozen=True)
-class ClockStep:
-    """A step of some series between two runs of windows.
+class SeriesJump:
+    """A jump of some series between two runs of windows.
 
     Attributes
     ----------
     rows : tuple of int
-        Series that step.
+        Series that jump.
     by : (n_series,)
         Level after over level before, of all series.
     before, after : int
@@ -34,14 +34,14 @@ class ClockStep:
 
 
 def scatter(series: FloatArray) -> FloatArray:
-    """Return the standard deviation of each series in a window, by the steps between windows.
+    """Return the standard deviation of each series in a window, by the differences between windows.
 
     Parameters
     ----------
     series : (n_windows, n_series)
     """
-    steps = np.diff(series, axis=0)
-    spread = np.median(np.abs(steps - np.median(steps, axis=0)), axis=0)
+    changes = np.diff(series, axis=0)
+    spread = np.median(np.abs(changes - np.median(changes, axis=0)), axis=0)
     return np.asarray(1.4826 * spread / np.sqrt(2.0))
 
 
@@ -64,17 +64,17 @@ def runs(series: FloatArray, reach: float) -> list[tuple[int, int]]:
     """
     tolerance = _tolerance(series, reach)
     _, rest = lines(series)
-    step = np.diff(series, axis=0)
-    step = step - np.median(step, axis=0)
+    change = np.diff(series, axis=0)
+    change = change - np.median(change, axis=0)
     # a line takes half of a jump in the middle
     off = np.abs(rest).max(axis=0) > 0.5 * tolerance
-    broken = 1 + np.flatnonzero((off & (np.abs(step) > tolerance)).any(axis=1))
+    broken = 1 + np.flatnonzero((off & (np.abs(change) > tolerance)).any(axis=1))
     edges = [0, *(int(k) for k in broken), len(series)]
     return [(a, b) for a, b in pairwise(edges) if b > a]
 
 
-def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[ClockStep]:
-    """Return the steps between runs; a run of one window is the one in which a step lies.
+def series_jumps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> list[SeriesJump]:
+    """Return the jumps between runs; a run of one window is the one in which a jump lies.
 
     A clock does not jump back for one window: where a series does, two delays explain the phases alike, and
     none is told.
@@ -90,10 +90,10 @@ def steps(series: FloatArray, between: list[tuple[int, int]], reach: float) -> l
         back = (np.abs(series[single] - other) < tolerance).any(axis=0)
         rows = tuple(int(i) for i in np.flatnonzero((np.abs(by) > tolerance) & ~back))
         if rows:
-            out.append(ClockStep(rows, by, before[1], after[0]))
+            out.append(SeriesJump(rows, by, before[1], after[0]))
     return out
 
 
 def _tolerance(series: FloatArray, reach: float) -> FloatArray:
-    """Return the least step of each series that is a jump."""
+    """Return the least difference of each series that is a jump."""
     return np.asarray(np.maximum(reach, SIGMAS * scatter(series)))

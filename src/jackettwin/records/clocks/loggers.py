@@ -52,7 +52,7 @@ from jackettwin.records.clocks.delays import (
     trajectories,
 )
 from jackettwin.records.clocks.gain_changes import gain_changes, sign_turns
-from jackettwin.records.clocks.jumps import runs, steps
+from jackettwin.records.clocks.jumps import runs, series_jumps
 from jackettwin.records.clocks.lost_time import lost_time
 from jackettwin.records.clocks.results import ClockJump, Strangers
 
@@ -168,12 +168,12 @@ def logger_clocks(
     between = runs(series, seen.network.reach_s)
     jumps = tuple(
         ClockJump(
-            step.rows,
-            max(step.before - 1, 0) * length,
-            min(step.after + 1, len(series)) * length,
-            float(np.median(step.by[list(step.rows)])),
+            jump.rows,
+            max(jump.before - 1, 0) * length,
+            min(jump.after + 1, len(series)) * length,
+            float(np.median(jump.by[list(jump.rows)])),
         )
-        for step in steps(series, between, seen.network.reach_s)
+        for jump in series_jumps(series, between, seen.network.reach_s)
     )
     first, last = max(between, key=lambda run: run[1] - run[0]) if jumps else (0, len(series))
     if last - first < FEWEST_WINDOWS:

@@ -10,9 +10,7 @@ import numpy as np
 from jackettwin.arrays import BoolArray, FloatArray
 from jackettwin.findings import Finding
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records.clocks.correction import in_step
-from jackettwin.records.clocks.loggers import clocks_of
-from jackettwin.records.clocks.results import clock_findings
+from jackettwin.records.clocks import clock_findings, clocks_of, in_step
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults, sensor_polarity
 from jackettwin.records.quality.faults import ChannelQuality, channel_findings
@@ -23,7 +21,7 @@ from jackettwin.records.record import LARGEST
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from jackettwin.records.clocks.results import LoggerClocks
+    from jackettwin.records.clocks import LoggerClocks
     from jackettwin.records.record import Record
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.quantities import VIBRATIONS
-from jackettwin.records.clocks.correction import in_step, stretch
+from jackettwin.records.clocks import in_step, stretch
 from jackettwin.records.processing import filters
 from jackettwin.records.quality import faults
 from jackettwin.records.quality.record_quality import DRIFT_CYCLES, shortest_stuck

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.quantities import guess_quantity, names_other
-from jackettwin.records.clocks.grid import between_ticks, regularise
+from jackettwin.records.clocks import between_ticks, regularise
 from jackettwin.records.readers.channel_names import Reading, read_name, told
 from jackettwin.records.readers.channels import (
     Described,
