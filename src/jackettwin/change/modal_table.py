@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pyarrow as pa
-import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
 
 from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.change.table_times import table_times
-from jackettwin.errors import InputError, did_you_mean, located
+from jackettwin.errors import InputError, did_you_mean, located, require
+from jackettwin.records import text_table
 from jackettwin.watching import History
 from jackettwin.watching.history import typical
 
@@ -111,22 +111,18 @@ def _read(path: Path) -> Columns:
 
 
 def _read_text(raw: bytes) -> pa.Table:
-    text = (
-        raw.decode("utf-16") if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else raw.decode("utf-8-sig", "replace")
-    )
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if not lines:
-        raise InputError("holds no rows", allowed="a header and rows", remedy="export it again")
-    delimiter = max(";\t,", key=lambda c: min(line.count(c) for line in lines[:20]))
-    names = [name.strip().strip('"') for name in lines[0].split(delimiter)]
-    read = pacsv.read_csv(
-        pa.BufferReader("\n".join(lines).encode()),
-        parse_options=pacsv.ParseOptions(delimiter=delimiter),
-        convert_options=pacsv.ConvertOptions(
-            column_types={name: pa.string() for name in names}, strings_can_be_null=False
-        ),
-    )
-    return read.rename_columns([name.strip() for name in read.column_names])
+    rows = text_table(raw).rows
+    require(rows, "holds no rows", allowed="a header and rows", remedy="export it again")
+    names, body = rows[0], rows[1:]
+    for number, row in enumerate(body, start=2):
+        if len(row) != len(names):
+            raise InputError(
+                f"is not a table: row {number} has {len(row)} cells, the header {len(names)}",
+                allowed="CSV or Parquet with a header",
+                remedy="export it again",
+            )
+    columns = zip(*body, strict=True) if body else [()] * len(names)
+    return pa.Table.from_arrays([pa.array(cells, pa.string()) for cells in columns], names)
 
 
 def _values(column: Any) -> npt.NDArray[Any]:

@@ -6,4 +6,5 @@ from .processing.yaw import to_global_axes as to_global_axes, to_rotor_axes as t
 from .quality.record_quality import assess as assess
 from .quality.repair import repair as repair
 from .readers import read_record as read_record, write_record as write_record
+from .readers.delimited import MISSING as MISSING, text_table as text_table
 from .record import Channel as Channel, Record as Record

@@ -6,7 +6,6 @@ its own or behind ``±``. Separator and decimal sign are found; units stand in t
 
 from __future__ import annotations
 
-import csv
 import logging
 import re
 from math import pi
@@ -15,7 +14,7 @@ from typing import Any
 
 from jackettwin.errors import InputError, located
 from jackettwin.intervals import NORMAL_95
-from jackettwin.records.readers.delimited import MISSING, decoded
+from jackettwin.records import MISSING, text_table
 
 log = logging.getLogger(__name__)
 NAME = re.compile(r"^(?:mode|label|name|shape|description|no|nr|#|number)\b", re.IGNORECASE)
@@ -47,21 +46,20 @@ def read_targets_table(path: Path) -> list[dict[str, Any]]:
         Names file, line and cell that is not understood.
     """
     try:
-        text = decoded(path.read_bytes())
+        raw = path.read_bytes()
     except OSError:
         raise InputError(
             "no such table of modes", file=path, field="targets", remedy="check the path"
         ) from None
     with located(file=path):
-        return _targets(text)
+        return _targets(raw)
 
 
-def _targets(text: str) -> list[dict[str, Any]]:
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if len(lines) < 2:
+def _targets(raw: bytes) -> list[dict[str, Any]]:
+    table = text_table(raw)
+    rows, delimiter = table.rows, table.delimiter
+    if len(rows) < 2:
         raise InputError("holds no modes", field="targets", allowed="names of columns, then a row a mode")
-    delimiter = max(";\t,|", key=lines[0].count)
-    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=delimiter)]
     names = _with_owners(rows[0])
     columns = {i: key for i, name in enumerate(names) if (key := _key(name)) is not None}
     strangers = len(columns) < len(rows[0])  # one of them may name the modes; without any, none is named

@@ -13,6 +13,7 @@ import csv
 import io
 import re
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import islice
 from math import isnan
 from typing import TYPE_CHECKING, Any
@@ -171,6 +172,30 @@ def decoded(raw: bytes) -> str:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         return raw.decode("cp1252", errors="replace")  # what spreadsheets write for ² and µ
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """The cells of a delimited text, without comments and empty lines, and what separates them."""
+
+    delimiter: str
+    rows: list[list[str]]
+
+
+def text_table(raw: bytes) -> TextTable:
+    r"""Return the cells of a table of words and numbers, whatever its encoding and separator.
+
+    Lines that begin with ``#`` are comments. Cells stay text: a decimal comma is for the caller to read.
+
+    Examples
+    --------
+    >>> text_table("# a jacket\nmode; f [Hz]\n1st bending; 0,312\n".encode("cp1252"))
+    TextTable(delimiter=';', rows=[['mode', 'f [Hz]'], ['1st bending', '0,312']])
+    """
+    lines = [line for line in decoded(raw).splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    delimiter = _delimiter(lines[:MOST_LINES_ON_TOP])
+    rows = _cells("\n".join(lines), delimiter)
+    return TextTable(delimiter, [[cell.strip() for cell in row] for row in rows])
 
 
 def _preamble(lines: list[str]) -> tuple[dict[str, str], int, str]:
