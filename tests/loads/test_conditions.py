@@ -1,6 +1,6 @@
 """Conditions of a record."""
 
-from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.loads.sea.waves import SeaState
 
 
 def test_a_sea_state_becomes_waves() -> None:

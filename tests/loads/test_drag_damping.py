@@ -7,8 +7,7 @@ from scipy.integrate import quad
 from jackettwin.decks import read_structure
 from jackettwin.loads.members.drag_damping import sea_drag_damping, velocity_std
 from jackettwin.loads.members.morison import MorisonPoints, morison_points, point_forces
-from jackettwin.loads.sea.conditions import SeaState
-from jackettwin.loads.sea.waves import irregular_sea, jonswap
+from jackettwin.loads.sea.waves import SeaState, irregular_sea, jonswap
 from jackettwin.structure import Assembly, assemble
 
 SEA, DEPTH = SeaState(3.0, 8.0), 72.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from jackettwin.errors import InputError
-from jackettwin.response.modes.names import read_mode_label
+from jackettwin.response.modes.labels import read_mode_label
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from observations import observation
 from jackettwin.errors import InputError
 from jackettwin.loads.members.coefficients import Coefficients
 from jackettwin.loads.members.water import Water
-from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.loads.sea.waves import SeaState
 from jackettwin.soil import family
 from jackettwin.study.fit_data import residuals, target_modes
 from jackettwin.study.problem import UpdateEvidence, law_problem

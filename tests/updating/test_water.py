@@ -10,7 +10,7 @@ from jackettwin.errors import InputError
 from jackettwin.loads.members.drag_damping import sea_drag_damping
 from jackettwin.loads.members.morison import morison_points
 from jackettwin.loads.members.water import Water, water_mass
-from jackettwin.loads.sea.conditions import SeaState
+from jackettwin.loads.sea.waves import SeaState
 from jackettwin.soil import Parameter
 from jackettwin.structure import Assembly
 from jackettwin.updating import SupportModel, nuisance_parameters as nuisance_module

@@ -49,7 +49,6 @@ from .members.water_files import (
     depth_of as depth_of,
     water_members as water_members,
 )
-from .sea.conditions import SeaState as SeaState
 from .sea.current import Current as Current
 from .sea.given_kinematics import (
     Kinematics as Kinematics,
@@ -71,6 +70,7 @@ from .sea.wave_series import (
 )
 from .sea.waves import (
     AirySea as AirySea,
+    SeaState as SeaState,
     Waves as Waves,
     airy_wave as airy_wave,
     irregular_sea as irregular_sea,

@@ -10,7 +10,12 @@ from .condensation.numbered_modes import (
     numbered_poles as numbered_poles,
 )
 from .condensation.relaxation import Relaxation as Relaxation, nearest_relaxation as nearest_relaxation
-from .modes.labels import LOCAL as LOCAL, mode_kinds as mode_kinds, mode_labels as mode_labels
+from .modes.labels import (
+    LOCAL as LOCAL,
+    mode_kinds as mode_kinds,
+    mode_labels as mode_labels,
+    read_mode_label as read_mode_label,
+)
 from .modes.modal import (
     DampedModes as DampedModes,
     UndampedModes as UndampedModes,
@@ -18,7 +23,6 @@ from .modes.modal import (
     undamped_modes as undamped_modes,
 )
 from .modes.multiple import aligned as aligned, aligned_coordinates as aligned_coordinates
-from .modes.names import read_mode_label as read_mode_label
 from .modes.own_damping import own_damping as own_damping
 from .modes.tracking import near_degenerate as near_degenerate, track_modes as track_modes
 from .motion.passage import Passage as Passage, wave_passage as wave_passage

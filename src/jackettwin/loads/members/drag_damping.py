@@ -15,8 +15,7 @@ import scipy.sparse as sp
 
 from jackettwin.arrays import FloatArray
 from jackettwin.loads.members.morison import MorisonPoints, above_bed, drag_damping
-from jackettwin.loads.sea.conditions import SeaState
-from jackettwin.loads.sea.waves import depth_functions, jonswap, wave_number
+from jackettwin.loads.sea.waves import SeaState, depth_functions, jonswap, wave_number
 
 _STEP_HZ = 1e-3
 _HIGHEST = 4.0

@@ -264,3 +264,27 @@ def _headings(rng: np.random.Generator, s: float, n: int) -> FloatArray:
     beta = np.linspace(-np.pi, np.pi, 4001)
     cumulative = np.cumsum(np.cos(0.5 * beta) ** (2.0 * s))
     return np.interp(rng.uniform(size=n), cumulative / cumulative[-1], beta)
+
+
+@dataclass(frozen=True)
+class SeaState:
+    """A JONSWAP sea: Hs [m], Tp [s], heading from +x [rad]; the rest as in ``irregular_sea``."""
+
+    Hs: float
+    Tp: float
+    direction: float = 0.0
+    gamma: float | None = None
+    spreading: float | None = None
+
+    def waves(self, *, depth: float, duration: float, seed: int) -> AirySea:
+        """Return the sea's random waves."""
+        return irregular_sea(
+            Hs=self.Hs,
+            Tp=self.Tp,
+            depth=depth,
+            duration=duration,
+            seed=seed,
+            gamma=self.gamma,
+            direction=self.direction,
+            spreading=self.spreading,
+        )

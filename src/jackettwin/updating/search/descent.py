@@ -79,19 +79,18 @@ def descend(problem: Problem, start: FloatArray, *, known: tuple[FloatArray, ...
     """
     taken, path = 0, Path(problem)
     if known:
-        start, taken = _least_squares(path, start, _deflated(problem, known), tolerance=1e-3, evaluations=60)
+        start, taken = _least_squares(path, start, *_deflated(path, known), tolerance=1e-3, evaluations=60)
     z = start
     for tolerance in (1e-3, 1e-8):
         here = path.total(z)
-        z, n = _least_squares(path, z, _pulled(problem, problem.allowance(here)), tolerance=tolerance)
+        z, n = _least_squares(path, z, *_pulled(path, here), tolerance=tolerance)
         taken += n
-    free, n = _least_squares(path, z, _free, tolerance=1e-10)
+    free, n = _least_squares(path, z, path.values, path.jacobian, tolerance=1e-10)
     taken += n
     back = z
     if np.abs(free - z).max() >= _POINT:
         # in a flat valley the pull leads back; a minimum that the pulled search was too slow to reach stays
-        pull = _pulled(problem, problem.allowance(path.total(free)))
-        back, n = _least_squares(path, free, pull, tolerance=1e-8)
+        back, n = _least_squares(path, free, *_pulled(path, path.total(free)), tolerance=1e-8)
         taken += n
     return replace(_judged(problem, free if np.abs(free - back).max() < _POINT else z), evaluations=taken)
 
@@ -100,7 +99,7 @@ def bottom(problem: Problem, start: FloatArray, near: Found) -> FloatArray:
     """Return the nearest minimum roughly, from a start whose modes are known."""
     path = Path(problem)
     path.last = near
-    return _least_squares(path, start, _free, tolerance=1e-3, evaluations=30)[0]
+    return _least_squares(path, start, path.values, path.jacobian, tolerance=1e-3, evaluations=30)[0]
 
 
 def settle(problem: Problem, end: End) -> End:
@@ -110,8 +109,8 @@ def settle(problem: Problem, end: End) -> End:
     weakest = float(np.linalg.svd(J * width, compute_uv=False)[-1]) if len(J) >= end.z.size else 0.0
     if weakest**2 > problem.negligible:
         return end
-    pull = _pulled(problem, problem.allowance(end.cost))
-    z, _ = _least_squares(Path(problem), end.z, pull, tolerance=1e-12, evaluations=1000)
+    path = Path(problem)
+    z, _ = _least_squares(path, end.z, *_pulled(path, end.cost), tolerance=1e-12, evaluations=1000)
     return _judged(problem, z)
 
 
@@ -145,11 +144,12 @@ def constrained(problem: Problem, z: FloatArray, parameter: int, value: float) -
     def jacobian(y: FloatArray) -> FloatArray:
         return path.jacobian(full(y))[:, free]
 
+    low, high = problem.prior.low[free], problem.prior.high[free]
     fit = least_squares(
         values,
-        np.clip(z[free], problem.prior.low[free], problem.prior.high[free]),
+        np.clip(z[free], low, high),
         jac=jacobian,
-        bounds=(problem.prior.low[free], problem.prior.high[free]),
+        bounds=(low, high),
         x_scale="jac",
         xtol=1e-6,
         ftol=1e-4,
@@ -164,13 +164,13 @@ Rows = Callable[[FloatArray], FloatArray]
 def _least_squares(
     path: Path,
     start: FloatArray,
-    rows_of: Callable[[Path], tuple[Rows, Rows]],
+    values: Rows,
+    jacobian: Rows,
     *,
     tolerance: float,
     evaluations: int = _EVALUATIONS,
 ) -> tuple[FloatArray, int]:
     """Return where least squares end, and how many evaluations that took."""
-    values, jacobian = rows_of(path)
     prior = path.problem.prior
     fit = least_squares(
         values,
@@ -186,29 +186,20 @@ def _least_squares(
     return np.asarray(fit.x), int(fit.nfev)
 
 
-def _free(path: Path) -> tuple[Rows, Rows]:
-    return path.values, path.jacobian
-
-
-def _pulled(problem: Problem, allowance: float) -> Callable[[Path], tuple[Rows, Rows]]:
-    low, high = problem.prior.low, problem.prior.high
-    weight = np.sqrt(_RIDGE * allowance) / (high - low)
+def _pulled(path: Path, cost: float) -> tuple[Rows, Rows]:
+    """Return residuals and Jacobian with a pull to the middle of the bounds, weak beside a cost."""
+    low, high = path.problem.prior.low, path.problem.prior.high
+    weight = np.sqrt(_RIDGE * path.problem.allowance(cost)) / (high - low)
     middle = 0.5 * (low + high)
-
-    def rows_of(path: Path) -> tuple[Rows, Rows]:
-        def values(z: FloatArray) -> FloatArray:
-            return np.concatenate([path.values(z), weight * (z - middle)])
-
-        def jacobian(z: FloatArray) -> FloatArray:
-            return np.concatenate([path.jacobian(z), np.diag(weight)])
-
-        return values, jacobian
-
-    return rows_of
+    return (
+        lambda z: np.concatenate([path.values(z), weight * (z - middle)]),
+        lambda z: np.concatenate([path.jacobian(z), np.diag(weight)]),
+    )
 
 
-def _deflated(problem: Problem, known: tuple[FloatArray, ...]) -> Callable[[Path], tuple[Rows, Rows]]:
-    width = 0.1 * (problem.prior.high - problem.prior.low)
+def _deflated(path: Path, known: tuple[FloatArray, ...]) -> tuple[Rows, Rows]:
+    """Return residuals and Jacobian multiplied by a factor m that grows without bound at known solutions."""
+    width = 0.1 * (path.problem.prior.high - path.problem.prior.low)
 
     def factor(z: FloatArray) -> tuple[float, FloatArray]:
         """Return m(z) and ∇ ln m."""
@@ -220,17 +211,11 @@ def _deflated(problem: Problem, known: tuple[FloatArray, ...]) -> Callable[[Path
             slope -= 2.0 * u / width / (square * (1.0 + square))
         return float(np.exp(log_m)), slope
 
-    def rows_of(path: Path) -> tuple[Rows, Rows]:
-        def values(z: FloatArray) -> FloatArray:
-            return factor(z)[0] * path.values(z)
+    def jacobian(z: FloatArray) -> FloatArray:
+        m, slope = factor(z)
+        return np.asarray(m * (path.jacobian(z) + np.outer(path.values(z), slope)))
 
-        def jacobian(z: FloatArray) -> FloatArray:
-            m, slope = factor(z)
-            return np.asarray(m * (path.jacobian(z) + np.outer(path.values(z), slope)))
-
-        return values, jacobian
-
-    return rows_of
+    return lambda z: factor(z)[0] * path.values(z), jacobian
 
 
 def _judged(problem: Problem, z: FloatArray) -> End:
