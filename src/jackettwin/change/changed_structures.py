@@ -11,8 +11,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.change.ground import UNDESCRIBED, Loss
 from jackettwin.errors import require
-from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.model import Member, PointMass
+from jackettwin.structure import Material, Member, PointMass, Section, Structure
 
 _LEG = 0.9
 """A member of the jacket that climbs by more of its length is a leg."""

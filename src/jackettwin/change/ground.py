@@ -10,7 +10,8 @@ import numpy as np
 
 from jackettwin.arrays import FloatArray
 from jackettwin.files import read_yaml
-from jackettwin.soil.foundation import Foundation, build_foundation, read_foundation, shipped_foundations
+from jackettwin.soil import Foundation, read_foundation
+from jackettwin.soil.foundation import build_foundation, shipped_foundations
 from jackettwin.twin import TwinConfig
 from jackettwin.updating import Update
 

@@ -18,9 +18,7 @@ from jackettwin.checks.iso19902_joints import (
     joint_use,
     load_path,
 )
-from jackettwin.structure import Assembly, Section, Structure
-from jackettwin.structure.forces import SectionForces
-from jackettwin.structure.model import Member
+from jackettwin.structure import Assembly, Member, Section, SectionForces, Structure
 
 _STRAIGHT = float(np.cos(np.radians(10.0)))
 """Tubes within 10° of one line carry on as a chord: a leg may break its batter at a node."""

@@ -22,8 +22,7 @@ from jackettwin.checks.iso19902 import (
 from jackettwin.checks.iso19902_pressure import PRESSURE_CHECKS, HoopStrength, hoop_strength, pressure_use
 from jackettwin.checks.joint_check import BraceUse, joint_plans, joint_uses, worst_joints
 from jackettwin.errors import InputError
-from jackettwin.structure import Assembly
-from jackettwin.structure.forces import SectionForces, section_forces, tube_radius, von_mises_stress
+from jackettwin.structure import Assembly, SectionForces, section_forces, tube_radius, von_mises_stress
 
 ALL_CHECKS = CHECKS | PRESSURE_CHECKS
 """Checks of a member and their clauses; those under pressure only where there is some."""

@@ -33,9 +33,7 @@ from jackettwin.loads import (
 from jackettwin.report import Table, TableColumn
 from jackettwin.response import build_system, nodal_load, self_weight, static_displacement
 from jackettwin.simulate import read_scenario, scenario_uses, water_notes
-from jackettwin.structure import Assembly, assemble
-from jackettwin.structure.check import few
-from jackettwin.structure.forces import element_weight
+from jackettwin.structure import Assembly, assemble, element_weight, few
 
 _SHOWN = 15
 """Members in the terminal."""

@@ -12,8 +12,7 @@ from jackettwin.decks import read_structure, write_subdyn
 from jackettwin.errors import InputError
 from jackettwin.response import dissipates
 from jackettwin.soil import Support, with_static_reactions
-from jackettwin.structure import Structure, assemble
-from jackettwin.structure.cut import at_interface
+from jackettwin.structure import Structure, assemble, at_interface
 
 
 @click.command("export")

@@ -26,8 +26,7 @@ from jackettwin.response import (
 )
 from jackettwin.soil import Support, read_support
 from jackettwin.soil.support import described
-from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check
-from jackettwin.structure.rotor_modes import with_rotor, without_rotor
+from jackettwin.structure import Assembly, Rayleigh, Structure, assemble, check, with_rotor, without_rotor
 from jackettwin.updating import numbered_modes
 
 _OVERDAMPED = 0.3

@@ -36,9 +36,7 @@ from jackettwin.response import (
     write_superelement,
 )
 from jackettwin.response.superelement.craig_bampton import superelement
-from jackettwin.structure import Assembly, Structure, assemble
-from jackettwin.structure.cut import at_interface
-from jackettwin.structure.model import Vector
+from jackettwin.structure import Assembly, Structure, Vector, assemble, at_interface
 
 
 @click.command("superelement")

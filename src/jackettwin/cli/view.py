@@ -42,8 +42,7 @@ from jackettwin.response import (
     undamped_modes,
     wave_passage,
 )
-from jackettwin.structure import Assembly, assemble, check
-from jackettwin.structure.forces import element_weight, section_forces, von_mises_stress
+from jackettwin.structure import Assembly, assemble, check, element_weight, section_forces, von_mises_stress
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports: nothing to look at."""

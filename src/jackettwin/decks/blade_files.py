@@ -13,8 +13,8 @@ from jackettwin.decks.openfast import Deck, read_deck, to_float
 from jackettwin.errors import located, require
 from jackettwin.files import find_file, read_yaml
 from jackettwin.files.windio import Part, WindIO, windio
+from jackettwin.structure import FlexibleRotor
 from jackettwin.structure.blades import BladeStructure
-from jackettwin.structure.rotor_modes import FlexibleRotor
 
 DEFAULT_RATIO = 0.005
 """Structural damping of a blade whose file says nothing: half a percent, as reference turbines state."""

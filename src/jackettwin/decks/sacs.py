@@ -18,14 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from jackettwin.errors import InputError, located, require
-from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.model import (
-    Member,
-    PointMass,
-    Reaction,
-    RigidLink,
-    Vector,
-)
+from jackettwin.structure import Material, Member, PointMass, Reaction, RigidLink, Section, Structure, Vector
 
 log = logging.getLogger(__name__)
 _G = 9.80665

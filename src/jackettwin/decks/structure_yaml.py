@@ -12,18 +12,9 @@ from pydantic import Field
 from jackettwin.decks.blade_files import read_flexible_rotor
 from jackettwin.errors import located, look_up, require
 from jackettwin.files import Placed, Schema, read_yaml, validate
-from jackettwin.structure.jacket import (
-    Appurtenance,
-    Lattice,
-    MaterialInFile,
-    Tower,
-    TransitionPiece,
-    jacket,
-)
-from jackettwin.structure.masses import body_from_static_moments
-from jackettwin.structure.model import (
+from jackettwin.structure import (
     STEEL,
-    Inertia,
+    FlexibleRotor,
     Member,
     PointMass,
     Reaction,
@@ -31,8 +22,13 @@ from jackettwin.structure.model import (
     Section,
     Structure,
     Vector,
+    body_from_static_moments,
+    jacket,
+    with_rotor,
+    without_rotor,
 )
-from jackettwin.structure.rotor_modes import FlexibleRotor, with_rotor, without_rotor
+from jackettwin.structure.jacket import Appurtenance, Lattice, MaterialInFile, Tower, TransitionPiece
+from jackettwin.structure.model import Inertia
 
 Arm = Annotated[float, Field(ge=-1e3, le=1e3)]
 """From a node to a centre of gravity [m]."""

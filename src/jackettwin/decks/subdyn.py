@@ -15,7 +15,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast import Deck, read_deck, to_float, to_integer
 from jackettwin.decks.subdyn_members import read_parts
 from jackettwin.errors import InputError, located, require
-from jackettwin.structure.model import PointMass, Reaction, Structure
+from jackettwin.structure import PointMass, Reaction, Structure
 
 _DOFS = ("x", "y", "z", "tx", "ty", "tz")
 _FLAGS = ("tdxss", "tdyss", "tdzss", "rdxss", "rdyss", "rdzss")

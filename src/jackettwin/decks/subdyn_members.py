@@ -15,18 +15,17 @@ from jackettwin.arrays import FloatArray
 from jackettwin.decks.openfast import Deck, DeckRow, to_float
 from jackettwin.decks.subdyn_joints import link_groups, member_ends, member_rows, read_joints, with_hinges
 from jackettwin.errors import InputError, located, look_up, require
-from jackettwin.structure import Material, Section
-from jackettwin.structure.model import Member, RigidLink, Vector
-from jackettwin.structure.sections import rectangular_section
-from jackettwin.structure.two_node import (
-    BeamSection,
+from jackettwin.structure import (
+    Material,
+    Member,
+    RigidLink,
+    Section,
     TwoNodeElement,
-    bar_mass,
-    beam_matrices,
-    cable_matrices,
-    spring_matrix,
+    Vector,
     two_node_element,
 )
+from jackettwin.structure.sections import rectangular_section
+from jackettwin.structure.two_node import BeamSection, bar_mass, beam_matrices, cable_matrices, spring_matrix
 
 _TUBE, _RECTANGLE, _CABLE, _RIGID, _ARBITRARY, _SPRING = ("1", "1c"), "1r", "2", "3", "4", "5"
 _BEAMS = (*_TUBE, _RECTANGLE, _ARBITRARY)

@@ -14,9 +14,15 @@ import numpy as np
 
 from jackettwin.errors import InputError
 from jackettwin.files import atomic_path
-from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.masses import body_from_static_moments, rigid_body_mass
-from jackettwin.structure.model import PointMass, Reaction
+from jackettwin.structure import (
+    Material,
+    PointMass,
+    Reaction,
+    Section,
+    Structure,
+    body_from_static_moments,
+    rigid_body_mass,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -18,7 +18,7 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import require
 from jackettwin.response.state import factorised
 from jackettwin.response.system import Pencil, System
-from jackettwin.structure.eigen import dense, lowest_modes
+from jackettwin.structure import dense, lowest_modes
 
 _FIRST_GUESS = 40
 FREQUENCY_ERROR = 5e-4

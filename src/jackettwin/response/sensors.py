@@ -16,8 +16,7 @@ import scipy.sparse as sp
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError, did_you_mean, located, look_up, require, require_between
 from jackettwin.plugins import plugins_of_type
-from jackettwin.structure import Assembly, beam
-from jackettwin.structure.forces import tube_radius
+from jackettwin.structure import Assembly, beam, tube_radius
 
 PLUGINS = "jackettwin.sensors"
 """Entry points of packages that add kinds of sensors: each is a :class:`SensorKind`."""

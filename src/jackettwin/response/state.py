@@ -13,7 +13,7 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError
 from jackettwin.response.system import Matrix, Pencil
 from jackettwin.soil import Prony
-from jackettwin.structure.eigen import dense
+from jackettwin.structure import dense
 
 
 class Branch(NamedTuple):

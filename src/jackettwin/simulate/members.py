@@ -15,8 +15,7 @@ from jackettwin.response import build_system, self_weight, static_displacement
 from jackettwin.simulate.motion.motion import Motion, simulate_motion
 from jackettwin.simulate.motion.water import water_loads, water_points
 from jackettwin.simulate.scenario.scenario import Scenario
-from jackettwin.structure import Assembly, assemble
-from jackettwin.structure.forces import element_weight
+from jackettwin.structure import Assembly, assemble, element_weight
 
 _BLOCK = 2000
 """Instants at a time: records are long, and every element has twelve loads."""

@@ -26,5 +26,6 @@ from .support import (
     on_translations as on_translations,
     own_support as own_support,
     pinned as pinned,
+    standing as standing,
     with_static_reactions as with_static_reactions,
 )

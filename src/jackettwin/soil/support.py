@@ -10,8 +10,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.soil.laws.viscoelastic import Law, Prony
-from jackettwin.structure import Structure
-from jackettwin.structure.model import Reaction
+from jackettwin.structure import Reaction, Structure
 
 TRANSLATIONS_ONLY = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 ELASTIC = Prony(k0=1.0)

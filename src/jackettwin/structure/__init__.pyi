@@ -1,5 +1,41 @@
 from .assemble import Assembly as Assembly, assemble as assemble
-from .check import ModelCheck as ModelCheck, check as check
+from .check import (
+    ModelCheck as ModelCheck,
+    check as check,
+    few as few,
+    rigid_body_motion as rigid_body_motion,
+)
+from .cut import at_interface as at_interface
 from .damping import Rayleigh as Rayleigh, RayleighSchema as RayleighSchema
+from .eigen import AT_REST as AT_REST, below_zero as below_zero, dense as dense, lowest_modes as lowest_modes
+from .forces import (
+    SectionForces as SectionForces,
+    element_weight as element_weight,
+    section_forces as section_forces,
+    tube_radius as tube_radius,
+    von_mises_stress as von_mises_stress,
+)
 from .jacket import jacket as jacket
-from .model import Material as Material, Section as Section, Structure as Structure
+from .masses import (
+    body_from_static_moments as body_from_static_moments,
+    rigid_body_mass as rigid_body_mass,
+    rigid_transfer as rigid_transfer,
+)
+from .model import (
+    STEEL as STEEL,
+    Material as Material,
+    Member as Member,
+    PointMass as PointMass,
+    Reaction as Reaction,
+    RigidLink as RigidLink,
+    Section as Section,
+    Structure as Structure,
+    Vector as Vector,
+)
+from .rotor_modes import (
+    FlexibleRotor as FlexibleRotor,
+    turned_nacelle as turned_nacelle,
+    with_rotor as with_rotor,
+    without_rotor as without_rotor,
+)
+from .two_node import TwoNodeElement as TwoNodeElement, two_node_element as two_node_element

@@ -16,8 +16,7 @@ from jackettwin.response import (
     undamped_modes,
     widest_band_hz,
 )
-from jackettwin.soil import Law, Prony
-from jackettwin.soil.support import standing
+from jackettwin.soil import Law, Prony, standing
 from jackettwin.structure import Assembly, Rayleigh
 from jackettwin.updating.nuisance_parameters import NuisanceParameters
 from jackettwin.updating.tie_groups import TieGroups

@@ -9,8 +9,7 @@ import numpy as np
 
 from jackettwin.arrays import ComplexArray, FloatArray
 from jackettwin.errors import InputError, require
-from jackettwin.soil import Law, Spring, Support, pinned
-from jackettwin.soil.support import standing
+from jackettwin.soil import Law, Spring, Support, pinned, standing
 from jackettwin.structure import Structure
 
 Group = tuple[tuple[int, ...], tuple[str, ...]]

@@ -12,9 +12,18 @@ from jackettwin.decks import read_structure
 from jackettwin.response import build_system, poles, sdof, undamped_modes
 from jackettwin.soil import clamped, read_foundation
 from jackettwin.soil.laws.viscoelastic import kelvin_voigt, loss_factor, maxwell, zener
-from jackettwin.structure import Assembly, Material, Rayleigh, Section, Structure, assemble
-from jackettwin.structure.masses import rigid_body_mass
-from jackettwin.structure.model import STEEL, Member, Reaction
+from jackettwin.structure import (
+    STEEL,
+    Assembly,
+    Material,
+    Member,
+    Rayleigh,
+    Reaction,
+    Section,
+    Structure,
+    assemble,
+    rigid_body_mass,
+)
 from jackettwin.updating import numbered_modes, only_parts
 from jackettwin.verify.rows import Computed
 

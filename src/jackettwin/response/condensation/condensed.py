@@ -37,9 +37,8 @@ from jackettwin.errors import InputError, NumericalError, require
 from jackettwin.response.modes.modal import UndampedModes
 from jackettwin.response.modes.multiple import aligned_coordinates
 from jackettwin.response.system import Group, Matrix, Pencil, System
-from jackettwin.soil import Prony
-from jackettwin.soil.support import standing
-from jackettwin.structure.eigen import lowest_modes
+from jackettwin.soil import Prony, standing
+from jackettwin.structure import lowest_modes
 
 _RETAINED = 1.2
 """Modes up to this multiple of the band are unknowns of their own."""

@@ -12,7 +12,7 @@ from jackettwin.errors import require
 from jackettwin.response.modes.multiple import aligned
 from jackettwin.response.modes.poles import REAL, poles_below
 from jackettwin.response.system import System
-from jackettwin.structure.eigen import AT_REST, below_zero, lowest_modes
+from jackettwin.structure import AT_REST, below_zero, lowest_modes
 
 _SHOWN = 6
 """Modes that a result names when it is printed."""

@@ -12,8 +12,7 @@ from jackettwin.axes import DOFS_PER_NODE, GRAVITY_M_S2
 from jackettwin.errors import InputError, did_you_mean
 from jackettwin.response.state import factorised
 from jackettwin.response.system import System
-from jackettwin.structure import Assembly
-from jackettwin.structure.check import rigid_body_motion
+from jackettwin.structure import Assembly, rigid_body_motion
 
 
 def static_displacement(system: System, load: FloatArray) -> FloatArray:

@@ -22,7 +22,7 @@ from jackettwin.arrays import FloatArray
 from jackettwin.errors import NumericalError, require
 from jackettwin.response.state import maxwell_branches, state_matrix
 from jackettwin.response.system import Pencil
-from jackettwin.structure.eigen import dense
+from jackettwin.structure import dense
 
 Feedback = Callable[[int, FloatArray], FloatArray]
 """Force (m_g,) at step k in state x."""

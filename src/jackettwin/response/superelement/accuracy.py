@@ -21,8 +21,7 @@ from jackettwin.response.superelement.craig_bampton import (
     poles,
 )
 from jackettwin.response.system import Pencil, System
-from jackettwin.structure import Assembly, Rayleigh
-from jackettwin.structure.eigen import AT_REST, dense, lowest_modes
+from jackettwin.structure import AT_REST, Assembly, Rayleigh, dense, lowest_modes
 
 _OVERDAMPED = 0.3
 """More damped poles are motions of the supports; nobody asks a superelement for them."""

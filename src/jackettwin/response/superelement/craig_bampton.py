@@ -35,10 +35,7 @@ from jackettwin.response.state import Branch, factorised, maxwell_branches
 from jackettwin.response.system import Pencil, System
 from jackettwin.soil import Law, Prony, Springpot
 from jackettwin.soil.laws.viscoelastic import prony_fit
-from jackettwin.structure import Assembly, Structure
-from jackettwin.structure.eigen import lowest_modes
-from jackettwin.structure.masses import rigid_transfer
-from jackettwin.structure.model import Vector
+from jackettwin.structure import Assembly, Structure, Vector, lowest_modes, rigid_transfer
 
 INTERFACE = DOFS_PER_NODE
 """Coordinates of the interface: they come first."""

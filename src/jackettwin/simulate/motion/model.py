@@ -36,8 +36,7 @@ from jackettwin.simulate.scenario.scenario import Scenario
 from jackettwin.simulate.scenario.sea import Sea
 from jackettwin.simulate.scenario.tuning import tuned_damping
 from jackettwin.soil import Prony
-from jackettwin.structure import Assembly, assemble
-from jackettwin.structure.rotor_modes import turned_nacelle
+from jackettwin.structure import Assembly, assemble, turned_nacelle
 
 BAND_HZ = 5.0
 """Modes inside the structure are kept up to here."""

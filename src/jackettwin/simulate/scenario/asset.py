@@ -21,10 +21,10 @@ from jackettwin.soil import (
     Support,
     read_foundation,
     read_support,
+    standing,
 )
 from jackettwin.soil.foundation import FoundationDampingSchema, FoundationSchema, SoilSchema
 from jackettwin.soil.laws.files import LawSchema
-from jackettwin.soil.support import standing
 from jackettwin.structure import Rayleigh, RayleighSchema, Structure, assemble
 
 

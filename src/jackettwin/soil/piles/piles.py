@@ -19,8 +19,8 @@ from jackettwin.arrays import FloatArray, IntArray
 from jackettwin.errors import InputError, require
 from jackettwin.soil.laws.viscoelastic import Law, Prony, kelvin_voigt
 from jackettwin.soil.support import ELASTIC, Spring, Support
-from jackettwin.structure import Material, Section, Structure
-from jackettwin.structure.model import Member, Reaction, Vector, require_wall
+from jackettwin.structure import Material, Member, Reaction, Section, Structure, Vector
+from jackettwin.structure.model import require_wall
 
 _MOST_ELEMENTS = 2000
 """Along a pile."""

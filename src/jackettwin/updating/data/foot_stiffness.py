@@ -16,8 +16,7 @@ import numpy as np
 from jackettwin.arrays import FloatArray
 from jackettwin.errors import InputError
 from jackettwin.response import UndampedModes, build_system, track_modes, undamped_modes
-from jackettwin.soil import Prony, on_translations
-from jackettwin.soil.support import standing
+from jackettwin.soil import Prony, on_translations, standing
 from jackettwin.structure import Assembly
 
 STIFFEST_N_M, SOFTEST_N_M = 1e11, 1e7
