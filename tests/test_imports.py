@@ -55,6 +55,11 @@ def test_a_circle_of_types_alone_is_seen(tmp_path: Path) -> None:
         TopologicalSorter(imported(tmp_path)).prepare()
 
 
+def test_no_door_offers_a_name_that_one_of_its_folders_has() -> None:
+    """Once a module in that folder is imported, the folder would stand in the place of what is offered."""
+    assert [name for name in homes(SOURCE) if (SOURCE / name.replace(".", "/")).is_dir()] == []
+
+
 def test_no_public_class_name_stands_for_two_things() -> None:
     names = Counter(
         node.name
